@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import Literal
 
 from flowtex._util.extras import install_extra
-from flowtex._util.terminal import terminal
+from flowtex._util.terminal.console import terminal
 
 __all__ = [
     "Check",

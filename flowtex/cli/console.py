@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from flowtex._util.terminal import terminal
+from flowtex._util.terminal.console import terminal
 
 if TYPE_CHECKING:
     from flowtex.field import FlowField

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
-from hostile.reading import read_all
 from hypothesis import given
 from hypothesis import strategies as st
+from reading_process import read_all
 from strategies import property_test
 
 from flowtex.errors import FieldError
@@ -40,9 +40,8 @@ def legacy(mesh: Any, *, text: bool, version: int) -> Callable[[Path], None]:
     def write(path: Path) -> None:
         from vtkmodules import vtkIOLegacy
 
-        kinds = {pv.StructuredGrid: "StructuredGrid", pv.PolyData: "PolyData"}
-        kinds |= {pv.ImageData: "StructuredPoints", pv.UnstructuredGrid: "UnstructuredGrid"}
-        writer = getattr(vtkIOLegacy, f"vtk{kinds[type(mesh)]}Writer")()
+        kind = type(mesh).__name__.replace("ImageData", "StructuredPoints")
+        writer = getattr(vtkIOLegacy, f"vtk{kind}Writer")()
         writer.SetFileVersion(version)
         writer.SetFileType(1 if text else 2)
         writer.SetFileName(str(path))
@@ -69,7 +68,7 @@ def encoded(mesh: Any) -> Callable[[Path], None]:
     return write
 
 
-def dataset(kind: str) -> Callable[[Path], None]:
+def dataset(kind: Any) -> Callable[[Path], None]:
     def write(path: Path) -> None:
         import netCDF4
 

@@ -10,7 +10,7 @@ from rich.table import Table
 from strategies import property_test
 
 import flowtex
-from flowtex._util.terminal import plain_text, terminal
+from flowtex._util.terminal.console import plain_text, terminal
 from flowtex.cli import main
 from flowtex.cli.console import complain, say
 
@@ -67,9 +67,12 @@ def test_there_is_one_console() -> None:
     for path in package.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             module = node.module if isinstance(node, ast.ImportFrom) else ""
-            is_import = isinstance(node, (ast.Import, ast.ImportFrom))
-            names = [name.name for name in node.names] if is_import else []
+            names = (
+                [name.name for name in node.names]
+                if isinstance(node, (ast.Import, ast.ImportFrom))
+                else []
+            )
             if (module == "rich.console" and "Console" in names) or "rich" in names:
                 makers.append(str(path.relative_to(package)))
     # One for types, and the one that it is made from.
-    assert set(makers) == {"_util/terminal.py"}
+    assert set(makers) == {"_util/terminal/console.py"}

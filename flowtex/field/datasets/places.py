@@ -12,7 +12,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
-from flowtex.field.datasets.values import values_in
+from flowtex.field.io.inspection.limits import values_in
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -25,7 +25,7 @@ from flowtex.field.datasets.maps import (
     shown_rows,
 )
 from flowtex.field.datasets.places import Places
-from flowtex.field.datasets.values import values_in
+from flowtex.field.io.inspection.limits import values_in
 from flowtex.field.periodic import find_closure
 
 if TYPE_CHECKING:

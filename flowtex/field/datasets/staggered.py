@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.field.datasets.values import values_in
+from flowtex.field.io.inspection.limits import values_in
 
 if TYPE_CHECKING:
     import xarray as xr

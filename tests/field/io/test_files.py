@@ -314,9 +314,9 @@ def test_a_solution_that_is_cut_off(tmp_path: Path) -> None:
         FlowField.from_file(tmp_path / "a.xyz", plane="k=0")
     missing = len(whole) - len(whole) // 2
     assert str(caught.value) == (
-        f"{tmp_path / 'a.xyz'}: the file is cut short or broken: a.q declares {len(whole):,} bytes, "
-        f"the file has {len(whole) // 2:,} of them, and {missing:,} are missing; write or copy it "
-        "again"
+        f"{tmp_path / 'a.xyz'}: the file is cut short or broken: a.q declares {len(whole):,} "
+        f"bytes, the file has {len(whole) // 2:,} of them, and {missing:,} are missing; write or "
+        "copy it again"
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flowtex.errors import FieldError
 from flowtex.field.datasets.meshes.mesh import Mesh
-from flowtex.field.datasets.values import values_in
+from flowtex.field.io.inspection.limits import values_in
 
 if TYPE_CHECKING:
     import xarray as xr

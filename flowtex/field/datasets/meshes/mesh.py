@@ -14,7 +14,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import FACES, NODES
 from flowtex.field.datasets.places import DEGREES, LENGTHS
-from flowtex.field.datasets.values import values_in
+from flowtex.field.io.inspection.limits import values_in
 from flowtex.field.triangles.topology import triangle_normals
 
 __all__ = ["Mesh"]

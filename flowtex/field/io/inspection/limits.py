@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray
 from flowtex._util.memory import available_bytes
 from flowtex.errors import FieldError
 
-__all__ = ["check_count", "check_memory", "size_text"]
+__all__ = ["check_count", "check_memory", "size_text", "values_in"]
 
 #: A reader and what is made of its data take some times what a file declares.
 MEMORY_SHARE = 0.5
@@ -52,3 +57,15 @@ def size_text(nbytes: int) -> str:
     while size >= 1000 and len(units) > 1:
         size, units = size / 1000, units[1:]
     return f"{size:.3g} {units[0]}" if size < 1000 else f"{size:.0f} {units[0]}"
+
+
+def values_in(array: Any) -> AnyArray:
+    """Return the values of a variable of xarray's, (...) as it is.
+
+    Raises
+    ------
+    FieldError
+        When they do not fit into memory as numbers of 8 bytes: a small file may declare many.
+    """
+    check_memory(8 * array.size, f"the variable {getattr(array, 'name', None) or 'without a name'}")
+    return np.asarray(array.values)
