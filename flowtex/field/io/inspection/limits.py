@@ -26,9 +26,9 @@ def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> No
     """
     if found < declared:
         msg = (
-            f"the file is cut short or broken: {what} declares {declared:,} {unit}, the file has "
-            f"{max(found, 0):,} of them, and {declared - max(found, 0):,} are missing; write or "
-            "copy it again"
+            f"the file is cut short or broken: {what} declares {_text(declared)} {unit}, the file "
+            f"has {max(found, 0):,} of them, and {_text(declared - max(found, 0))} are missing; "
+            "write or copy it again"
         )
         raise FieldError(msg)
 
@@ -53,10 +53,14 @@ def check_memory(nbytes: int, what: str) -> None:
 
 def size_text(nbytes: int) -> str:
     """Return a number of bytes in words, such as ``"1.5 GB"``."""
-    size, units = float(nbytes), ["bytes", "kB", "MB", "GB", "TB", "PB"]
+    size, units = float(min(nbytes, 10**30)), ["bytes", "kB", "MB", "GB", "TB", "PB"]
     while size >= 1000 and len(units) > 1:
         size, units = size / 1000, units[1:]
     return f"{size:.3g} {units[0]}" if size < 1000 else f"{size:.0f} {units[0]}"
+
+
+def _text(count: int) -> str:
+    return f"{count:,}" if count < 10**18 else f"some 10^{len(str(count)) - 1}"
 
 
 def values_in(array: Any) -> AnyArray:
