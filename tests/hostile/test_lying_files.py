@@ -84,7 +84,7 @@ def test_a_virtual_dataset_of_the_file_itself_is_read(tmp_path: Path) -> None:
         ("winds.json", lies.winds(20_000, 20_000), "declares 400,000,000 numbers"),
         ("deep.json", b"[" * 200_000, "it is no JSON"),
         ("classic.nc", lies.netcdf_header(1, 2**31), "2,147,483,8"),
-        ("wide.nc", lies.netcdf_header(5, 2**60), "1,152,921,504,606,84"),
+        ("wide.nc", lies.netcdf_header(5, 2**60), "declares some 10^18 bytes"),
         ("constant.grib", lies.grib2(2**32 - 1), "the grid of message 1 declares 34.4 GB"),
         ("laughs.vtu", b'<!DOCTYPE x [<!ENTITY a "b">]><VTKFile/>', "the XML entity a"),
     ],
