@@ -340,6 +340,39 @@ def test_an_image_takes_no_more_room_than_it_may() -> None:
     app.close()
 
 
+def test_a_picture_is_decoded_beside_the_event_loop_and_the_latest_counts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    app = page(field())
+    gate, decoded = threading.Event(), []
+
+    def slowly(content: bytes, name: str) -> Any:
+        assert threading.current_thread() is not threading.main_thread()
+        decoded.append(name)
+        assert gate.wait(PATIENCE_S)
+        return np.full((4, 4, 4), len(decoded), dtype=np.uint8)
+
+    monkeypatch.setattr("flowtex.app.controllers.appearance.decode_picture", slowly)
+    picture = sent(Image.new("RGB", (9, 9)))
+
+    async def story() -> None:
+        for name in ("first", "second"):
+            app.state.set(image_file={**picture, "name": name})
+            app.controllers.appearance.take_image()
+            await until(lambda name=name: name in decoded)  # the loop goes on
+        gate.set()
+        await until(lambda: app.area.settings.noise == "image")
+        app.state.set(image_file=picture)
+        app.controllers.appearance.take_image()
+        laying = app.controllers.appearance._laying
+        app.close()
+        assert laying is not None
+        await until(laying.done)
+        assert laying.cancelled()
+
+    played(app, story)
+
+
 @pytest.mark.parametrize("compared", ["Level of detail: off", "Noise: texture"])
 def test_an_image_is_laid_in_both_panes_where_noise_is_no_difference(compared: str) -> None:
     app = page(field(), resolution=64)

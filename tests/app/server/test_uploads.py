@@ -77,7 +77,11 @@ def test_size_and_number_are_limited(
     assert len({path for _, path in arrived}) == uploads.MOST_UPLOADS
 
 
-@pytest.mark.parametrize("name", ["风" * 300, "ä" * 90 + "\ud800", "x" * 255, "𝕏" * 100])
+@pytest.mark.parametrize(
+    "name",
+    ["风" * 300, "ä" * 90 + "\ud800", "x" * 255, "𝕏" * 100],
+    ids=["three bytes", "surrogate", "ASCII", "four bytes"],
+)
 def test_names_have_room_in_a_folder(
     taken: tuple[Uploads, list[tuple[str, Path]]], name: str
 ) -> None:
