@@ -25,7 +25,6 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import aiohttp
 from rich.console import Console
@@ -46,6 +45,8 @@ FOLDER_BYTES, FILES_OF_A_PAGE = 256_000_000, 8
 SLOW_CLIENTS, SLOW_S = 700, 60.0
 #: Seconds between two acts of a person, between two killed processes, and rows of the table.
 ACT_S, KILL_S, ROWS = (2.0, 10.0), 15.0, 6
+#: What the table counts.
+COUNTED = ("taken", "refused", "killed", "slow")
 #: Part of the time after which the disk is full, and for which it is.
 FULL_FROM, FULL_FOR = 0.4, 0.1
 
@@ -103,20 +104,17 @@ class Log:
 class Drill:
     """All that goes on at once, and what is counted of it."""
 
-    def __init__(
-        self, served: Served, log: Log, seconds: float, folder: Path, *, full: bool
-    ) -> None:
-        self.served, self.log, self.folder, self.full = served, log, folder, full
+    def __init__(self, served: Served, seconds: float, folder: Path, *, full: bool) -> None:
+        self.served, self.folder, self.full = served, folder, full
         self.seconds = seconds
         self.counts: Counter[str] = Counter()
         self.lost: list[str] = []
-        self.people = 0
+        self.pages = 0
         self._began = time.monotonic()
         self._chance = random.Random(20061205)
         self.table = Table(title="The drill")
-        for name in ("minute", "people", "server MB", "others MB", "threads", "folder MB"):
+        for name in ("minute", "pages", "server MB", "others MB", "threads", "folder MB", *COUNTED):
             self.table.add_column(name, justify="right")
-        self.table.add_column("so far")
 
     @property
     def over(self) -> bool:
@@ -146,7 +144,7 @@ class Drill:
             link = await self._open(http)
             user = User(link)
             await user.sit_down()
-            self.people += 1
+            self.pages += 1
             ready.set()
             while not self.over:
                 await asyncio.sleep(self._chance.uniform(*ACT_S))
@@ -155,7 +153,7 @@ class Drill:
             await link.close()
         except Exception as error:
             self.lost.append(f"{type(error).__name__}: {error}")
-            self.people -= ready.is_set()
+            self.pages -= ready.is_set()
             ready.set()
 
     async def _open(self, http: aiohttp.ClientSession) -> Link:
@@ -176,10 +174,10 @@ class Drill:
                     name, content = next(files)
                     address = f"{self.served.bare}{link.get('upload')}"
                     async with http.post(address, params={"name": name}, data=content) as answer:
-                        self.counts[f"files {answer.status}"] += 1
+                        taken = {200: "taken", 400: "refused"}
+                        self.counts[taken.get(answer.status, str(answer.status))] += 1
                     await asyncio.sleep(1)
                 await link.close()
-                self.counts["problems told"] += bool(link.get("problem"))
             except (aiohttp.ClientError, OSError, RuntimeError, TimeoutError) as error:
                 self.counts[f"senders: {type(error).__name__}"] += 1
                 await asyncio.sleep(1)
@@ -216,7 +214,6 @@ class Drill:
         with contextlib.suppress(OSError), rest.open("wb", buffering=0) as file:
             while file.write(bytes(1 << 20)):
                 await asyncio.sleep(0)
-        self.counts["disk full"] += 1
         await asyncio.sleep(FULL_FOR * self.seconds)
         rest.unlink()
 
@@ -235,12 +232,11 @@ class Drill:
             with contextlib.suppress(OSError):
                 others += memory(child)
         figures = (
-            *(f"{(time.monotonic() - self._began) / 60:.1f}", f"{self.people}"),
+            *(f"{(time.monotonic() - self._began) / 60:.1f}", f"{self.pages}"),
             *(f"{memory(process) / 1e6:.0f}", f"{others / 1e6:.0f}", f"{threads(process)}"),
             f"{size(self.folder) / 1e6:.1f}",
         )
-        told = ", ".join(f"{name} {count:,}" for name, count in sorted(self.counts.items()))
-        self.table.add_row(*figures, told)
+        self.table.add_row(*figures, *(f"{self.counts[name]:,}" for name in COUNTED))
 
 
 def size(folder: Path) -> int:
@@ -277,14 +273,14 @@ def main() -> int:
         limit = str(given.people + 10)
         served = start("demo", "--example", "double_gyre", "--samples", "9", "--limit", limit)
         resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
-        log = Log(served)
-        drill = Drill(served, 60 * given.minutes, folder, full=mounted)
         try:
+            log = Log(served)
+            drill = Drill(served, 60 * given.minutes, folder, full=mounted)
             asyncio.run(drill.run(given.people))
             drill.note()
         finally:
             served.process.send_signal(signal.SIGTERM)
-            status: Any = served.process.wait(60)
+            status = served.process.wait(60)
         left = sorted(path.name for path in folder.iterdir())
     console = Console()
     console.print(drill.table)
@@ -293,7 +289,8 @@ def main() -> int:
         f"{status}, wrote {log.size / 1e3:.1f} kB and {log.tracebacks} tracebacks; pages lost: "
         f"{len(drill.lost)}; left in the temporary folder: {len(left)}"
     )
-    for fault in [*drill.lost, *left]:
+    others = [f"{name}: {n}" for name, n in drill.counts.items() if name not in COUNTED]
+    for fault in [*drill.lost, *left, *others]:
         console.print(fault, markup=False)
     return int(bool(drill.lost or left))
 

@@ -116,6 +116,21 @@ def mean_speed(field: FlowField) -> float:
     return float(np.linalg.norm(field.velocity[-1], axis=-1).mean())
 
 
+def test_a_page_opens_what_was_named_and_nothing_else(tmp_path: Path) -> None:
+    runs, secret = tmp_path / "runs", tmp_path / "secret.vts"
+    (runs / "deep").mkdir(parents=True)
+    for path in (runs / "a.vts", runs / "deep" / "b.vts", secret):
+        gyre(path, 1.0)
+    library = Library.of(runs)
+    assert library.names == ("a.vts", "deep/b.vts")
+    for name in (
+        *(str(secret), "../secret.vts", "deep/../../secret.vts", f"file://{secret}", "secret.vts"),
+        *(str(runs / "a.vts"), "./a.vts", "A.vts", "", "https://host/a.zarr", "a.vts\0"),
+    ):
+        with pytest.raises(FieldError):
+            library.branch().source(name)
+
+
 def test_a_file_that_is_written_anew_is_opened_anew(tmp_path: Path) -> None:
     path = tmp_path / "latest.vts"
     library = Library.of(tmp_path if gyre(path, 0.0) else path)

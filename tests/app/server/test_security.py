@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import inspect
 import logging
 from collections.abc import Awaitable, Callable
 from typing import Any
@@ -61,6 +62,16 @@ def test_names_that_are_not_known_are_refused(host: str, status: int) -> None:
             assert "--allow-host NAME" in await answer.text()
 
     visit(ask, hosts=known_hosts("127.0.0.1", ["flow.example.org"]))
+
+
+def test_servers_listen_on_this_machine_alone() -> None:
+    from flowtex.app import serve
+    from flowtex.cli.options import ServeFlags
+    from flowtex.cli.serve import serve as serve_store
+
+    assert ServeFlags().host == "127.0.0.1"  # of show and demo
+    for call in (serve, serve_store):
+        assert inspect.signature(call).parameters["host"].default == "127.0.0.1"
 
 
 def test_names_are_of_this_machine_and_those_that_are_given(
