@@ -19,7 +19,7 @@ ROWS = [
 
 
 @cache
-def tests_of(path: Path) -> set[str]:
+def functions_of(path: Path) -> set[str]:
     tree = ast.parse(path.read_text(encoding="utf-8"))
     return {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
 
@@ -34,4 +34,4 @@ def test_a_promise_names_tests_that_there_are(row: list[str]) -> None:
     assert named
     for name in named:
         path, _, test = name.partition("::")
-        assert test in tests_of(ROOT / "tests" / path), name
+        assert test in functions_of(ROOT / "tests" / path), name
