@@ -96,8 +96,10 @@ def _ply_header(stream: BinaryIO) -> tuple[str, list[tuple[str, int, list[list[s
                 pass
             case ["element", name, count] if count.isdecimal():
                 elements.append((name, int(count), []))
-            case ["property", *kind, _] if elements and set(kind) - {"list"} <= set(PLY_TYPES):
-                elements[-1][2].append(kind)
+            case ["property", "list", count, kind, _] if elements and {count, kind} <= {*PLY_TYPES}:
+                elements[-1][2].append(["list", count, kind])
+            case ["property", kind, _] if elements and kind in PLY_TYPES:
+                elements[-1][2].append([kind])
             case ["end_header"]:
                 return form, elements
             case ["ply" | "comment" | "obj_info", *_] | []:
