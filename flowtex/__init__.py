@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from flowtex._version import __version__ as __version__
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.settings import Settings
 from flowtex.trace import TraceSlices, trace
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Camera",
+    "FieldError",
     "FlowField",
     "Settings",
     "TraceSlices",

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
 from flowtex.earth import EARTH_RADIUS
+from flowtex.errors import FieldError
 from flowtex.field import Surface
 
 __all__ = ["CAMERA_LIMITS", "WHOLE_VIEW", "Camera", "CameraError", "CameraLimits", "ViewPart"]
@@ -74,7 +75,7 @@ class CameraLimits:
 CAMERA_LIMITS = CameraLimits()
 
 
-class CameraError(ValueError):
+class CameraError(FieldError):
     """Numbers that make no camera, or one that sees nothing.
 
     Examples
@@ -191,24 +192,24 @@ class Camera:
 
         Raises
         ------
-        ValueError
+        FieldError
             When ``zoom`` is not positive, ``focus`` is no point, or ``margin`` is out of range.
         """
         if not (_is_number(margin) and 0 <= margin < 0.5):
             msg = f"margin is {margin!r}; expected a number from 0 to less than 0.5, such as 0.04"
-            raise ValueError(msg)
+            raise FieldError(msg)
         share = 1 - 2 * margin
         if not (_is_number(zoom) and NEAREST_REACH <= zoom <= FARTHEST_REACH):
             msg = (
                 f"zoom is {zoom!r}; expected a positive number, 1 for the whole surface, from "
                 f"{NEAREST_REACH:g} to {FARTHEST_REACH:g}"
             )
-            raise ValueError(msg)
+            raise FieldError(msg)
         center = surface.center.copy()
         if focus is not None:
             if not (_is_point(focus, 2) or _is_point(focus, 3)):
                 msg = f"focus is {focus!r}; expected two or three coordinates in the mesh's units"
-                raise ValueError(msg)
+                raise FieldError(msg)
             point = np.asarray(focus, dtype=float)
             center[: len(point)] = point
         if surface.frame is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
+from flowtex.errors import FieldError
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 
 if TYPE_CHECKING:
@@ -45,14 +46,12 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
     ------
     FieldError, SettingsError
         When the mesh or a setting does not fit.
+        When two views are asked for and there is neither a window nor a notebook.
+        When a notebook is given what only a window has.
     OpenGLMissingError
         When nothing can draw; the text names the command that installs what is missing.
     ModuleNotFoundError
         When a notebook lacks what widgets need; the text names the command that installs it.
-    ValueError
-        When two views are asked for and there is neither a window nor a notebook.
-    TypeError
-        When a notebook is given what only a window has.
 
     Examples
     --------
@@ -89,7 +88,7 @@ def _show_widget(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any
                 f"{name} is for windows, and the browser draws this; leave it out, or draw with "
                 "flowtex.render, or with plotter.flowtex.add and plotter.show"
             )
-            raise TypeError(msg)
+            raise FieldError(msg)
     from flowtex.widget import FlowWidget
 
     if size is not None:
@@ -113,7 +112,7 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
 def _show_page(mesh: Any, options: dict[str, Any]) -> None:
     if options.pop("beside", None) is not None:
         msg = "two views need a window and there is no display; flowtex.render draws both"
-        raise ValueError(msg)
+        raise FieldError(msg)
     field = Options.split(**options).field.field(mesh)
     from flowtex.app import serve
 

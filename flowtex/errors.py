@@ -13,23 +13,28 @@ __all__ = ["FieldError", "raise_faults"]
 
 
 class FieldError(ValueError):
-    """The data or arguments make no flow; the text names them, what was expected and the remedy.
+    """Data or arguments are refused; the text names them, what was expected and the remedy.
+
+    Every refusal of this package is one, also those with a name of their own.
 
     Examples
     --------
     >>> import flowtex
     >>> flowtex.FlowField.from_file("missing.vts")
     Traceback (most recent call last):
-    flowtex.errors.FieldError: ...
+    flowtex.FieldError: ...
     """
 
 
-def raise_faults(faults: Sequence[str], error: type[Exception] = FieldError) -> None:
-    """Raise ``error`` with every fault, or return when there is none."""
+FieldError.__module__ = "flowtex"  # where it is public, as tracebacks show it
+
+
+def raise_faults(faults: Sequence[str]) -> None:
+    """Raise a FieldError with every fault, or return when there is none."""
     if not faults:
         return
     if len(faults) == 1:
-        raise error(faults[0])
+        raise FieldError(faults[0])
     listed = "\n".join(f"  {n}. {fault}" for n, fault in enumerate(faults, start=1))
     msg = f"{len(faults)} things are wrong:\n{listed}"
-    raise error(msg)
+    raise FieldError(msg)

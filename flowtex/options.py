@@ -22,7 +22,7 @@ from typing import Any, TypeVar
 from flowtex._util.colours import DEFAULT_CMAP, colour_table, rgb
 from flowtex._util.names import near_names
 from flowtex.camera import Camera
-from flowtex.errors import raise_faults
+from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.datasets.detect import is_dataset
 from flowtex.field.datasets.pairs import two_names
@@ -112,7 +112,6 @@ class FieldOptions:
         ------
         FieldError
             When the mesh does not make a field.
-        TypeError
             When something is chosen of a field that is made already, or the times of a file.
         """
         choices = {name: value for name, value in vars(self).items() if value is not None}
@@ -124,7 +123,7 @@ class FieldOptions:
         if isinstance(mesh, (str, Path)) or _are_paths(mesh):
             if "times" in choices:
                 msg = f"times is given, and {str(mesh)!r} has its own; leave it out"
-                raise TypeError(msg)
+                raise FieldError(msg)
             return FlowField.from_file(mesh, **choices)
         if not isinstance(mesh, FlowField):
             self._refuse(choices, OF_EARTH, "data of the Earth, and this is a mesh")
@@ -134,7 +133,7 @@ class FieldOptions:
                 f"{', '.join(choices)} cannot be chosen any more for {mesh!r}; choose when it "
                 "is made"
             )
-            raise TypeError(msg)
+            raise FieldError(msg)
         return mesh
 
     def _of_dataset(self, choices: dict[str, Any]) -> dict[str, Any]:
@@ -146,7 +145,7 @@ class FieldOptions:
     def _refuse(choices: Mapping[str, Any], names: tuple[str, ...], what: str) -> None:
         if given := [name for name in names if name in choices]:
             msg = f"{', '.join(given)} is for {what}; leave it out"
-            raise TypeError(msg)
+            raise FieldError(msg)
 
 
 def _stored_field(path: str | Path) -> FlowField | None:
@@ -167,7 +166,7 @@ class Appearance:
 
     Raises
     ------
-    ValueError
+    FieldError
         When there is no such colour map or colour, or the opacity or the range is none.
     """
 
@@ -256,7 +255,7 @@ class Appearance:
                     check(value)
                 except ValueError as error:
                     faults.append(str(error))
-        raise_faults(faults, ValueError)
+        raise_faults(faults)
 
     @property
     def scalar_name(self) -> str | None:
@@ -297,7 +296,7 @@ class ViewOptions:
         ------
         CameraError
             When ``camera`` is none.
-        ValueError
+        FieldError
             When ``zoom`` or ``focus`` is none.
         """
         whole = Camera.fit(surface, aspect, zoom=self.zoom, focus=self.focus)
@@ -344,7 +343,7 @@ class Options:
         ------
         SettingsError
             When there is no argument of a name; the text has the nearest one.
-        ValueError
+        FieldError
             When the opacity or the range of the colours is none.
         """
         accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.camera import Camera
+from flowtex.errors import FieldError
 from flowtex.field.interpolation import bracket
 from flowtex.field.locate import locate, locator, surface_point
 from flowtex.field.point_values import PointValues, values_at
@@ -174,7 +175,7 @@ def probe(
 
     Raises
     ------
-    ValueError
+    FieldError
         When the point is not on the surface, or the pixel no length, or the camera does not see
         the point.
 
@@ -193,7 +194,7 @@ def probe(
         camera, size = camera_facing(surface, place, pixel), (1, 1)
     elif size is None:
         msg = "size is None; expected width and height of the camera's picture, in pixels"
-        raise ValueError(msg)
+        raise FieldError(msg)
     else:
         camera = pixel
     before, after, between = view.moment

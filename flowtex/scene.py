@@ -18,6 +18,7 @@ from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
 from flowtex._util.colours import colour_table, is_diverging
 from flowtex._util.names import near_names
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.dates import seconds_since
 from flowtex.field.interpolation import steps_around
@@ -93,7 +94,7 @@ class Scene:
     ------
     SettingsError
         When an image is asked for and there is none, or the image cannot be used.
-    KeyError
+    FieldError
         When there is no such scalar; the text lists those that exist.
     """
 
@@ -139,9 +140,7 @@ class Scene:
         ------
         FieldError, SettingsError, ImageError
             When the mesh, a setting or the image does not fit.
-        KeyError
             When there is no such scalar.
-        ValueError
             When another argument does not fit.
         """
         return cls.from_options(mesh, Options.split("field", "appearance", **options))
@@ -158,7 +157,7 @@ class Scene:
 
         Raises
         ------
-        ValueError
+        FieldError
             When the changes choose another field.
         SettingsError
             When a setting does not fit.
@@ -166,7 +165,7 @@ class Scene:
         of_field = [name for name in FieldOptions.__dataclass_fields__ if name in changes]
         if of_field:
             msg = f"beside has {', '.join(of_field)}; both views show one field, expected settings"
-            raise ValueError(msg)
+            raise FieldError(msg)
         values = {**vars(options.appearance), **options.settings, **changes}
         return Scene.from_options(self.field, Options.split("appearance", **values))
 
@@ -313,7 +312,7 @@ class Scene:
         first, last = float(self.field.times[0]), float(self.field.times[-1])
         if not first <= moment <= last:
             msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
-            raise ValueError(msg)
+            raise FieldError(msg)
         self._time = moment
         self._notify("uniform")
 
@@ -355,7 +354,7 @@ class Scene:
                 f"log_scale is for values above 0, and the colours of {name!r} go from {low:g} to "
                 f"{high:g}; give clim=(low, high) with a low above 0, or leave log_scale out"
             )
-            raise ValueError(msg)
+            raise FieldError(msg)
 
     def scalar_range(self, name: str, *, robust: bool = False) -> tuple[float, float]:
         """Least and greatest value over the valid nodes and all times.
@@ -506,7 +505,7 @@ def steps_of(field: FlowField, name: str) -> Steps:
 
     Raises
     ------
-    KeyError
+    FieldError
         When there is no such array; the text lists those that exist.
     """
     if name in field.scalars:
@@ -515,7 +514,7 @@ def steps_of(field: FlowField, name: str) -> Steps:
         return field.speed
     names = ", ".join(repr(n) for n in ("speed", *field.scalars))
     msg = f"there is no scalar {name!r} on this field; there are {names}"
-    raise KeyError(msg)
+    raise FieldError(msg)
 
 
 _fields: WeakCache[FlowField] = WeakCache()

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
 from flowtex._util.names import near_names
+from flowtex.errors import FieldError
 
 __all__ = [
     "GROUPS",
@@ -66,7 +67,7 @@ LOGARITHMIC_RATIO = 60
 _SWITCH = {"on": True, "off": False, "true": True, "false": False, "yes": True, "no": False}
 
 
-class SettingsError(ValueError):
+class SettingsError(FieldError):
     """A setting was given a value, or a name, that it does not have.
 
     Examples

@@ -24,7 +24,8 @@ PACKAGE = ROOT / "flowtex"
 # From the bottom to the top: a module imports from lines above its own here, and never from
 # another on the same line. The empty name is the package itself.
 LAYERS: tuple[tuple[str, ...], ...] = (
-    ("errors", "_version", "_util"),
+    ("errors", "_version"),
+    ("_util",),
     ("settings",),
     ("earth",),
     ("field",),

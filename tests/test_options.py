@@ -105,7 +105,7 @@ def test_a_view_beside_another_differs_in_what_it_is_told() -> None:
 
 
 def test_choices_of_a_mesh_are_refused_for_a_field() -> None:
-    with pytest.raises(TypeError, match=r"^plane cannot be chosen any more for FlowField"):
+    with pytest.raises(FieldError, match=r"^plane cannot be chosen any more for FlowField"):
         Scene.of(gyre(), plane="k=1")
 
 
@@ -133,7 +133,7 @@ def test_a_path_stands_for_its_file(tmp_path: Path) -> None:
         field = FieldOptions().field(file)
         assert field.name == "gyre"
         assert field.shape == (101, 201)
-    with pytest.raises(TypeError, match=r"^times is given, and '.*gyre.vts' has its own"):
+    with pytest.raises(FieldError, match=r"^times is given, and '.*gyre.vts' has its own"):
         FieldOptions(times=[1.0]).field(path)
     with pytest.raises(FieldError, match=r"none\.vts: no such file"):
         FieldOptions().field(str(tmp_path / "none.vts"))

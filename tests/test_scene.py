@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flowtex
+from flowtex import FieldError
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures.images import ImageError
@@ -71,7 +72,7 @@ def test_time_outside_is_refused() -> None:
 
 
 def test_an_unknown_scalar_lists_those_that_exist() -> None:
-    with pytest.raises(KeyError, match=r"no scalar 'mach' on this field; there are 'speed'"):
+    with pytest.raises(FieldError, match=r"no scalar 'mach' on this field; there are 'speed'"):
         Scene(field()).scalar("mach")
 
 

@@ -15,6 +15,7 @@ from earth_data import winds
 
 import flowtex
 import flowtex.xarray
+from flowtex import FieldError
 from flowtex.settings import SettingsError
 
 
@@ -30,7 +31,7 @@ def test_a_dataset_has_the_calls_of_the_package(opengl: Any, tmp_path: Path) -> 
     assert ds.flowtex.widget(globe=True).settings.samples > 0
     with pytest.raises(SettingsError, match="globe"):
         ds.flowtex.render(glob=True)
-    with pytest.raises(TypeError, match="plane is for meshes"):
+    with pytest.raises(FieldError, match="plane is for meshes"):
         ds.flowtex.render(plane="k=2")
-    with pytest.raises(TypeError, match="globe is for data of the Earth"):
+    with pytest.raises(FieldError, match="globe is for data of the Earth"):
         flowtex.render(flowtex.examples.double_gyre(), globe=True)

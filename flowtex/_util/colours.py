@@ -8,6 +8,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bytes, Floats
 from flowtex._util.names import near_names
+from flowtex.errors import FieldError
 
 __all__ = ["CMAPS", "DEFAULT_CMAP", "colour_shares", "colour_table", "is_diverging", "rgb"]
 
@@ -33,7 +34,7 @@ DIVERGING = frozenset(
 def rgb(colour: Any) -> tuple[float, float, float]:
     """Return a colour of any form that PyVista takes as red, green and blue from 0 to 1.
 
-    Raises a ValueError when there is no such colour.
+    Raises a FieldError when there is no such colour.
     """
     if isinstance(colour, str):
         from matplotlib.colors import is_color_like, to_rgb
@@ -51,7 +52,7 @@ def colour_table(cmap: Any | None) -> Bytes:
     """Return a colour map as (256, 4).
 
     It may be a name, a map of matplotlib's or a table as PyVista takes them, or an array
-    (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a ValueError; of a name that there
+    (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a FieldError; of a name that there
     is not, it has the near ones.
     """
     if isinstance(cmap, np.ndarray):
@@ -73,7 +74,7 @@ def colour_table(cmap: Any | None) -> Bytes:
     except (TypeError, ValueError, ModuleNotFoundError) as error:
         hint = near_names(name, sorted(colormaps)) if isinstance(name, str) else "expected a name"
         msg = f"there is no colour map {name!r}; {hint}"
-        raise ValueError(msg) from error
+        raise FieldError(msg) from error
 
 
 def is_diverging(cmap: Any) -> bool:
@@ -94,7 +95,7 @@ def colour_shares(values: AnyArray, low: float, high: float, *, log_scale: bool 
 def _resampled(colours: AnyArray) -> Bytes:
     if colours.ndim != 2 or colours.shape[1] not in (3, 4) or not len(colours):
         msg = f"cmap has shape {colours.shape}; expected a name, or (N, 3) or (N, 4)"
-        raise ValueError(msg)
+        raise FieldError(msg)
     values = colours.astype(float) * (255.0 if colours.dtype.kind == "f" else 1.0)
     table = np.full((ENTRIES, 4), 255.0)
     table[:, : values.shape[1]] = values[np.arange(ENTRIES) * len(values) // ENTRIES]

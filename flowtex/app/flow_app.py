@@ -26,7 +26,6 @@ from flowtex.app.ui.layout import build_page
 from flowtex.diagnostics import has_display
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.settings import SettingsError
 
 __all__ = ["FlowApp", "first_choice", "serve"]
 
@@ -123,7 +122,7 @@ class FlowApp(NotebookPage):
         try:
             for controller in self.context.controllers:
                 controller.restore(state)
-        except (SettingsError, FieldError) as error:
+        except FieldError as error:
             self.context.complain(error)
         self.stream.changed()
 
@@ -229,11 +228,10 @@ def serve(
     ------
     FieldError, SettingsError
         When the mesh or a setting does not fit, or a name of ``allow_host`` is none.
+        When options are given with a function.
     ServeError
         When the port or the host cannot be listened on, or ``port``, ``limit`` or ``idle`` is out
         of range.
-    TypeError
-        When options are given with a function.
 
     Examples
     --------
@@ -269,7 +267,7 @@ def _app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) -
         names = [*options, *(["folder"] if folder is not None else [])]
         if names:
             msg = f"{', '.join(names)} cannot go with a function; give them to what it makes"
-            raise TypeError(msg)
+            raise FieldError(msg)
         make_app: MakeApp = field
         return make_app
     # One library for all: files that are open and flows that are traced are shared.

@@ -19,13 +19,10 @@ from cyclopts import App, CycloptsError
 from flowtex._util.ending import Ended, ended_by_signals
 from flowtex.cli.console import complain
 from flowtex.cli.info import info
-from flowtex.cli.options import UsageError
 from flowtex.cli.pyramid import pyramid
 from flowtex.cli.serve import serve
 from flowtex.cli.write import export, movie, render
 from flowtex.errors import FieldError
-from flowtex.offscreen.encoders import MovieError
-from flowtex.settings import SettingsError
 
 __all__ = ["main"]
 
@@ -97,10 +94,4 @@ def _exit_code(error: Exception) -> int | None:
 
     if isinstance(error, OpenGLMissingError):
         return 1
-    if isinstance(error, (CycloptsError, FieldError, MovieError, SettingsError, UsageError)):
-        return 2
-    # The page's own error is known only where the page is.
-    page = sys.modules.get("flowtex.app")
-    if page is not None and isinstance(error, page.ServeError):
-        return 2
-    return None
+    return 2 if isinstance(error, (CycloptsError, FieldError)) else None

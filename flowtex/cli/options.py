@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number
 
+from flowtex.errors import FieldError
 from flowtex.options import Appearance, FieldOptions, ViewOptions, option_text
 from flowtex.settings import TABLE, Setting, Settings, setting
 
@@ -54,7 +55,7 @@ FLAT = Parameter(name="*")
 POINT, RANGE = "two or three coordinates", "two numbers"
 
 
-class UsageError(ValueError):
+class UsageError(FieldError):
     """Arguments that cannot be followed; the text says how they can."""
 
 

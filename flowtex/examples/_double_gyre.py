@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
+from flowtex.errors import FieldError
 
 AMPLITUDE, EPSILON, PERIOD = 0.1, 0.25, 10.0
 
@@ -45,7 +46,7 @@ def double_gyre_velocity(
 
     Raises
     ------
-    ValueError
+    FieldError
         When the points have neither two nor three components.
 
     Examples
@@ -60,7 +61,7 @@ def double_gyre_velocity(
             f"points has shape {where.shape}, expected (..., 2) or (..., 3); stack x and y with "
             "np.stack([x, y], axis=-1)"
         )
-        raise ValueError(message)
+        raise FieldError(message)
     f, slope, _ = _border(where[..., 0], time, epsilon, period)
     y = np.pi * where[..., 1]
     velocity = np.zeros_like(where)

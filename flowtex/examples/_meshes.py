@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flowtex.errors import FieldError
 from flowtex.examples._double_gyre import EPSILON, nodes
 from flowtex.examples._fields import (
     airfoil_field,
@@ -110,7 +111,7 @@ def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
 
     Raises
     ------
-    ValueError
+    FieldError
         When the time is not a finite number.
 
     Examples
@@ -121,7 +122,7 @@ def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
     """
     if not np.isfinite(time):
         message = f"time is {time!r}, expected a finite number such as 2.5"
-        raise ValueError(message)
+        raise FieldError(message)
     return to_grid(double_gyre_at(np.array([time]), nodes((101, 201)), EPSILON))
 
 

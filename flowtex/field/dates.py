@@ -77,14 +77,14 @@ def seconds_since(start: Any, date: Any) -> float:
 
     Raises
     ------
-    ValueError
+    FieldError
         When it is none.
     """
     if isinstance(date, (int, float, np.number)):
         return float(date)
     if start is None:
         msg = f"time is {date!r}; expected a number, for the times of the field are no dates"
-        raise ValueError(msg)
+        raise FieldError(msg)
     try:
         if isinstance(date, np.datetime64):
             date = date.astype("datetime64[us]").item()
@@ -96,7 +96,7 @@ def seconds_since(start: Any, date: Any) -> float:
         return float((date - start).total_seconds())
     except (TypeError, ValueError, AttributeError) as error:
         msg = f"time is {date!r}; expected a number, or a date such as {start:%Y-%m-%d %H:%M}"
-        raise ValueError(msg) from error
+        raise FieldError(msg) from error
 
 
 def _at_midnight(date: Any) -> bool:

@@ -481,13 +481,13 @@ class FlowField(FieldConstructors):
 
         Raises
         ------
-        IndexError
+        FieldError
             When there is no such step.
         """
         count = len(self.times)
         if not -count <= step < count:
             msg = f"time step {step} does not exist: expected 0 to {count - 1}"
-            raise IndexError(msg)
+            raise FieldError(msg)
         return int(step) % count
 
     def downsample(self, factor: int) -> FlowField:
@@ -495,12 +495,12 @@ class FlowField(FieldConstructors):
 
         Raises
         ------
-        ValueError
+        FieldError
             When fewer than two lines would be left, or on a surface of triangles, which has none.
         """
         if self.triangles is not None:
             msg = f"{self!r} has no lines of nodes; make the mesh coarser, as by mesh.decimate(0.5)"
-            raise ValueError(msg)
+            raise FieldError(msg)
         rows, columns = (
             every_line(count, factor, closed=closed)
             for count, closed in zip(self.shape, self.periodic, strict=True)

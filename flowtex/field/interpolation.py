@@ -8,6 +8,7 @@ import numpy as np
 from scipy import ndimage
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex.errors import FieldError
 
 __all__ = [
     "along_line",
@@ -137,7 +138,7 @@ def every_line(count: int, factor: int, *, closed: bool) -> Indices:
     """Return every ``factor``-th line, and the last one where the axis is closed."""
     if factor < 1:
         msg = f"factor is {factor}; expected 1 or more"
-        raise ValueError(msg)
+        raise FieldError(msg)
     picks = list(range(0, count, factor))
     if closed and picks[-1] != count - 1:
         picks.append(count - 1)
@@ -147,5 +148,5 @@ def every_line(count: int, factor: int, *, closed: bool) -> Indices:
             f"factor is {factor}, which leaves {len(picks)} of {count} lines; expected a smaller "
             f"one that leaves at least {fewest}"
         )
-        raise ValueError(msg)
+        raise FieldError(msg)
     return np.array(picks)

@@ -24,6 +24,7 @@ from scipy.spatial import cKDTree
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.cache import WeakCache
+from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.nearest import ON_SURFACE, START_NODES, TriangleLocator, closest
@@ -67,13 +68,13 @@ class SurfacePoint:
 def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
     """Return the point of a surface at (j, i) in cells; an axis that closes takes any number.
 
-    Raises a ValueError when the index is no pair of numbers, or outside the surface or in a cell
+    Raises a FieldError when the index is no pair of numbers, or outside the surface or in a cell
     that is not drawn.
     """
     at = np.asarray(index, dtype=float)
     if at.shape != (2,) or not np.isfinite(at).all():
         msg = f"index is {index!r}; expected two finite numbers (j, i), in cells"
-        raise ValueError(msg)
+        raise FieldError(msg)
     if isinstance(surface, TriangleSurface):
         return _in_triangle(surface, at)
     j, i = (float(x) for x in surface.wrap(at[::-1])[::-1])
@@ -83,7 +84,7 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
             f"(j, i) is ({j:g}, {i:g}), outside the surface; expected j from 0 to {rows - 1} and "
             f"i from 0 to {columns - 1}"
         )
-        raise ValueError(msg)
+        raise FieldError(msg)
     for row, column in product(_cells(j, rows), _cells(i, columns)):
         if surface.cells[row, column]:
             return _in_cell((j, i), row, column, columns)
@@ -91,7 +92,7 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
         f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a point where the "
         "surface is drawn"
     )
-    raise ValueError(msg)
+    raise FieldError(msg)
 
 
 def _in_triangle(surface: TriangleSurface, index: Floats) -> SurfacePoint:
@@ -103,10 +104,10 @@ def _in_triangle(surface: TriangleSurface, index: Floats) -> SurfacePoint:
             "number of the triangle plus the share of its second corner, and the share of its "
             "third as i"
         )
-        raise ValueError(msg)
+        raise FieldError(msg)
     if not surface.cells[int(j)]:
         msg = f"(j, i) is ({j:g}, {i:g}), in a triangle with a blanked node; expected another"
-        raise ValueError(msg)
+        raise FieldError(msg)
     nodes, weights = surface.corners_at(np.array([i, j]))
     return SurfacePoint((j, i), nodes, weights)
 
@@ -297,7 +298,7 @@ def locate(
     ``None`` where no surface is drawn within ``tolerance`` sizes of the nearest cell: another
     program's triangles may cut a curved cell the other way. The surface consists of triangles as
     renderers draw it, so points of a picture are exact. The first call for a field builds a tree of
-    its nodes; the next ones take about a millisecond. Raises a ValueError when the point is not two
+    its nodes; the next ones take about a millisecond. Raises a FieldError when the point is not two
     or three finite numbers.
 
     Examples
@@ -311,7 +312,7 @@ def locate(
     at = np.asarray(point, dtype=float)
     if at.shape not in ((2,), (3,)) or not np.isfinite(at).all():
         msg = f"point is {point!r}; expected two or three finite coordinates in the mesh's units"
-        raise ValueError(msg)
+        raise FieldError(msg)
     whole = np.zeros((1, 3))
     whole[0, : len(at)] = at
     index, distance = locator(field).nearest(whole)

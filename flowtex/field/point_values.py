@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
+from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.field.locate import surface_point
@@ -73,7 +74,7 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
 
     Raises
     ------
-    ValueError
+    FieldError
         When the point is not on the surface or the time not within the field's times.
 
     Examples
@@ -90,7 +91,7 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
     at = last if time is None or field.steady else float(time)
     if not first <= at <= last:
         msg = f"time is {time!r}; expected {first:g} to {last:g}, the times of the field"
-        raise ValueError(msg)
+        raise FieldError(msg)
     before, after, share = steps_around(field.times, at)
 
     def value(steps: Floats) -> Floats:

@@ -20,6 +20,7 @@ from flowtex._util.array_types import Bytes
 from flowtex._util.extras import install_extra
 from flowtex._util.progress import Stopped
 from flowtex._util.whole_file import WholeFile
+from flowtex.errors import FieldError
 
 __all__ = [
     "DEFAULT_QUALITY",
@@ -50,7 +51,7 @@ GIF_MAX_FPS = 50.0
 PALETTE_PICTURES, PALETTE_SIDE = 8, 256
 
 
-class MovieError(ValueError):
+class MovieError(FieldError):
     """A movie cannot be made so; the text says why and what to do.
 
     Examples

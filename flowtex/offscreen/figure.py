@@ -14,6 +14,7 @@ from PIL import Image
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import CAMERA_LIMITS, Camera
+from flowtex.errors import FieldError
 from flowtex.field import Surface
 from flowtex.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
 from flowtex.options import (
@@ -69,7 +70,6 @@ def extent(
     ------
     FieldError, SettingsError
         When the mesh or a setting does not fit.
-    ValueError
         When the surface is curved, the camera does not look straight on, or there are two views.
 
     Examples
@@ -82,7 +82,7 @@ def extent(
     chosen = Options.split(**options)
     if chosen.view.beside is not None:
         msg = "beside makes two views, which have no one extent; leave it out"
-        raise ValueError(msg)
+        raise FieldError(msg)
     surface = Scene.from_options(mesh, chosen).whole.surface
     frame, view, aspect = _frame(surface), chosen.view, size[0] / size[1]
     camera = view.first_camera(surface, aspect)
@@ -93,7 +93,7 @@ def extent(
             f"camera is {view.camera!r}, which does not look straight on without perspective; "
             "leave it out, and choose by zoom and focus"
         )
-        raise ValueError(msg)
+        raise FieldError(msg)
     x, y = frame @ camera.focal_point
     half = camera.parallel_scale
     return float(x - half * aspect), float(x + half * aspect), float(y - half), float(y + half)
@@ -136,9 +136,7 @@ def axes(
     ------
     FieldError, SettingsError, OpenGLMissingError
         As for :func:`flowtex.render`.
-    TypeError
         When ``ax`` are no such axes.
-    ValueError
         When the surface is curved.
 
     Examples
@@ -153,10 +151,10 @@ def axes(
     """
     if getattr(ax, "name", "") != "rectilinear":
         msg = f"ax is {ax!r}; expected rectilinear axes of matplotlib's, as plt.subplots() makes"
-        raise TypeError(msg)
+        raise FieldError(msg)
     if (scales := (ax.get_xscale(), ax.get_yscale())) != ("linear", "linear"):
         msg = f"ax has scales {scales}; expected linear ones, as ax.set_xscale('linear') makes"
-        raise TypeError(msg)
+        raise FieldError(msg)
     chosen = Options.split("field", "appearance", **options)
     image = FlowImage(ax, mesh, chosen, supersampling)
     image.time, image.clock = image.time if time is None else time, clock
@@ -289,5 +287,5 @@ def _frame(surface: Surface) -> Floats:
             "the surface is curved, and a picture of it has no axes in data coordinates; draw it "
             "with flowtex.render, or give a flat plane of the mesh"
         )
-        raise ValueError(msg)
+        raise FieldError(msg)
     return surface.frame

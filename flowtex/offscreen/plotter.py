@@ -12,6 +12,7 @@ import numpy as np
 from flowtex._util.array_types import Bytes
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.diagnostics import require_opengl
+from flowtex.errors import FieldError
 from flowtex.offscreen.annotations import annotate, difference_text
 from flowtex.options import Options, ViewOptions
 from flowtex.plotting.component import FlowtexComponent
@@ -171,7 +172,7 @@ def point_camera(
 
     Raises
     ------
-    ValueError
+    FieldError
         When the view's camera, zoom or focus is none, or the margin.
     """
     if view.camera is None:
@@ -194,11 +195,11 @@ def _label(plotter: Any, text: str) -> None:
 def _check_size(size: tuple[int, int], supersampling: int) -> None:
     if supersampling not in range(1, MAX_SUPERSAMPLING + 1):
         msg = f"supersampling is {supersampling!r}; expected 1 to {MAX_SUPERSAMPLING}, such as 2"
-        raise ValueError(msg)
+        raise FieldError(msg)
     if not all(1 <= side * supersampling <= LONGEST_SIDE for side in size):
         times = f" times {supersampling}" if supersampling > 1 else ""
         msg = (
             f"size is {size[0]} x {size[1]}{times}; expected 1 to {LONGEST_SIDE} pixels along "
             "each side: choose a smaller size, or less supersampling"
         )
-        raise ValueError(msg)
+        raise FieldError(msg)

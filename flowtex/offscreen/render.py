@@ -63,10 +63,9 @@ def render(
     ------
     FieldError, SettingsError
         When the mesh or a setting does not fit.
+        When the picture would be too large to draw, or the margin is out of range.
     OpenGLMissingError
         When nothing can draw; the text names the command that installs what is missing.
-    ValueError
-        When the picture would be too large to draw, or the margin is out of range.
 
     Examples
     --------

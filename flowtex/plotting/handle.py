@@ -10,6 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from flowtex._util.colours import colour_table
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.options import NO_VALUE_COLOR, Appearance, FieldOptions
 from flowtex.plotting.map_overlay import MapOverlay
@@ -140,7 +141,7 @@ class FlowHandle(AppearanceAttributes):
     def density(self, value: float) -> None:
         if not value > 0:
             msg = f"density is {value!r}; expected a positive number, 1 for a plain screen"
-            raise ValueError(msg)
+            raise FieldError(msg)
         self._surface.view.density = float(value)
         self._draw()
 
@@ -188,7 +189,6 @@ class FlowHandle(AppearanceAttributes):
         ------
         FieldError
             When the mesh does not make a field; nothing is changed then, nor by the next one.
-        KeyError
             When it lacks the scalar that the surface is coloured by.
         """
         field = FieldOptions(**options).field(mesh)

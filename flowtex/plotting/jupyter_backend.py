@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex.errors import FieldError
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import read_camera
 from flowtex.textures.images import as_image
@@ -29,7 +30,7 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
 
     Raises
     ------
-    ValueError
+    FieldError
         When there is no flow texture on the plotter.
 
     Warns
@@ -45,7 +46,7 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
             "there is no flow texture on this plotter; add one with plotter.flowtex.add(mesh), or "
             "choose another jupyter_backend"
         )
-        raise ValueError(msg)
+        raise FieldError(msg)
     shown = handles[0]
     if left_out := _left_out(plotter, shown):
         warnings.warn(

@@ -120,10 +120,9 @@ def build(
     FieldError
         When the source makes no field, is one of triangles or without a sign, has a scalar whose
         name is none of an array, or the store holds another one.
+        When ``levels`` is none of its words.
     PyramidError
         When tasks have failed; a second call makes what is missing.
-    ValueError
-        When ``levels`` is none of its words.
 
     Notes
     -----
@@ -148,7 +147,7 @@ def build(
     """
     if levels not in ("coarse", "all"):
         msg = f"levels is {levels!r}; expected 'coarse' or 'all'"
-        raise ValueError(msg)
+        raise FieldError(msg)
     given = source_of(source, **options)
     place = place_text(store)
     about = about_source(given, parameter, given.chosen_lines(lines), levels)

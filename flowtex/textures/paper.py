@@ -23,6 +23,7 @@ from scipy import ndimage
 
 from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.blocks import block_means
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import (
     along_line,
@@ -81,7 +82,7 @@ class PaperTextures:
     ) -> PaperTextures:
         """Make both textures of a flow, with a picture (H, W, 4) for ``noise="image"``.
 
-        Raises a ValueError when the pattern is an image and there is none, or there is no such
+        Raises a FieldError when the pattern is an image and there is none, or there is no such
         pattern.
         """
         field, corrected = store.field, settings.noise_correction
@@ -198,7 +199,7 @@ def _noise(texels: TexelMap, settings: Settings, image: Floats32 | None) -> dict
             f"pattern is {pattern!r}; expected 'texture', 'spots' or 'checkerboard', or 'image' "
             "with an image"
         )
-        raise ValueError(msg)
+        raise FieldError(msg)
     if texels.corrected:
         return {"noise": _unit(even_noise(texels, seed))}
     return {"noise": _unit(np.random.default_rng(seed).standard_normal(texels.shape))}

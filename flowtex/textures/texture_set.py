@@ -31,6 +31,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.surface import TriangleSurface
@@ -79,7 +80,7 @@ class TextureSet:
         """Make the textures that the settings ask for.
 
         The image (H, W, 4) is that for ``noise="image"``, and the geometry is the field's own by
-        default. Raises a ValueError when the slices do
+        default. Raises a FieldError when the slices do
         not belong to the field, or are more than a shader has room for; or when an image is asked
         for and there is none, or the noise is one that the surface cannot have.
         """
@@ -90,10 +91,10 @@ class TextureSet:
                 f"the slices have {store.unit.shape} nodes and the field {field.shape}; expected "
                 "slices traced in this field"
             )
-            raise ValueError(msg)
+            raise FieldError(msg)
         if not 2 <= len(store.lags) <= MOST_LAGS:
             msg = f"{len(store.lags)} lags were traced; expected 2 to {MOST_LAGS} to draw with"
-            raise ValueError(msg)
+            raise FieldError(msg)
         if geometry is None:
             kind = SurfaceGeometry if field.triangles is None else TriangleGeometry
             geometry = kind.of(field)
@@ -104,11 +105,11 @@ class TextureSet:
     def with_image(self, image: Floats32) -> TextureSet:
         """Return the same with another picture in place of the noise texture.
 
-        Raises a ValueError when there is no noise texture.
+        Raises a FieldError when there is no noise texture.
         """
         if self.paper is None:
             msg = "there is no noise texture, which an image could replace; expected noise='image'"
-            raise ValueError(msg)
+            raise FieldError(msg)
         return replace(self, paper=self.paper.with_image(image))
 
     def same_paths(self, other: TextureSet) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.triangles.arrays import known_means
@@ -70,7 +71,7 @@ class Clusters:
         surface = field.surface
         if not isinstance(surface, TriangleSurface):
             msg = "this field has no triangles; expected one of FlowField.from_triangles"
-            raise TypeError(msg)
+            raise FieldError(msg)
         triangles, beside = surface.triangles, surface.neighbours
         open_sides = (beside < 0) | ~surface.cells[beside]
         open_sides[~surface.cells] = False

@@ -19,6 +19,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.blocks import block_means
 from flowtex._util.whole_file import whole_file
+from flowtex.errors import FieldError
 from flowtex.field.interpolation import bracket
 
 __all__ = ["TraceSlices"]
@@ -152,17 +153,17 @@ class TraceSlices:
 
         Raises
         ------
-        ValueError
+        FieldError
             When the lag lies beyond the last slice, or there are no forward slices.
         """
         if not 0 <= lag <= self.lags[-1]:
             msg = f"lag is {lag:g}; expected 0 to {self.lags[-1]:g}, the lag of the last slice"
-            raise ValueError(msg)
+            raise FieldError(msg)
         sign, data, reach = -1.0, self.displacement, self.reach
         if forward:
             if self.forward is None or self.forward_reach is None:
                 msg = "there are no forward slices: trace with two_sided=True"
-                raise ValueError(msg)
+                raise FieldError(msg)
             sign, data, reach = 1.0, self.forward, self.forward_reach
         held = np.minimum(lag, reach[step].astype(float))
         knots = np.concatenate([[0.0], self.lags])
@@ -185,12 +186,12 @@ class TraceSlices:
 
         Raises
         ------
-        ValueError
+        FieldError
             When no block fits.
         """
         if not 1 <= factor <= min(self.shape):
             msg = f"factor is {factor}; expected 1 to {min(self.shape)}, the shorter side"
-            raise ValueError(msg)
+            raise FieldError(msg)
 
         means: dict[str, Any] = {
             name: block_means(data, factor, axis)
@@ -212,7 +213,7 @@ class TraceSlices:
 
         Raises
         ------
-        ValueError
+        FieldError
             When the file is not one of these; nothing in it is ever executed.
         """
         expected = f"{path} does not hold trace slices; expected a file that TraceSlices.save wrote"
@@ -222,11 +223,11 @@ class TraceSlices:
                 arrays: dict[str, Any] = {name: file[name] for name in file.files}
         except (zipfile.BadZipFile, zlib.error, ValueError, EOFError, TypeError) as error:
             # TypeError: a plain .npy file holds one array, which is no context manager.
-            raise ValueError(expected) from error
+            raise FieldError(expected) from error
         needed = set(cls.__dataclass_fields__) - {"forward", "forward_reach"}
         names = set(arrays) - {"forward", "forward_reach"}
         if str(arrays.pop("format", "")) != FORMAT or names != needed | {"format"}:
-            raise ValueError(expected)
+            raise FieldError(expected)
         arrays["parameter"] = str(arrays["parameter"])
         return cls(**{"forward": None, "forward_reach": None, **arrays})
 

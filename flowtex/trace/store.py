@@ -15,6 +15,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.cache import ByteCache, WeakCache
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 from flowtex.trace.compose import landings
@@ -58,7 +59,7 @@ class SliceStore:
     ) -> None:
         if field.sign_free and slices is not None and slices.forward is None:
             msg = "the slices lead backward only; expected both sides of a field without a sign"
-            raise ValueError(msg)
+            raise FieldError(msg)
         self.field = field
         #: Whether each destination time is traced as a steady field.
         self.streamlines = field.steady or chosen_lines(field, lines) == "streamlines"

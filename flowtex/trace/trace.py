@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from flowtex._util import compiled
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 from flowtex.trace.compose import SideSlices, Within, compose, landings
@@ -97,12 +98,11 @@ def trace(
 
     Raises
     ------
-    ValueError
+    FieldError
         When the lags are not positive and increasing, or too large for single precision,
         ``parameter`` is unknown, the unit or the tolerance is not positive, or ``nodes`` has
         another shape than the field; or a field without a sign is to be followed to one side, or
         composed.
-    IndexError
         When there is no such time step.
 
     Examples
@@ -120,16 +120,16 @@ def trace(
     units = np.array(np.broadcast_to(units, field.shape), dtype=float)
     if not (np.isfinite(units).all() and (units > 0).all()):
         msg = f"unit has values from {units.min():g} to {units.max():g}; expected positive numbers"
-        raise ValueError(msg)
+        raise FieldError(msg)
     if not LEAST_LAG <= lag_values[0] <= lag_values[-1] <= MOST_LAG:
         msg = (
             f"lags go from {lag_values[0]:g} to {lag_values[-1]:g}; expected {LEAST_LAG:g} to "
             f"{MOST_LAG:g}, for single precision: give a unit of their size"
         )
-        raise ValueError(msg)
+        raise FieldError(msg)
     if not tolerance > 0:
         msg = f"tolerance is {tolerance!r}; expected a positive number of cells, such as 1e-3"
-        raise ValueError(msg)
+        raise FieldError(msg)
     step_numbers = _step_numbers(field, steps)
     if field.triangles is not None:
         chosen = field.valid if nodes is None else field.valid & _checked_nodes(field, nodes)
@@ -232,13 +232,13 @@ def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> 
     """Refuse what has no meaning in a field without a sign."""
     if field.sign_free and not two_sided:
         msg = "two_sided is False; expected True: a field without a sign has two sides alike"
-        raise ValueError(msg)
+        raise FieldError(msg)
     if field.sign_free and compose:
         msg = (
             "compose is True; expected False or None: between nodes that point either way paths "
             "of a field without a sign cannot be looked up"
         )
-        raise ValueError(msg)
+        raise FieldError(msg)
 
 
 def _step_numbers(field: FlowField, steps: Sequence[int] | None) -> list[int]:
@@ -261,7 +261,7 @@ def _threads() -> ThreadPoolExecutor:
 def _parameter(field: FlowField, parameter: str) -> str:
     if parameter not in ("arclength", "time"):
         msg = f'parameter is {parameter!r}; expected "arclength" or "time"'
-        raise ValueError(msg)
+        raise FieldError(msg)
     return parameter if field.steady else "time"
 
 
@@ -275,7 +275,7 @@ def _checked_lags(lags: ArrayLike) -> Floats:
     good = np.isfinite(lag_values) & (np.diff(lag_values, prepend=0.0) > 0)
     if lag_values.ndim != 1 or not lag_values.size or not good.all():
         msg = f"lags is {lags!r}; expected positive numbers in increasing order"
-        raise ValueError(msg)
+        raise FieldError(msg)
     return lag_values
 
 
@@ -283,7 +283,7 @@ def _checked_nodes(field: FlowField, nodes: ArrayLike) -> Bools:
     chosen = np.asarray(nodes, dtype=bool)
     if chosen.shape != field.shape:
         msg = f"nodes has shape {chosen.shape}; expected {field.shape} as the field has"
-        raise ValueError(msg)
+        raise FieldError(msg)
     return chosen
 
 

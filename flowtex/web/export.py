@@ -136,7 +136,6 @@ def export(
     ------
     FieldError, SettingsError
         When the mesh, the store or a setting does not fit.
-    ValueError
         When ``steps`` is not positive.
     OSError
         When the file cannot be written; what was there before is left as it was.

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from flowtex._util.colours import colour_table, rgb
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
@@ -26,7 +27,7 @@ class WebView:
 
     Raises
     ------
-    ValueError
+    FieldError
         When there is no such colour or colour map, or fewer than one time step is asked for.
     """
 
@@ -158,7 +159,7 @@ def even_steps(count: int, steps: int | None) -> tuple[int, ...]:
         return ()
     if steps < 1:
         msg = f"steps is {steps}; expected 1 to {count}, the time steps of the field"
-        raise ValueError(msg)
+        raise FieldError(msg)
     if steps == 1:
         return (count - 1,)
     return tuple(round(n * (count - 1) / (steps - 1)) for n in range(steps))

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import traitlets
 
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
@@ -205,7 +206,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         slack = SLACK * (last - first)
         if not first - slack <= value <= last + slack:
             msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
-            raise traitlets.TraitError(msg)
+            raise FieldError(msg)
         return min(max(value, first), last)
 
     @traitlets.validate("point")
@@ -213,10 +214,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         point, field = proposal["value"], self.field
         if point is None or field.triangles is None:
             return point
-        try:  # what is drawn may be other triangles than those of the field
-            at = locate(field, point.get("position"), tolerance=np.inf)
-        except ValueError as error:
-            raise traitlets.TraitError(str(error)) from error
+        # What is drawn may be other triangles than those of the field.
+        at = locate(field, point.get("position"), tolerance=np.inf)
         return {**point, "index": None if at is None else at[::-1]}
 
     def set_state(self, sync_data: dict[str, Any]) -> None:
@@ -225,7 +224,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             with self._state_lock:
                 try:
                     super().set_state({name: value})
-                except (traitlets.TraitError, ValueError):  # SettingsError is a ValueError
+                except (traitlets.TraitError, FieldError):
                     self.send_state(name)
 
     def _announce(self, number: int, header: dict[str, Any]) -> None:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import traitlets
 
-from flowtex.camera import Camera, CameraError
+from flowtex.camera import Camera
+from flowtex.errors import FieldError
 from flowtex.settings import TABLE, Setting
 
 __all__ = ["CameraTrait", "SettingTrait", "SettingTraits", "SizeTrait"]
@@ -28,14 +29,11 @@ class CameraTrait(traitlets.TraitType[Any, Any]):
     """A camera's numbers by name; what is left out stays as it was."""
 
     def validate(self, obj: Any, value: Any) -> Any:
-        """Return the whole camera as plain numbers; raise TraitError where it is none."""
+        """Return the whole camera as plain numbers; raise CameraError where it is none."""
         present = obj._trait_values.get(self.name)
-        try:
-            if isinstance(value, Camera):
-                return value.to_dict()
-            return Camera.from_dict(value, Camera(**present) if present else None).to_dict()
-        except CameraError as error:
-            raise traitlets.TraitError(str(error)) from error
+        if isinstance(value, Camera):
+            return value.to_dict()
+        return Camera.from_dict(value, Camera(**present) if present else None).to_dict()
 
 
 class SizeTrait(traitlets.TraitType[Any, Any]):
@@ -49,7 +47,7 @@ class SizeTrait(traitlets.TraitType[Any, Any]):
             width, height = -1, 0
         if not (0 <= width <= 16384 and 1 <= height <= 16384):
             msg = f"size is {value!r}; expected (width, height) in pixels, or (0, height)"
-            raise traitlets.TraitError(msg)
+            raise FieldError(msg)
         return [width, height]
 
 

@@ -484,7 +484,7 @@ def test_one_step_is_a_steady_field() -> None:
     assert (field.velocity == 3).all()
     assert (field.scalars["q"] == 3).all()
     assert field.scalars["p"].shape == (1, 5, 7)
-    with pytest.raises(IndexError, match=r"^time step 1 does not exist: expected 0 to 0$"):
+    with pytest.raises(FieldError, match=r"^time step 1 does not exist: expected 0 to 0$"):
         field.at_step(1)
 
 

@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import flowtex
-from flowtex import FlowField
+from flowtex import FieldError, FlowField
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -190,12 +190,12 @@ def test_a_colour_bar_has_the_range_and_the_colours(figure: Figure) -> None:
 
 @pytest.mark.parametrize("options", [{"projection": "polar"}, {"xscale": "log"}])
 def test_axes_of_another_kind_are_refused(figure: Figure, options: dict[str, Any]) -> None:
-    with pytest.raises(TypeError, match=r"^ax .*; expected (rectilinear axes|linear ones)"):
+    with pytest.raises(FieldError, match=r"^ax .*; expected (rectilinear axes|linear ones)"):
         flowtex.axes(figure.add_subplot(**options), edge())
 
 
 def test_a_curved_surface_has_no_axes(figure: Figure) -> None:
     with pytest.raises(ValueError, match=r"^the surface is curved"):
         flowtex.axes(figure.add_subplot(), flowtex.examples.delta_wing_field())
-    with pytest.raises(TypeError, match=r"^ax is None; expected rectilinear axes"):
+    with pytest.raises(FieldError, match=r"^ax is None; expected rectilinear axes"):
         flowtex.axes(None, edge())  # type: ignore[arg-type]

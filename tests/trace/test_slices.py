@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
-from flowtex import FlowField, TraceSlices, trace
+from flowtex import FieldError, FlowField, TraceSlices, trace
 from flowtex._util import progress
 from flowtex._util.array_types import Floats
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
@@ -280,7 +280,7 @@ def test_other_arguments_are_checked() -> None:
     message = "nodes has shape (2, 3); expected (6, 11) as the field has"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         trace(field, nodes=np.ones((2, 3), bool), compose=False)
-    with pytest.raises(IndexError, match=r"^time step 1 does not exist: expected 0 to 0$"):
+    with pytest.raises(FieldError, match=r"^time step 1 does not exist: expected 0 to 0$"):
         trace(field, steps=[1])
 
 

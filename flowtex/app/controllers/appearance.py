@@ -149,7 +149,7 @@ class Appearance(Controller):
                 continue
             try:
                 settings.update(**{name: choice})
-            except (SettingsError, FieldError) as error:
+            except FieldError as error:
                 self.context.complain(error)
                 self.state.set(**{f"set_{name}": present})
                 continue
@@ -212,7 +212,7 @@ class Appearance(Controller):
         """Change the appearance, or tell why that cannot be."""
         try:
             self.area.scene.appearance = replace(self.area.scene.appearance, **changes)
-        except (ValueError, KeyError) as error:
+        except FieldError as error:
             self.context.complain(error)
 
     def take_background(self) -> None:

@@ -26,6 +26,7 @@ from flowtex._util.progress import Stopped, stoppable
 from flowtex._util.whole_file import whole_file
 from flowtex.app.streaming.painter import LINE_GREY, Cost
 from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.offscreen.annotations import annotate
 from flowtex.offscreen.encoders import (
@@ -53,7 +54,7 @@ BUSY_INTERVAL_S = 0.05
 TILE_S, SMALLEST_TILE_PX, LARGEST_TILE_PX = 0.05, 32, 512
 
 
-class ExportError(ValueError):
+class ExportError(FieldError):
     """A picture or a movie cannot be made so; the text says why and what to do."""
 
 

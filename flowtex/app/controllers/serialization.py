@@ -39,6 +39,7 @@ from flowtex.app.controllers.appearance import (
 )
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.camera import Camera, CameraError
+from flowtex.errors import FieldError
 from flowtex.field.datasets.files import is_dataset_file
 from flowtex.field.source import OUTER
 from flowtex.settings import TABLE, SettingsError
@@ -309,7 +310,7 @@ def to_python(
 def _from_file(state: Mapping[str, Any]) -> str:
     if not state.get("file"):
         msg = "the state names no file; give the expression that makes its field as source"
-        raise ValueError(msg)
+        raise FieldError(msg)
     values = {name: state[name] for name in FILE_ARGUMENTS if state.get(name)}
     axis, _, number = values.get("plane", "").partition("=")
     if is_dataset_file(Path(str(state["file"]))):

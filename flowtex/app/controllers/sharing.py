@@ -16,7 +16,7 @@ from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, Pict
 from flowtex.app.controllers.serialization import from_link, to_link, to_python
 from flowtex.app.server.files import Downloads
 from flowtex.app.server.validation import number
-from flowtex.offscreen.encoders import MovieError
+from flowtex.errors import FieldError
 
 __all__ = ["FORMATS", "Sharing"]
 
@@ -80,7 +80,7 @@ class Sharing(Controller):
         self.cancel()
         try:
             job = self._new_job()
-        except (ExportError, MovieError, ModuleNotFoundError, OSError) as error:
+        except (FieldError, ModuleNotFoundError, OSError) as error:
             self.context.complain(error)
             return
         self._job = job
@@ -146,7 +146,7 @@ class Sharing(Controller):
         except Stopped:
             return
         except Exception as error:
-            if not isinstance(error, (ExportError, MovieError, OSError)):
+            if not isinstance(error, (FieldError, OSError)):
                 _log.exception("%s could not be made", job.path.name)
             self.context.complain(
                 f"{job.path.name} could not be made: {str(error) or type(error).__name__}"

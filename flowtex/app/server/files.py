@@ -90,7 +90,7 @@ class Routes:
         """
         if not name or "/" in name:
             msg = f"the name of a file is {name!r}; expected one part of an address, as in 'a.png'"
-            raise ValueError(msg)
+            raise FieldError(msg)
         self._content[name] = content
         return f"flowtex/{self.token}/{quote(name)}"
 
@@ -233,7 +233,7 @@ class Downloads:
         """Hand out a file from :meth:`reserve`; return its address, relative to the page."""
         if not path.resolve().is_relative_to(self.folder.resolve()):
             msg = f"{path} lies outside {self.folder}; expected a file from reserve()"
-            raise ValueError(msg)
+            raise FieldError(msg)
         self.expire()
         token = new_secret()
         self._files[token] = (path, self._clock())

@@ -36,7 +36,6 @@ from flowtex.app.server.files import add_route
 from flowtex.app.server.security import FAULT, LOCAL, guard, is_same, new_secret
 from flowtex.app.server.sessions import FullError, MakeApp, Sessions
 from flowtex.errors import FieldError
-from flowtex.settings import SettingsError
 
 __all__ = ["ServeError", "Site", "run_site", "serve_until_ended"]
 
@@ -55,7 +54,7 @@ MALFORMED = "This is no request of this page."
 _log = logging.getLogger(__name__)
 
 
-class ServeError(RuntimeError):
+class ServeError(FieldError):
     """The page cannot be served; the text says why and what to do.
 
     Examples
@@ -166,7 +165,7 @@ class Site:
             session = await self.sessions.find(token)
         except FullError:
             return _answer(503, words=FULL.format(pages=_pages(self.sessions.limit)))
-        except (FieldError, SettingsError, OSError) as error:
+        except (FieldError, OSError) as error:
             return _answer(500, words=BROKEN.format(error=error))
         except Exception:
             _log.exception("a page could not be made")

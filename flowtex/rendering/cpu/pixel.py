@@ -7,6 +7,7 @@ import numpy as np
 from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.camera import Camera
+from flowtex.errors import FieldError
 from flowtex.field import Surface
 from flowtex.field.locate import SurfacePoint
 from flowtex.rendering.cpu.mipmaps import Mips
@@ -27,7 +28,7 @@ def cover_place(
 
     Raises
     ------
-    ValueError
+    FieldError
         When the place is behind the camera, or its triangle is seen edge on.
     """
     points = surface.points.reshape(-1, 3)[place.nodes] - surface.center
@@ -36,7 +37,7 @@ def cover_place(
     x, y, _, w = place.weights @ clip
     if not w > 0:
         msg = f"(j, i) = {place.index} lies behind the camera at {camera.position}; expected a "
-        raise ValueError(msg + "camera that sees the place")
+        raise FieldError(msg + "camera that sees the place")
     # Derivatives of pixels to the right and down by the shares of the corners.
     pixels = np.array(size) * [0.5, -0.5]
     by_share = (clip[:, :2] - clip[:, 3:] * [x / w, y / w]) * pixels / w
@@ -44,7 +45,7 @@ def cover_place(
     free = by_share[1:] - by_share[0]
     if not abs(np.linalg.det(free)) > 1e-12 * np.abs(free).max() ** 2:
         msg = f"the triangle at (j, i) = {place.index} is seen edge on; expected one that is seen"
-        raise ValueError(msg)
+        raise FieldError(msg)
     two = np.linalg.inv(free)
     shares = np.concatenate([-two.sum(axis=1, keepdims=True), two], axis=1)
     first = np.zeros(1, dtype=np.intp)
@@ -56,19 +57,19 @@ def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera
 
     Raises
     ------
-    ValueError
+    FieldError
         When the width of the pixel, in the mesh's units, is not positive, or the triangle has no
         area.
     """
     if not 0 < pixel < np.inf:
         msg = f"pixel is {pixel!r}; expected a positive length in the mesh's units, or a Camera"
-        raise ValueError(msg)
+        raise FieldError(msg)
     a, b, c = surface.points.reshape(-1, 3)[place.nodes]
     across = np.cross(b - a, c - a)
     length = float(np.linalg.norm(across))
     if not length > 0:
         msg = f"the triangle at (j, i) = {place.index} has no area; expected a place beside it"
-        raise ValueError(msg)
+        raise FieldError(msg)
     focus = place.weights @ np.stack([a, b, c])
     up = max((b - a, c - a), key=lambda side: float(np.linalg.norm(side)))
     return Camera(

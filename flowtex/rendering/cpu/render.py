@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
 from flowtex.camera import Camera
+from flowtex.errors import FieldError
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import level_colour, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips
@@ -76,7 +77,7 @@ class Picture:
 
         Raises
         ------
-        ValueError
+        FieldError
             When a colour has another shape or lies outside 0 to 1.
         """
         shape = (*self.covered.shape, 3)
@@ -187,7 +188,7 @@ def lookup_maker(textures: TextureSet) -> LookupMaker:
     def make(fragments: Fragments, values: Mapping[str, Any]) -> Lookup:
         if fragments.noise is None:
             msg = "the fragments have no noise coordinates; expected those of a noise texture"
-            raise ValueError(msg)
+            raise FieldError(msg)
         return kind(fragments.noise, images, values)
 
     return make
@@ -207,5 +208,5 @@ def _colours(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Floats:
         shapes = " or ".join(map(str, dict.fromkeys([(3,), shape])))
         wrong = f"of shape {numbers.shape}" if numbers.size > 3 else repr(value)
         msg = f"{name} is {wrong}; expected red, green and blue from 0 to 1, of shape {shapes}"
-        raise ValueError(msg)
+        raise FieldError(msg)
     return np.broadcast_to(numbers, shape)

@@ -431,7 +431,7 @@ def test_what_cannot_be_served_is_told() -> None:
         serve(field, limit=0)
     with pytest.raises(ServeError, match="idle is -1; expected a positive number"):
         serve(field, idle=-1)
-    with pytest.raises(TypeError, match="samples cannot go with a function"):
+    with pytest.raises(FieldError, match="samples cannot go with a function"):
         serve(Plain, samples=3)
     assert usual_limit() >= 2
 
