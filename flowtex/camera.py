@@ -17,6 +17,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Floats
 from flowtex.earth import EARTH_RADIUS
 from flowtex.errors import FieldError
@@ -139,7 +140,7 @@ class Camera:
             ("view_angle", 180.0, "0 to 180 degrees"),
         ):
             value = getattr(self, name)
-            if _is_number(value) and 0 < value < greatest:
+            if is_number(value) and 0 < value < greatest:
                 object.__setattr__(self, name, float(value))
             else:
                 faults.append(f"camera.{name} is {value!r}; expected {expected}")
@@ -195,11 +196,11 @@ class Camera:
         FieldError
             When ``zoom`` is not positive, ``focus`` is no point, or ``margin`` is out of range.
         """
-        if not (_is_number(margin) and 0 <= margin < 0.5):
+        if not (is_number(margin) and 0 <= margin < 0.5):
             msg = f"margin is {margin!r}; expected a number from 0 to less than 0.5, such as 0.04"
             raise FieldError(msg)
         share = 1 - 2 * margin
-        if not (_is_number(zoom) and NEAREST_REACH <= zoom <= FARTHEST_REACH):
+        if not (is_number(zoom) and NEAREST_REACH <= zoom <= FARTHEST_REACH):
             msg = (
                 f"zoom is {zoom!r}; expected a positive number, 1 for the whole surface, from "
                 f"{NEAREST_REACH:g} to {FARTHEST_REACH:g}"
@@ -547,10 +548,6 @@ def _middle_and_half(part: ViewPart) -> tuple[tuple[float, float], tuple[float, 
     """Return the middle of a part of the view, and half its width and height."""
     left, bottom, right, top = part
     return ((left + right) / 2, (bottom + top) / 2), ((right - left) / 2, (top - bottom) / 2)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
 
 
 def _is_point(value: Any, coordinates: int = 3) -> bool:

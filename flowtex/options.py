@@ -289,6 +289,14 @@ class ViewOptions:
         '``{"lod": False}``; both views move together.',
     )
 
+    def __post_init__(self) -> None:
+        """Check what no part of a picture checks later."""
+        if self.background != "white":  # which loads nothing
+            rgb(self.background)
+        if not (self.beside is None or isinstance(self.beside, Mapping)):
+            msg = f"beside is {self.beside!r}; expected settings by name, such as {{'lod': False}}"
+            raise FieldError(msg)
+
     def first_camera(self, surface: Surface, aspect: float = 1.5) -> Camera:
         """Return the camera that the view begins with, for a picture of some width over height.
 

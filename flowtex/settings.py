@@ -15,6 +15,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
+from flowtex._util.arguments import is_number
 from flowtex._util.names import near_names
 from flowtex.errors import FieldError
 
@@ -105,7 +106,7 @@ class Setting:
         elif self.kind is str:
             fits = isinstance(value, str) and value in self.choices
         else:
-            fits = _is_number(value) and (self.kind is float or float(value).is_integer())
+            fits = is_number(value) and (self.kind is float or float(value).is_integer())
             fits = fits and (self.low is None or value >= self.low)
             fits = fits and (self.high is None or value <= self.high)
         if not fits:
@@ -179,13 +180,6 @@ class Setting:
             return " or ".join(map(repr, self.choices))
         number = "a whole number" if self.kind is int else "a number"
         return f"{number} from {self.low:g} to {self.high:g}"
-
-
-def _is_number(value: Any) -> bool:
-    try:
-        return not isinstance(value, (bool, str, bytes)) and float(value) == float(value)
-    except (TypeError, ValueError, OverflowError):  # a whole number may have any size
-        return False
 
 
 def _row(

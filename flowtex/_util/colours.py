@@ -44,7 +44,10 @@ def rgb(colour: Any) -> tuple[float, float, float]:
             return to_rgb(colour)
     import pyvista as pv
 
-    red, green, blue = pv.Color(colour).float_rgb
+    try:
+        red, green, blue = pv.Color(colour).float_rgb
+    except (TypeError, ValueError, OverflowError) as error:
+        raise FieldError(str(error)) from error
     return red, green, blue
 
 

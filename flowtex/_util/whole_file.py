@@ -20,6 +20,7 @@ from functools import partial
 from pathlib import Path
 from typing import IO
 
+from flowtex._util.arguments import checked_path
 from flowtex._util.temporary import claim, remove_stale
 
 __all__ = ["WholeFile", "whole_file"]
@@ -53,7 +54,7 @@ class WholeFile:
     """
 
     def __init__(self, path: str | Path) -> None:
-        self._target = target = Path(os.path.realpath(path))
+        self._target = target = Path(os.path.realpath(checked_path("path", path)))
         old = _old_file(target)
         stem = f".{target.stem[:STEM_LENGTH]}."
         pattern = f"{glob.escape(stem)}????????.part{glob.escape(target.suffix)}"

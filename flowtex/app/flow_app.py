@@ -11,6 +11,7 @@ from typing import Any
 
 from trame.app import get_server
 
+from flowtex._util.arguments import is_number
 from flowtex.app.controllers import Controllers
 from flowtex.app.controllers.context import Context
 from flowtex.app.controllers.library import Choice, Library
@@ -238,14 +239,14 @@ def serve(
     >>> import flowtex
     >>> flowtex.app.serve("runs/", port=8080, limit=12)  # doctest: +SKIP
     """
-    if limit is not None and limit < 1:
+    if not (limit is None or (is_number(limit) and limit >= 1)):
         msg = f"limit is {limit}; expected 1 or more pages"
         raise ServeError(msg)
-    if not 0 <= port <= 65535:
+    if not (is_number(port) and 0 <= port <= 65535):
         msg = f"port is {port}; expected 0 to 65535"
         raise ServeError(msg)
-    if not idle > 0:
-        msg = f"idle is {idle:g}; expected a positive number of minutes"
+    if not (is_number(idle) and idle > 0):
+        msg = f"idle is {idle}; expected a positive number of minutes"
         raise ServeError(msg)
     site = run_site(
         _app_maker(field, folder, options),

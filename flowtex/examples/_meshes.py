@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flowtex.errors import FieldError
+from flowtex._util.arguments import checked_number
 from flowtex.examples._double_gyre import EPSILON, nodes
 from flowtex.examples._fields import (
     airfoil_field,
@@ -120,9 +121,8 @@ def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
     >>> flowtex.examples.double_gyre(time=2.5)["velocity"].shape
     (20301, 3)
     """
-    if not np.isfinite(time):
-        message = f"time is {time!r}, expected a finite number such as 2.5"
-        raise FieldError(message)
+    most = sys.float_info.max
+    time = checked_number("time", time, -most, most, expected="a finite number such as 2.5")
     return to_grid(double_gyre_at(np.array([time]), nodes((101, 201)), EPSILON))
 
 

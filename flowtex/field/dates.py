@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flowtex._util.arguments import is_number
 from flowtex.errors import FieldError
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def seconds_since(start: Any, date: Any) -> float:
     FieldError
         When it is none.
     """
-    if isinstance(date, (int, float, np.number)):
+    if is_number(date) and not isinstance(date, (np.datetime64, np.timedelta64)):
         return float(date)
     if start is None:
         msg = f"time is {date!r}; expected a number, for the times of the field are no dates"

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.earth import Projection
 from flowtex.errors import FieldError, raise_faults
@@ -485,7 +486,7 @@ class FlowField(FieldConstructors):
             When there is no such step.
         """
         count = len(self.times)
-        if not -count <= step < count:
+        if not (is_number(step) and -count <= step < count and int(step) == step):
             msg = f"time step {step} does not exist: expected 0 to {count - 1}"
             raise FieldError(msg)
         return int(step) % count

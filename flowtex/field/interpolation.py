@@ -7,6 +7,7 @@ from typing import Any, Literal, TypeVar, cast
 import numpy as np
 from scipy import ndimage
 
+from flowtex._util.arguments import checked_count
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 
@@ -136,9 +137,7 @@ def inverse_along_line(line: Floats, values: Floats, *, periodic: bool) -> Float
 
 def every_line(count: int, factor: int, *, closed: bool) -> Indices:
     """Return every ``factor``-th line, and the last one where the axis is closed."""
-    if factor < 1:
-        msg = f"factor is {factor}; expected 1 or more"
-        raise FieldError(msg)
+    factor = checked_count("factor", factor, expected="1 or more")
     picks = list(range(0, count, factor))
     if closed and picks[-1] != count - 1:
         picks.append(count - 1)

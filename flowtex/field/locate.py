@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
+from flowtex._util.arguments import check_field, checked_array
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.errors import FieldError
@@ -71,9 +72,10 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
     Raises a FieldError when the index is no pair of numbers, or outside the surface or in a cell
     that is not drawn.
     """
-    at = np.asarray(index, dtype=float)
+    expected = "two finite numbers (j, i), in cells"
+    at = checked_array("index", index, expected=expected)
     if at.shape != (2,) or not np.isfinite(at).all():
-        msg = f"index is {index!r}; expected two finite numbers (j, i), in cells"
+        msg = f"index is {index!r}; expected {expected}"
         raise FieldError(msg)
     if isinstance(surface, TriangleSurface):
         return _in_triangle(surface, at)
@@ -309,9 +311,11 @@ def locate(
     >>> [round(number, 6) for number in locate(field, (0.5, 0.25))]
     [25.0, 50.0]
     """
-    at = np.asarray(point, dtype=float)
+    check_field(field, FlowField)
+    expected = "two or three finite coordinates in the mesh's units"
+    at = checked_array("point", point, expected=expected)
     if at.shape not in ((2,), (3,)) or not np.isfinite(at).all():
-        msg = f"point is {point!r}; expected two or three finite coordinates in the mesh's units"
+        msg = f"point is {point!r}; expected {expected}"
         raise FieldError(msg)
     whole = np.zeros((1, 3))
     whole[0, : len(at)] = at

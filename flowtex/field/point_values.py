@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flowtex._util.arguments import check_field, checked_number
 from flowtex._util.array_types import Floats
-from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.field.locate import surface_point
@@ -86,12 +86,13 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
     >>> sorted(values_at(field, at, time=field.times[3]).scalars)
     ['vorticity']
     """
+    check_field(field, FlowField)
     point = surface_point(field.surface, index)
     first, last = float(field.times[0]), float(field.times[-1])
-    at = last if time is None or field.steady else float(time)
-    if not first <= at <= last:
-        msg = f"time is {time!r}; expected {first:g} to {last:g}, the times of the field"
-        raise FieldError(msg)
+    expected = f"{first:g} to {last:g}, the times of the field"
+    at = last
+    if time is not None and not field.steady:
+        at = checked_number("time", time, first, last, expected=expected)
     before, after, share = steps_around(field.times, at)
 
     def value(steps: Floats) -> Floats:

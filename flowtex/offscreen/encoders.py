@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.arguments import checked_path, checked_size, is_number
 from flowtex._util.array_types import Bytes
 from flowtex._util.extras import install_extra
 from flowtex._util.progress import Stopped
@@ -199,7 +200,7 @@ class PillowEncoder:
 
 def default_fps(path: str | Path) -> float:
     """Return frames in a second where none are asked for; a GIF counts whole hundredths."""
-    return 20.0 if Path(path).suffix.lower() == ".gif" else 30.0
+    return 20.0 if checked_path("path", path).suffix.lower() == ".gif" else 30.0
 
 
 def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT_QUALITY) -> None:
@@ -214,16 +215,16 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
     ModuleNotFoundError
         When an MP4 is asked for without PyAV; the text names the command that installs it.
     """
-    path = Path(path)
+    path = checked_path("path", path)
     suffix = path.suffix.lower()
-    width, height = size
+    width, height = checked_size(size, low=0)
     shown = f"size is {width} x {height}"
     if suffix not in FORMATS:
         what = f"{path.suffix!r} is no format" if suffix else "no suffix is no format"
         msg = f"{path}: {what} that movies are written in; use {', '.join(FORMATS)}"
-    elif not 1 <= quality <= 100:
+    elif not (is_number(quality) and 1 <= quality <= 100):
         msg = f"quality is {quality!r}; expected a number from 1 to 100, such as {DEFAULT_QUALITY}"
-    elif not fps > 0:
+    elif not (is_number(fps) and fps > 0):
         msg = f"fps is {fps!r}; expected a positive number of frames a second, such as 30"
     elif suffix == ".gif" and fps > GIF_MAX_FPS:
         msg = f"fps is {fps:g}; a GIF shows at most {GIF_MAX_FPS:g} a second, an MP4 more"

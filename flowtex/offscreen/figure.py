@@ -12,6 +12,7 @@ from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.image import AxesImage
 from PIL import Image
 
+from flowtex._util.arguments import checked_size
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.errors import FieldError
@@ -79,7 +80,7 @@ def extent(
     >>> flowtex.extent(field, size=(200, 100), margin=0)
     (0.0, 2.0, 0.0, 1.0)
     """
-    chosen = Options.split(**options)
+    chosen, size = Options.split(**options), checked_size(size)
     if chosen.view.beside is not None:
         msg = "beside makes two views, which have no one extent; leave it out"
         raise FieldError(msg)

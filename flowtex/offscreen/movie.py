@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Bytes
 from flowtex._util.progress import track
 from flowtex.field import FlowField
@@ -77,7 +78,7 @@ def frame_times(
     MovieError
         When a number is out of its range, or a steady flow would stand still.
     """
-    if not 0 < fps <= MAX_FPS:
+    if not (is_number(fps) and 0 < fps <= MAX_FPS):
         msg = f"fps is {fps!r}; expected more than 0 and at most {MAX_FPS:g} frames a second"
         raise MovieError(msg)
     if field.steady:
@@ -109,7 +110,7 @@ def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> flo
         return settings.period if field.steady else run_seconds(len(field.times))
     row = TABLE["period"]
     low, high = row.low or 0.0, row.high or math.inf
-    if not low <= seconds <= high:
+    if not (is_number(seconds) and low <= seconds <= high):
         msg = f"seconds is {seconds!r}; expected a number from {low:g} to {high:g}"
         raise MovieError(msg)
     return float(seconds)

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.arguments import checked_size
 from flowtex._util.array_types import Bytes
-from flowtex.camera import CAMERA_LIMITS, Camera
+from flowtex.camera import CAMERA_LIMITS, Camera, CameraError
 from flowtex.diagnostics import require_opengl
 from flowtex.errors import FieldError
 from flowtex.offscreen.annotations import annotate, difference_text
@@ -183,7 +184,11 @@ def point_camera(
         plotter.renderer.reset_camera_clipping_range()
     else:
         plotter.camera.parallel_projection = False
-        plotter.camera_position = view.camera
+        try:
+            plotter.camera_position = view.camera
+        except (TypeError, ValueError, LookupError) as error:
+            msg = f"camera is {view.camera!r}; expected position, focal point and up, three points"
+            raise CameraError(msg) from error
 
 
 def _label(plotter: Any, text: str) -> None:
@@ -196,6 +201,7 @@ def _check_size(size: tuple[int, int], supersampling: int) -> None:
     if supersampling not in range(1, MAX_SUPERSAMPLING + 1):
         msg = f"supersampling is {supersampling!r}; expected 1 to {MAX_SUPERSAMPLING}, such as 2"
         raise FieldError(msg)
+    size = checked_size(size, low=0)
     if not all(1 <= side * supersampling <= LONGEST_SIDE for side in size):
         times = f" times {supersampling}" if supersampling > 1 else ""
         msg = (

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
+from flowtex._util.arguments import checked_number
 from flowtex._util.colours import colour_table
-from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.options import NO_VALUE_COLOR, Appearance, FieldOptions
 from flowtex.plotting.map_overlay import MapOverlay
@@ -125,7 +125,9 @@ class FlowHandle(AppearanceAttributes):
 
     @clock.setter
     def clock(self, value: float) -> None:
-        self._surface.view.clock = float(value)
+        limit = float(np.finfo(float).max)
+        expected = "a finite number of seconds"
+        self._surface.view.clock = checked_number("clock", value, -limit, limit, expected=expected)
         self._draw()
 
     @property
@@ -139,10 +141,8 @@ class FlowHandle(AppearanceAttributes):
 
     @density.setter
     def density(self, value: float) -> None:
-        if not value > 0:
-            msg = f"density is {value!r}; expected a positive number, 1 for a plain screen"
-            raise FieldError(msg)
-        self._surface.view.density = float(value)
+        least, expected = float(np.finfo(float).tiny), "a positive number, 1 for a plain screen"
+        self._surface.view.density = checked_number("density", value, least, expected=expected)
         self._draw()
 
     @property

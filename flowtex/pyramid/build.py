@@ -148,6 +148,9 @@ def build(
     if levels not in ("coarse", "all"):
         msg = f"levels is {levels!r}; expected 'coarse' or 'all'"
         raise FieldError(msg)
+    if lines not in ("auto", "pathlines", "streamlines"):
+        msg = f"lines is {lines!r}; expected 'auto', 'pathlines' or 'streamlines'"
+        raise FieldError(msg)
     given = source_of(source, **options)
     place = place_text(store)
     about = about_source(given, parameter, given.chosen_lines(lines), levels)

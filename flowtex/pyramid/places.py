@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
+from flowtex._util.arguments import checked_path
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
@@ -76,8 +77,9 @@ def place_text(place: str | Path) -> str:
     PyramidError
         When it is no URL of object storage or of the web, or has a secret in it.
     """
-    text = str(place)
+    text = str(checked_path("store", place)) if not isinstance(place, str) else place
     if not _URL.match(text):
+        checked_path("store", text)
         return str(Path(_FILE_URL.sub("/", text)).expanduser().resolve())
     url = _URL.sub(r"\1://", text).replace("\\", "/")
     try:

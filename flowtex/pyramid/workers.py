@@ -47,7 +47,7 @@ class Threads:
         if memory is not None:
             try:
                 self._memory = int(import_extra("dask.utils", "store").parse_bytes(memory))
-            except (ValueError, TypeError) as error:
+            except (ValueError, TypeError, AttributeError) as error:
                 msg = f"memory is {memory!r}; expected bytes, or a text such as '2GB'"
                 raise FieldError(msg) from error
             if self._memory < OWN_BYTES + TILE_BYTES:

@@ -67,7 +67,11 @@ def as_picture(image: Any) -> Floats32:
     ImageError
         When it is no such array, is empty, or holds NaN or values out of range.
     """
-    array = np.asarray(image)
+    try:
+        array = np.asarray(image)
+    except ValueError as error:
+        msg = f"the image is no array ({error}); expected {SHAPES}"
+        raise ImageError(msg) from error
     if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[-1] not in (3, 4)):
         msg = f"the image has shape {array.shape}; expected {SHAPES}"
         raise ImageError(msg)

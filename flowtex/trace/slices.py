@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.arguments import checked_count, checked_number, checked_path
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.blocks import block_means
 from flowtex._util.whole_file import whole_file
@@ -156,9 +157,12 @@ class TraceSlices:
         FieldError
             When the lag lies beyond the last slice, or there are no forward slices.
         """
-        if not 0 <= lag <= self.lags[-1]:
-            msg = f"lag is {lag:g}; expected 0 to {self.lags[-1]:g}, the lag of the last slice"
-            raise FieldError(msg)
+        last = self.lags[-1]
+        expected = f"0 to {last:g}, the lag of the last slice"
+        lag = checked_number("lag", lag, 0.0, last, expected=expected)
+        count = len(self.times)
+        expected = f"a number of a time step, from {-count} to {count - 1}"
+        step = checked_count("step", step, -count, count - 1, expected=expected)
         sign, data, reach = -1.0, self.displacement, self.reach
         if forward:
             if self.forward is None or self.forward_reach is None:
@@ -189,10 +193,9 @@ class TraceSlices:
         FieldError
             When no block fits.
         """
-        if not 1 <= factor <= min(self.shape):
-            msg = f"factor is {factor}; expected 1 to {min(self.shape)}, the shorter side"
-            raise FieldError(msg)
-
+        most = min(self.shape)
+        expected = f"1 to {most}, the shorter side"
+        factor = checked_count("factor", factor, 1, most, expected=expected)
         means: dict[str, Any] = {
             name: block_means(data, factor, axis)
             for name, axis in NODE_AXES.items()
@@ -216,10 +219,11 @@ class TraceSlices:
         FieldError
             When the file is not one of these; nothing in it is ever executed.
         """
+        place = checked_path("path", path)
         expected = f"{path} does not hold trace slices; expected a file that TraceSlices.save wrote"
         try:
             # Opened here, because NumPy leaves a file open that it cannot read.
-            with Path(path).open("rb") as data, np.load(data, allow_pickle=False) as file:
+            with place.open("rb") as data, np.load(data, allow_pickle=False) as file:
                 arrays: dict[str, Any] = {name: file[name] for name in file.files}
         except (zipfile.BadZipFile, zlib.error, ValueError, EOFError, TypeError) as error:
             # TypeError: a plain .npy file holds one array, which is no context manager.

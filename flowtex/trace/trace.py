@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util import compiled
+from flowtex._util.arguments import check_field, checked_array, checked_number
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
 from flowtex.errors import FieldError
@@ -113,11 +114,11 @@ def trace(
     >>> slices.displacement.shape  # (T, M, J, I, 2)
     (1, 3, 21, 41, 2)
     """
+    check_field(field, FlowField)
     parameter = _parameter(field, parameter)
     _check_signs(field, two_sided=two_sided, compose=compose)
     lag_values = choose_lags(field, parameter) if lags is None else _checked_lags(lags)
-    units = lag_unit(field, parameter) if unit is None else np.asarray(unit, dtype=float)
-    units = np.array(np.broadcast_to(units, field.shape), dtype=float)
+    units = lag_unit(field, parameter) if unit is None else _checked_unit(field, unit)
     if not (np.isfinite(units).all() and (units > 0).all()):
         msg = f"unit has values from {units.min():g} to {units.max():g}; expected positive numbers"
         raise FieldError(msg)
@@ -127,9 +128,8 @@ def trace(
             f"{MOST_LAG:g}, for single precision: give a unit of their size"
         )
         raise FieldError(msg)
-    if not tolerance > 0:
-        msg = f"tolerance is {tolerance!r}; expected a positive number of cells, such as 1e-3"
-        raise FieldError(msg)
+    expected = "a positive number of cells, such as 1e-3"
+    tolerance = checked_number("tolerance", tolerance, np.nextafter(0, 1), expected=expected)
     step_numbers = _step_numbers(field, steps)
     if field.triangles is not None:
         chosen = field.valid if nodes is None else field.valid & _checked_nodes(field, nodes)
@@ -243,8 +243,13 @@ def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> 
 
 def _step_numbers(field: FlowField, steps: Sequence[int] | None) -> list[int]:
     """Destination times as indices from 0."""
-    count = len(field.times)
-    return [field.step_number(step) for step in (range(count) if steps is None else steps)]
+    if steps is None:
+        return list(range(len(field.times)))
+    numbers = [field.step_number(step) for step in steps] if np.iterable(steps) else []
+    if not numbers:
+        msg = f"steps is {steps!r}; expected numbers of time steps, such as [0]"
+        raise FieldError(msg)
+    return numbers
 
 
 def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sampler]:
@@ -271,16 +276,26 @@ def _in_single(cells: Floats) -> Floats:
 
 
 def _checked_lags(lags: ArrayLike) -> Floats:
-    lag_values = np.atleast_1d(np.asarray(lags, dtype=float))
+    expected = "positive numbers in increasing order"
+    lag_values = np.atleast_1d(checked_array("lags", lags, expected=expected))
     good = np.isfinite(lag_values) & (np.diff(lag_values, prepend=0.0) > 0)
     if lag_values.ndim != 1 or not lag_values.size or not good.all():
-        msg = f"lags is {lags!r}; expected positive numbers in increasing order"
+        msg = f"lags is {lags!r}; expected {expected}"
         raise FieldError(msg)
     return lag_values
 
 
+def _checked_unit(field: FlowField, unit: ArrayLike) -> Floats:
+    expected = f"a number, or one for each node, of shape {field.shape}"
+    units = checked_array("unit", unit, expected=expected)
+    if units.shape not in ((), field.shape):
+        msg = f"unit has shape {units.shape}; expected {expected}"
+        raise FieldError(msg)
+    return np.array(np.broadcast_to(units, field.shape))
+
+
 def _checked_nodes(field: FlowField, nodes: ArrayLike) -> Bools:
-    chosen = np.asarray(nodes, dtype=bool)
+    chosen: Bools = checked_array("nodes", nodes, expected="a mask of the nodes") != 0
     if chosen.shape != field.shape:
         msg = f"nodes has shape {chosen.shape}; expected {field.shape} as the field has"
         raise FieldError(msg)

@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.arguments import checked_path
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
@@ -169,7 +170,7 @@ def write_page(
     ``store`` and ``announce`` are those of :func:`export`, the options those of
     :func:`page_pieces`.
     """
-    path, link = Path(path), None if store is None else StoreLink.of(store)
+    path, link = checked_path("path", path), None if store is None else StoreLink.of(store)
     scenes = page_data(views) if link is None else [linked_data(view) for view in views]
     estimated = estimate(scenes, linked=link is not None)
     if announce is not None:
@@ -260,7 +261,7 @@ def page_pieces(
         for view, scene in zip(views, scenes, strict=True)
     ]
     for n, header in enumerate(headers):
-        header["name"] = title or header["name"]
+        header["name"] = str(title or "") or header["name"]
         if link is not None:
             header["store"] = store_header(views[n], scenes[n], link)
         if len(views) > 1:
@@ -290,7 +291,7 @@ def _values(
     return {
         "policy": _policy(script, link),
         "version": __version__,
-        "title": html.escape(title),
+        "title": html.escape(str(title)),
         "style": look,
         # Browsers tell JPEG by itself.
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),

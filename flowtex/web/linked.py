@@ -49,6 +49,9 @@ class StoreLink:
         FieldError
             When a browser could not read it, or it holds what is not for everybody.
         """
+        if not isinstance(text, str):
+            msg = f"store is {text!r}; expected an address, such as './flow.zarr'"
+            raise FieldError(msg)
         parts = urlsplit(text)
         if parts.query or parts.fragment or "@" in parts.netloc:
             msg = (

@@ -6,8 +6,8 @@ from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
+from flowtex._util.arguments import checked_count
 from flowtex._util.colours import colour_table, rgb
-from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
@@ -155,11 +155,12 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
 
 def even_steps(count: int, steps: int | None) -> tuple[int, ...]:
     """Return so many of the numbers below a count, or none of them where all are asked for."""
-    if steps is None or steps >= count:
+    if steps is None:
         return ()
-    if steps < 1:
-        msg = f"steps is {steps}; expected 1 to {count}, the time steps of the field"
-        raise FieldError(msg)
+    expected = f"1 to {count}, the time steps of the field"
+    steps = checked_count("steps", steps, expected=expected)
+    if steps >= count:
+        return ()
     if steps == 1:
         return (count - 1,)
     return tuple(round(n * (count - 1) / (steps - 1)) for n in range(steps))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import warnings
 from collections.abc import Sequence
@@ -47,7 +48,10 @@ def is_dataset_file(path: Path) -> bool:
 
 def dataset_paths(path: Any) -> list[Path]:
     """Return the paths of data of the Earth, of one or of several; nothing for anything else."""
-    several = [path] if isinstance(path, (str, Path)) else list(path)
+    several = path if isinstance(path, (list, tuple)) else [path]
+    if not all(isinstance(one, (str, os.PathLike)) for one in several):
+        msg = f"path is {path!r}; expected the path of a file, or a list of paths"
+        raise FieldError(msg)
     paths = [Path(one).expanduser() for one in several]
     known = paths and all(map(is_dataset_file, paths)) and all(one.exists() for one in paths)
     return paths if known else []

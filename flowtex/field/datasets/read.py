@@ -484,6 +484,9 @@ def as_datasets(data: Any) -> list[Any]:
     several = data if isinstance(data, (list, tuple)) else [data]
     result = []
     for ds in several:
+        if not isinstance(ds, (xarray.Dataset, xarray.DataArray)):
+            msg = f"data is {ds!r}; expected a data set of xarray's, or a list of them"
+            raise FieldError(msg)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             try:

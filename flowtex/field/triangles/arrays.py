@@ -64,7 +64,11 @@ def triangle_arrays(
     """
     p, masked_points = as_numbers("points", points)
     v, masked = as_numbers("velocity", _first(velocity))
-    corners = np.asarray(triangles)
+    try:
+        corners = np.asarray(triangles)
+    except ValueError as error:
+        msg = f"triangles is no array ({error}); expected three numbers of nodes in every row"
+        raise FieldError(msg) from error
     shown = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
     given = {name: with_gaps(f"scalars[{name!r}]", _first(s)) for name, s in scalars.items()}
     count = len(velocity) if v.ndim == 3 or isinstance(velocity, LazySteps) else 1

@@ -1,0 +1,86 @@
+"""Arguments of public functions: the checks that many of them have in common."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex.errors import FieldError
+
+__all__ = [
+    "check_field",
+    "checked_array",
+    "checked_count",
+    "checked_number",
+    "checked_path",
+    "checked_size",
+    "is_number",
+]
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is one real number that is not NaN; texts and truth values are none."""
+    try:
+        return not isinstance(value, (bool, str, bytes)) and float(value) == float(value)
+    except (TypeError, ValueError, OverflowError):  # a whole number may have any size
+        return False
+
+
+def checked_number(
+    name: str, value: Any, low: float = -math.inf, high: float = math.inf, *, expected: str
+) -> float:
+    """Return a number from ``low`` to ``high``; a FieldError has what was expected."""
+    if not (is_number(value) and low <= value <= high):
+        msg = f"{name} is {value!r}; expected {expected}"
+        raise FieldError(msg)
+    return float(value)
+
+
+def checked_count(
+    name: str, value: Any, low: int = 1, high: float = math.inf, *, expected: str
+) -> int:
+    """Return a whole number from ``low`` to ``high``; a FieldError has what was expected."""
+    number = checked_number(name, value, low, high, expected=expected)
+    if not number.is_integer():
+        msg = f"{name} is {value!r}; expected {expected}"
+        raise FieldError(msg)
+    return int(value)
+
+
+def checked_array(name: str, value: Any, *, expected: str) -> Floats:
+    """Return real numbers of any shape; a FieldError has what was expected."""
+    try:
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError, OverflowError) as error:
+        msg = f"{name} is {value!r}; expected {expected}"
+        raise FieldError(msg) from error
+
+
+def checked_size(size: Any, low: int = 1) -> tuple[int, int]:
+    """Return width and height in pixels, from ``low``."""
+    expected = "width and height in pixels, such as (1024, 768)"
+    sides = checked_array("size", size, expected=expected)
+    if sides.shape != (2,) or not (sides >= low).all() or (sides % 1).any():
+        msg = f"size is {size!r}; expected {expected}"
+        raise FieldError(msg)
+    return int(sides[0]), int(sides[1])
+
+
+def checked_path(name: str, path: Any) -> Path:
+    """Return a path as one of Python's."""
+    if not isinstance(path, (str, os.PathLike)) or "\0" in str(path):
+        msg = f"{name} is {path!r}; expected a path"
+        raise FieldError(msg)
+    return Path(path)
+
+
+def check_field(field: Any, kind: type) -> None:
+    """Refuse what is no field, which is of a class."""
+    if not isinstance(field, kind):
+        msg = f"field is {field!r}; expected a FlowField, as FlowField.from_pyvista(mesh) makes"
+        raise FieldError(msg)
