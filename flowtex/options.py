@@ -19,8 +19,8 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
+from flowtex._util.arguments import near_names
 from flowtex._util.colours import DEFAULT_CMAP, colour_table, rgb
-from flowtex._util.names import near_names
 from flowtex.camera import Camera
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface

@@ -14,10 +14,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
 from flowtex._util.colours import colour_table, is_diverging
-from flowtex._util.names import near_names
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.dates import seconds_since

@@ -15,8 +15,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
-from flowtex._util.arguments import is_number
-from flowtex._util.names import near_names
+from flowtex._util.arguments import is_number, near_names
 from flowtex.errors import FieldError
 
 __all__ = [

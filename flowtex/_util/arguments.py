@@ -1,9 +1,11 @@
-"""Arguments of public functions: the checks that many of them have in common."""
+"""Arguments of public functions: checks that many have in common, and names that were meant."""
 
 from __future__ import annotations
 
+import difflib
 import math
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,7 @@ __all__ = [
     "checked_path",
     "checked_size",
     "is_number",
+    "near_names",
 ]
 
 
@@ -84,3 +87,12 @@ def check_field(field: Any, kind: type) -> None:
     if not isinstance(field, kind):
         msg = f"field is {field!r}; expected a FlowField, as FlowField.from_pyvista(mesh) makes"
         raise FieldError(msg)
+
+
+def near_names(name: str, known: Iterable[str]) -> str:
+    """Say which of the known names are near one that there is not, or name them all."""
+    names = tuple(known)
+    close = difflib.get_close_matches(name, names, n=2)
+    if close:
+        return f"did you mean {' or '.join(map(repr, close))}?"
+    return f"there are: {', '.join(names)}"

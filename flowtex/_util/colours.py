@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Bytes, Floats
-from flowtex._util.names import near_names
 from flowtex.errors import FieldError
 
 __all__ = ["CMAPS", "DEFAULT_CMAP", "colour_shares", "colour_table", "is_diverging", "rgb"]

@@ -245,7 +245,8 @@ def _step_numbers(field: FlowField, steps: Sequence[int] | None) -> list[int]:
     """Destination times as indices from 0."""
     if steps is None:
         return list(range(len(field.times)))
-    numbers = [field.step_number(step) for step in steps] if np.iterable(steps) else []
+    given: Any = steps
+    numbers = [field.step_number(step) for step in given] if np.iterable(given) else []
     if not numbers:
         msg = f"steps is {steps!r}; expected numbers of time steps, such as [0]"
         raise FieldError(msg)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray
-from flowtex._util.names import near_names
 from flowtex.errors import FieldError
 
 if TYPE_CHECKING:

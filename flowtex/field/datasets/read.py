@@ -481,9 +481,8 @@ def as_datasets(data: Any) -> list[Any]:
     """Return datasets whose axes cf_xarray can tell, with times as dates."""
     xarray = import_extra("xarray", "xarray")
     import_extra("cf_xarray", "xarray")
-    several = data if isinstance(data, (list, tuple)) else [data]
     result = []
-    for ds in several:
+    for ds in data if isinstance(data, (list, tuple)) else [data]:
         if not isinstance(ds, (xarray.Dataset, xarray.DataArray)):
             msg = f"data is {ds!r}; expected a data set of xarray's, or a list of them"
             raise FieldError(msg)
