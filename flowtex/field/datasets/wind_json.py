@@ -73,8 +73,8 @@ def _component(xarray: Any, header: dict[str, Any], data: Any, name: str) -> Any
     try:
         columns, rows = int(header["nx"]), int(header["ny"])
         if min(columns, rows) < 1:
-            msg = f"nx is {columns} and ny {rows}; expected 1 or more"
-            raise ValueError(msg)
+            msg = f"nx is {columns} and ny {rows} of the component {name}; expected 1 or more"
+            raise FieldError(msg)
         check_count(len(data), columns * rows, f"the component {name}", "numbers")
         lon = float(header["lo1"]) + abs(float(header["dx"])) * np.arange(columns)
         south = -1.0 if float(header["la1"]) >= float(header.get("la2", -90.0)) else 1.0
