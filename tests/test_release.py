@@ -13,7 +13,8 @@ import yaml
 import flowtex
 
 ROOT = Path(__file__).resolve().parents[1]
-PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+PYPROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+PROJECT: dict[str, Any] = PYPROJECT["project"]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 FORMS = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
 RECIPE = ROOT / "distribution" / "conda" / "recipe.yaml"
@@ -54,9 +55,8 @@ def as_numbers(version: str) -> tuple[int, ...]:
 def every_extra() -> list[str]:
     """What flowtex and its extras for users ask for."""
     optional: dict[str, list[str]] = PROJECT["optional-dependencies"]
-    own = ("dev", "site", "test")
-    users = [line for name, extra in optional.items() if name not in own for line in extra]
-    return [*PROJECT["dependencies"], *(line for line in users if not line.startswith("flowtex["))]
+    lines = [line for extra in optional.values() for line in extra]
+    return [*PROJECT["dependencies"], *(line for line in lines if not line.startswith("flowtex["))]
 
 
 def test_one_version_everywhere() -> None:
@@ -87,7 +87,11 @@ def test_the_lowest_lock_is_of_the_floors() -> None:
 
 def test_the_newest_lock_has_what_is_asked_for() -> None:
     newest = locked("newest.txt")
-    for name, floor in floors([*every_extra(), *PROJECT["optional-dependencies"]["test"]]).items():
+    groups: dict[str, list[Any]] = PYPROJECT["dependency-groups"]
+    lines = [line for group in groups.values() for line in group if isinstance(line, str)]
+    names = [re.match(r"[\w-]+", line) for line in lines]
+    assert {match[0].lower() for match in names if match} <= newest.keys()
+    for name, floor in floors([*every_extra(), *lines]).items():
         assert min(newest[name]) >= as_numbers(floor), name
 
 
@@ -157,7 +161,6 @@ def test_the_container_is_not_root_and_copies_what_is_there() -> None:
     kept = (ROOT / "distribution" / "Dockerfile.dockerignore").read_text("utf-8")
     for name in re.findall(r"^!(\S+)$", kept, re.MULTILINE):
         assert (ROOT / name).exists(), name
-    build: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]
-    hook = build["hatch"]["metadata"]["hooks"]["custom"]["path"]
+    hook = PYPROJECT["tool"]["hatch"]["metadata"]["hooks"]["custom"]["path"]
     for needed in (hook, "README.md", "LICENSE", "flowtex", "shaders", "pyproject.toml"):
         assert f"!{needed}\n" in kept

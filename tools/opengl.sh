@@ -16,11 +16,16 @@ fi
 stamp=$(dirname "$(dirname "$python")")/.opengl-$kind
 [ -e "$stamp" ] && exit 0
 
-# A fault of the code must not look like a missing library.
-"$python" -c 'import flowtex.diagnostics' || fail "flowtex itself cannot be imported"
-
+# draws: whether VTK draws; what it lacks is left in $lacks. A fault of the code must not look like that.
 draws() {
-    "$python" -c 'from flowtex import diagnostics; diagnostics.require_opengl()' >/dev/null 2>&1
+    lacks=$("$python" -c 'import sys
+from flowtex import diagnostics
+try:
+    diagnostics.require_opengl()
+except diagnostics.OpenGLMissingError as error:
+    sys.exit(print(f"flowtex: {error}") or 3)') && return
+    [ $? = 3 ] || fail "flowtex itself cannot be imported"
+    return 1
 }
 
 # Whoever asked for another window than EGL's is told what it lacks, and gets nothing else.
@@ -29,16 +34,13 @@ case ${VTK_DEFAULT_OPENGL_WINDOW:-vtkEGLRenderWindow} in
 *) can_install() { false; } ;;
 esac
 
-if ! draws && can_install; then
-    # shellcheck disable=SC2086 # a list of packages
-    apt_install $packages || fail "apt-get could not install $packages, which VTK needs to draw"
-fi
-if ! draws; then
-    "$python" -c 'import sys
-from flowtex import diagnostics
-try:
-    diagnostics.require_opengl()
-except diagnostics.OpenGLMissingError as error:
-    sys.exit(f"flowtex: {error}")' || exit 1
-fi
+# shellcheck disable=SC2086 # a list of packages
+draws || {
+    ! can_install || apt_install $packages ||
+        fail "apt-get could not install $packages, which VTK needs to draw"
+    { can_install && draws; } || {
+        echo "$lacks" >&2
+        exit 1
+    }
+}
 touch "$stamp"

@@ -1,10 +1,12 @@
 #!/bin/sh
-# setup.sh PYTHON VENV EXTRAS: make the virtual environment and install flowtex into it, editable.
+# setup.sh PYTHON VENV EXTRAS [GROUP]: make the virtual environment and install flowtex into it, editable,
+# with extras and a dependency group of pyproject.toml, in the versions of tools/locks/newest.txt.
 set -eu
 here=$(dirname "$0")
 . "$here/common.sh"
 
-python=$1 venv=$2 extras=$3
+python=$1 venv=$2 extras=$3 group=${4:-}
+lock=$here/locks/newest.txt
 
 check_python() {
     command -v "$python" >/dev/null 2>&1 || fail "there is no '$python' here. Install Python 3.11 or later:
@@ -38,5 +40,19 @@ if ! is_usable; then
     say "Making $venv with $("$python" -V 2>&1)"
     "$python" -m venv --clear "$venv"
 fi
-say "Installing flowtex[$extras] into $venv (some minutes the first time)"
-"$venv/bin/python" -m pip install --quiet --disable-pip-version-check --editable ".[$extras]"
+
+pip() { "$venv/bin/python" -m pip install -qq --disable-pip-version-check --constraint "$lock" "$@"; }
+# uv takes seconds where pip takes minutes.
+uv() {
+    pip uv && "$venv/bin/python" "$here/run_uv.py" pip install --quiet --python "$venv/bin/python" \
+        --constraint "$lock" "$@"
+}
+
+say "Installing flowtex[$extras]${group:+ and the group $group} into $venv (a minute the first time)"
+set -- --editable ".[$extras]" ${group:+--group "$group"}
+uv "$@" || {
+    say "uv cannot do this here; pip does, in some minutes"
+    # The first pip that knows groups.
+    pip "pip>=25.1"
+    pip "$@"
+}
