@@ -1,18 +1,22 @@
 # Everything is done inside .venv; `make help` lists what there is.
 # A stamp beside the environment tells what it was set up for, so a second run is instant;
-# a change of pyproject.toml sets it up again.
+# a change of pyproject.toml or of the locked versions sets it up again.
 
 PYTHON ?= python3
 VENV   ?= .venv
 PYTEST_ARGS ?=
+TESTS ?= changed
 PAPER ?= out/paper
 FUZZ ?= 8
 
 BIN := $(VENV)/bin
-SETUP := pyproject.toml tools/setup.sh tools/common.sh
+SETUP := pyproject.toml tools/setup.sh tools/run_uv.py tools/common.sh tools/locks/newest.txt
+
+# uv compiles no bytecode: what is imported first leaves it for the next.
+unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test fuzz lint format docs site gallery client paper paper-quick wheel clean
+.PHONY: help demo test check coverage fuzz lint format docs site gallery client paper paper-quick wheel clean
 
 help: ## list what can be made
 	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
@@ -25,16 +29,22 @@ demo: $(VENV)/.ready-demo ## set up if need be, and show flow on a surface
 test: $(VENV)/.ready-test ## set up if need be, then run every check and every test
 	@sh tools/opengl.sh $(BIN)/python
 	@sh tools/browsers.sh $(BIN)/python
-	@sh tools/check.sh $(BIN) $(PYTEST_ARGS)
+	@sh tools/check.sh $(BIN) all $(PYTEST_ARGS)
+
+check: $(VENV)/.ready-test ## style, format, types, and the fast tests of what was changed, or all fast ones with TESTS=fast
+	@sh tools/opengl.sh $(BIN)/python
+	@sh tools/check.sh $(BIN) $(TESTS) $(PYTEST_ARGS)
+
+coverage: $(VENV)/.ready-test ## what of flowtex/ and client/src the tests run, into out/coverage
+	@sh tools/opengl.sh $(BIN)/python
+	@sh tools/browsers.sh $(BIN)/python
+	@sh tools/coverage.sh $(BIN) $(PYTEST_ARGS)
 
 fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, files and messages
 	FLOWTEX_FUZZ=$(FUZZ) $(BIN)/pytest -n auto --maxprocesses 4 -m hypothesis $(PYTEST_ARGS)
 
-lint: $(VENV)/.ready-test ## style, format and types, without the tests
-	$(BIN)/ruff check
-	$(BIN)/ruff format --check
-	$(BIN)/mypy
-	sh tools/client.sh $(BIN)
+lint: $(VENV)/.ready-test ## style, format, types and the browser client, without the tests
+	@sh tools/check.sh $(BIN) none
 
 format: $(VENV)/.ready-test ## put the code in its format
 	$(BIN)/ruff check --select I --fix
@@ -74,9 +84,9 @@ $(VENV)/.ready-demo: $(SETUP)
 
 # What the tests need includes what the demo needs.
 $(VENV)/.ready-test: $(SETUP)
-	@sh tools/setup.sh "$(PYTHON)" $(VENV) all,test,dev
+	@sh tools/setup.sh "$(PYTHON)" $(VENV) all dev
 	@touch $@ $(VENV)/.ready-demo
 
 $(VENV)/.ready-site: $(SETUP)
-	@sh tools/setup.sh "$(PYTHON)" $(VENV) all,site
+	@sh tools/setup.sh "$(PYTHON)" $(VENV) all site
 	@touch $@ $(VENV)/.ready-demo

@@ -1,11 +1,13 @@
-// Builds the client into the package: `node build.js [--watch | --check]`.
+// Builds the client into the package: `node build.js [--watch | --check | --plain]`.
 //
 // The built files are kept in the repository, so that nobody who only uses flowtex needs Node; --check
-// tells whether they are what the sources give. Identifiers stay as they are, for the debugger.
+// tells whether they are what the sources give. Identifiers stay as they are, for the debugger; --plain
+// keeps statements as well, for coverage.
 import { readFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
 import * as esbuild from "esbuild";
 
+const minified = !process.argv.includes("--plain");
 const WEB = "../flowtex/web";
 const STATIC = "../flowtex/app/ui/static";
 
@@ -18,8 +20,8 @@ const COMMON = {
   legalComments: "inline",
   lineLimit: 120,
   loader: { ".css": "text" },
-  minifySyntax: true,
-  minifyWhitespace: true,
+  minifySyntax: minified,
+  minifyWhitespace: minified,
   target: "es2022",
 };
 
@@ -32,7 +34,7 @@ async function noticeOf(name, file) {
   return `/*! Holds parts of ${name}, of which this is the licence:\n\n${licence.trim()} */`;
 }
 
-const BUILDS = [
+export const BUILDS = [
   ["src/client.ts", `${WEB}/client.js`, "esm", NOTICE],
   ["src/page.ts", `${WEB}/page.js`, "esm", NOTICE],
   ["src/storepage.ts", `${WEB}/storepage.js`, "esm", `${NOTICE}\n${STORE_NOTICE}`],
@@ -52,7 +54,9 @@ async function check(options) {
   return Buffer.compare(kept, outputFiles[0].contents) === 0 ? [] : [options.outfile];
 }
 
-if (process.argv.includes("--watch")) {
+if (process.argv[1] !== fileURLToPath(import.meta.url)) {
+  // coverage.js asks for the builds alone.
+} else if (process.argv.includes("--watch")) {
   for (const options of BUILDS) await (await esbuild.context(options)).watch();
 } else if (process.argv.includes("--check")) {
   const stale = (await Promise.all(BUILDS.map(check))).flat();

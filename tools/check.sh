@@ -1,13 +1,20 @@
 #!/bin/sh
-# check.sh BIN [PYTEST ARGUMENT...]: every check and every test, whatever the earlier ones found;
-# the tests come last, so that their closing line can be seen.
+# check.sh BIN all|fast|changed|none [PYTEST ARGUMENT...]: style, format, types, the browser client, and tests:
+# all; the fast ones, or those of them that concern what was changed; or none.
+#
+# Every check is made, whatever the earlier ones found. The long ones without tests run beside the tests, and
+# tell when these have ended.
 set -u
 here=$(dirname "$0")
 . "$here/common.sh"
 
-bin=$1
-shift
+bin=$1 which=$2
+shift 2
 failed=
+logs=$(mktemp -d)
+aside=
+trap 'kill $aside 2>/dev/null; rm -rf "$logs"' EXIT
+trap 'exit 130' INT TERM
 
 # check NAME COMMAND...
 check() {
@@ -17,25 +24,45 @@ check() {
     "$bin/$@" || failed="$failed, $name"
 }
 
-check style ruff check
-check format ruff format --check
-check types mypy
-say "client.sh"
-sh "$here/client.sh" "$bin" || failed="$failed, browser client"
-# pytest says with 5 that it was asked for tests of which this half has none.
-half() {
-    check_name=$1
+# tests NAME ARGUMENT...; pytest says with 5 that there was none to run.
+tests() {
+    name=$1
     shift
-    say "$*"
-    "$bin/$@"
+    say "pytest $*"
+    "$bin/pytest" --dist loadfile --no-loadscope-reorder "$@"
     code=$?
-    [ $code -eq 0 ] || [ $code -eq 5 ] || failed="$failed, $check_name"
+    [ $code -eq 0 ] || [ $code -eq 5 ] || failed="$failed, $name"
 }
 
-# One more than there are cores: some tests wait for processes that they start.
-workers=$("$bin/python" -c 'import os; print(min((os.cpu_count() or 1) + 1, 4))')
-half tests pytest -n "$workers" --dist loadfile --no-loadscope-reorder -m "not browser" "$@"
-# Tests with a browser wait for what a person would see, so few of them share the machine.
-half "tests with a browser" pytest -n auto --maxprocesses 2 --dist loadfile \
-    --no-loadscope-reorder -m browser "$@"
+# ended PID NAME LOG: wait for what runs aside, and show what it said.
+ended() {
+    wait "$1" || failed="$failed, $2"
+    say "$2"
+    cat "$logs/$3"
+}
+
+check style ruff check
+check format ruff format --check
+"$bin/mypy" >"$logs/types" 2>&1 &
+types=$!
+sh "$here/client.sh" "$bin" >"$logs/client" 2>&1 &
+client=$!
+aside="$types $client"
+
+fast="not browser and not slow"
+case $which in
+all)
+    tests tests -n "$(workers "$bin")" -m "not browser" "$@"
+    # Tests with a browser wait for what a person would see, so few of them share the machine.
+    tests "tests with a browser" -n auto --maxprocesses 2 -m browser "$@"
+    ;;
+fast) tests tests -n "$(workers "$bin")" -m "$fast" "$@" ;;
+changed)
+    files=$("$bin/python" "$here/changed_tests.py") || failed="$failed, choice of tests"
+    # shellcheck disable=SC2086 # a list of files
+    if [ -n "$files" ]; then tests tests -n "$(workers "$bin")" -m "$fast" "$@" $files; else say "no tests"; fi
+    ;;
+esac
+ended $types types types
+ended $client "browser client" client
 [ -z "$failed" ] || fail "not in order: ${failed#, }"

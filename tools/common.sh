@@ -30,3 +30,7 @@ apt_install() {
         return 1
     fi
 }
+
+# workers BIN: how many processes share the tests; one more than there are cores, as some tests wait for
+# processes that they start.
+workers() { "$1/python" -c 'import os; print(min((os.cpu_count() or 1) + 1, 4))'; }

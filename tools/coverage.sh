@@ -1,0 +1,33 @@
+#!/bin/sh
+# coverage.sh BIN [PYTEST ARGUMENT...]: what of flowtex/ and client/src the tests run, by lines and branches,
+# into out/coverage.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/common.sh"
+cd "$here/.."
+
+bin=$(cd "$1" && pwd)
+shift
+folder=$PWD/out/coverage
+export FLOWTEX_CLIENT_COVERAGE="$folder/pages"
+rm -rf "$folder"
+mkdir -p "$folder/node" "$folder/pages"
+
+say "unit tests of the browser client"
+NODE_V8_COVERAGE=$folder/node sh "$here/client.sh" "$bin" test
+# In the kept files statements are joined; these have those of the sources, until the tests have ended.
+trap 'sh "$here/client.sh" "$bin" build' EXIT
+trap 'exit 130' INT TERM
+sh "$here/client.sh" "$bin" plain
+PYTHONPATH=tests:${PYTHONPATH:-} "$bin/coverage" run -m pytest -p client_coverage -n "$(workers "$bin")" \
+    --dist loadfile --no-loadscope-reorder "$@" ||
+    say "some tests failed: what they run counts as far as they came"
+
+say "flowtex/, in full in $folder/html"
+"$bin/coverage" combine --quiet
+"$bin/coverage" html --quiet --fail-under 0 -d "$folder/html"
+covered=0
+"$bin/coverage" report || covered=$?
+say "client/src, in full in $folder/client"
+sh "$here/client.sh" "$bin" coverage || covered=$?
+exit $covered
