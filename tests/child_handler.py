@@ -19,6 +19,14 @@ from flowtex._util.progress import check
 from flowtex.field.remote.reader import Reader
 
 
+def is_gone(pid: int | str) -> bool:
+    """Whether a process has ended."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    except OSError:
+        return True
+
+
 class Handler:
     """What runs in the children of these tests."""
 

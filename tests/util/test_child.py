@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from child_handler import is_gone
+from waiting import wait_until
 
 from flowtex._util.child import Child, ChildError
 from flowtex._util.child.forkserver import FORKS
@@ -57,22 +59,6 @@ def died(child: Child, do: str, **values: Any) -> str:
     return str(caught.value)
 
 
-def is_gone(pid: int) -> bool:
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
-    except OSError:
-        return True
-
-
-def wait_until_gone(pid: int) -> None:
-    waiting = threading.Event()
-    for _ in range(int(TIMEOUT_S / 0.01)):
-        if is_gone(pid):
-            return
-        waiting.wait(0.01)
-    pytest.fail(f"process {pid} goes on")
-
-
 def test_a_child_answers_in_a_process_of_its_own(start: Callable[..., Child]) -> None:
     child = start()
     first, arrays = ask(child, "sum", one=2, other=3)
@@ -94,7 +80,7 @@ def test_the_end_of_a_child_is_told(start: Callable[..., Child]) -> None:
     hung = start()
     pid = ask(hung, "sum", one=1, other=1)[0]["pid"]
     assert died(hung, "hang", timeout=0.2) == "did not end within 0 s"
-    wait_until_gone(pid)
+    wait_until(lambda: is_gone(pid))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux has a limit of a process's data")
@@ -130,7 +116,7 @@ def test_what_was_cancelled_and_hangs_is_ended(child: Child) -> None:
         with pytest.raises(Stopped), stoppable(cancelled.is_set):
             ask(child, "hang", timeout=0.2)
     assert died(child, "sum", one=1, other=1).startswith("did not end within")
-    wait_until_gone(pid)
+    wait_until(lambda: is_gone(pid))
 
 
 def test_threads_take_turns(child: Child) -> None:
@@ -157,7 +143,7 @@ def test_a_child_ends_with_its_object(start: Callable[..., Child]) -> None:
     child = start()
     pid = ask(child, "sum", one=1, other=1)[0]["pid"]
     child.close()
-    wait_until_gone(pid)
+    wait_until(lambda: is_gone(pid))
     assert died(child, "sum", one=1, other=1) == "was ended"
 
 
@@ -181,7 +167,7 @@ def test_a_child_ends_with_its_parent_however_that_ends(forks: bool) -> None:
         pid = int(parent.stdout.readline())
         assert not is_gone(pid)
         parent.send_signal(signal.SIGKILL)
-        wait_until_gone(pid)
+        wait_until(lambda: is_gone(pid))
 
 
 def test_children_have_loaded_what_is_preloaded() -> None:

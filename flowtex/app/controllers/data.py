@@ -253,6 +253,7 @@ class Data(Controller):
         count = part.planes.get(axis, 0)
         field = self.viewport.field
         return {
+            "is_file": self.library.is_file(self.name),
             "name": (field.name or source.name).replace("_", " ") or "flow",
             "about": about(field),
             "vectors_choices": list(part.vectors) if len(part.vectors) > 1 else [],

@@ -160,7 +160,17 @@ def _title(controllers: Controllers) -> None:
                 max_height=360,
                 unshown=key("unshown"),
             )
-        html.Div(f"{{{{ {key('about')} }}}}", classes="flowtex-about")
+        with html.Div(classes="flowtex-about"):
+            html.Span(f"{{{{ {key('about')} }}}}")
+            with html.Button(
+                classes="flowtex-again",
+                v_if=(key("is_file"),),
+                click=controllers.data.reload,
+                aria_label="Read the file again",
+                __properties=ARIA,
+                **hint("Read the file again, where it has changed.", "bottom"),
+            ):
+                v3.VIcon("mdi-refresh", size=16)
         PageElement(
             "upload",
             ["address", "accept"],

@@ -5,7 +5,6 @@ from __future__ import annotations
 import gc
 import logging
 import re
-import threading
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -16,7 +15,9 @@ import pytest
 import pyvista as pv
 import xarray as xr
 from cfd_files import CGNS, TIMES, box, write_ensight, write_exodus
+from child_handler import is_gone
 from earth_data import winds
+from waiting import wait_until
 
 from flowtex import FlowField, examples
 from flowtex._util.child import Child
@@ -30,22 +31,6 @@ from flowtex.field.remote.reader import Reader
 from flowtex.field.steps import LazySteps
 
 TIP, BODY = box(4, 3, 2), box(6, 3, 2, 3.0)
-
-
-def is_gone(pid: str) -> bool:
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
-    except OSError:
-        return True
-
-
-def wait_until_gone(pid: str) -> None:
-    waiting = threading.Event()
-    for _ in range(6000):
-        if is_gone(pid):
-            return
-        waiting.wait(0.01)
-    pytest.fail(f"process {pid} goes on")
 
 
 def volume(path: Path) -> Path:
@@ -168,7 +153,7 @@ def test_a_reader_that_dies_is_told_of(tmp_path: Path, monkeypatch: pytest.Monke
     source._file._timeout = 0.2
     with pytest.raises(FieldError, match=r"block\.vts: the reader of this file did not end within"):
         source.plane_of("hang")
-    wait_until_gone(pid)
+    wait_until(lambda: is_gone(pid))
 
 
 def test_a_reader_that_needs_too_much_memory(
@@ -212,7 +197,7 @@ def test_steps_are_read_later_by_the_process_that_has_the_file(
     with pytest.raises(FieldError, match=r"weather\.nc: the reader of this file crashed"):
         field.velocity[0]
     assert np.isfinite(field.velocity[3]).all(), "what was read stays"
-    wait_until_gone(pid)
+    wait_until(lambda: is_gone(pid))
 
 
 def test_the_process_ends_with_what_needs_it(
@@ -226,7 +211,7 @@ def test_the_process_ends_with_what_needs_it(
     assert not is_gone(pid)
     del field
     gc.collect()
-    wait_until_gone(pid)
+    wait_until(lambda: is_gone(pid))
 
 
 def test_steps_that_nobody_has_any_more_are_forgotten(tmp_path: Path) -> None:
