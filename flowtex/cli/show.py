@@ -116,6 +116,9 @@ def _show_page(
     page: ServeFlags | None,
     options: dict[str, Any],
 ) -> int:
+    from flowtex.field.remote import prepare_readers
+
+    prepare_readers()  # while the libraries of the page are loaded
     require_app()
     from flowtex.app import Library
 

@@ -24,6 +24,9 @@ from flowtex._util.child.worker import PROGRAM, start_text
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import Stopped, check
 
+if FORKS:
+    import fcntl
+
 __all__ = ["Child", "ChildError", "prepare"]
 
 #: Seconds between two checks whether an answer is still wanted, and for which the status of a
@@ -31,6 +34,8 @@ __all__ = ["Child", "ChildError", "prepare"]
 CHECK_INTERVAL_S, STATUS_WAIT_S = 0.05, 5.0
 #: Share of the memory that is available when a child starts which it may take.
 MEMORY_SHARE = 0.6
+#: Bytes that may wait in the pipe of answers.
+PIPE_BYTES = 1 << 20
 
 
 class ChildError(Exception):
@@ -244,6 +249,8 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...]) -> _Process:
     """Let the fork server start a child."""
     requests, answers, status = os.pipe(), os.pipe(), os.pipe()
     pipes = requests[0], answers[1], status[1]
+    with suppress(OSError):  # fewer turns between the two processes, where it may be so large
+        fcntl.fcntl(answers[1], fcntl.F_SETPIPE_SZ, PIPE_BYTES)
     try:
         try:
             fork_server(preload).start(entry, memory, pipes)
