@@ -96,8 +96,8 @@ class TrickyReader(Reader):
         return str(os.getpid()), []
 
     def do_step(self, steps: int, number: int) -> Answer:
-        """Read a step, but for the first two."""
-        return super().do_step(steps, number) if number > 1 else self.do_plane_of("crash")
+        """Read a step, but for the third."""
+        return self.do_plane_of("crash") if number == 2 else super().do_step(steps, number)
 
 
 class ChangingReader(Reader):

@@ -19,7 +19,7 @@ import numpy as np
 
 from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.controllers.library import Choice, TracedFlow
-from flowtex.app.controllers.loading import LoadRequest, announced
+from flowtex.app.controllers.loading import LoadRequest, announced, without_folder
 from flowtex.app.server.uploads import Uploads
 from flowtex.app.server.validation import clipped, name_among
 from flowtex.field import FlowField
@@ -79,6 +79,7 @@ class Data(Controller):
         self.state.on("file")(self.take_file)
         self.state.on("vectors", "block", "axis", "index")(self.take_choice)
         context.field_changed.connect(self._show_choice)
+        self.stream.data_failed.connect(self._complain)
 
     @property
     def name(self) -> str:
@@ -213,6 +214,10 @@ class Data(Controller):
         except BaseException:
             self._current, self._goal = before
             raise
+
+    def _complain(self, error: Exception) -> None:
+        """Let the page say what is wrong with the data that are shown."""
+        self.context.complain(without_folder(str(error), self.name))
 
     def _show_choice(self) -> None:
         """Let the page show what is chosen; not while it has gone on to something else."""

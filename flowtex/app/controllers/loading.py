@@ -8,6 +8,7 @@ from collections.abc import AsyncIterator, Callable
 from concurrent.futures import Executor
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TypeVar
 
 from flowtex._util.progress import Stopped, stoppable
@@ -109,4 +110,8 @@ def without_folder(problem: str, name: str) -> str:
     """Leave out where the file lies: that is the server's own affair."""
     last = name.rsplit("/", 1)[-1]
     at = problem.find(f"/{last}:")
-    return problem if at < 0 or ":" in problem[:at] else problem[at + 1 :]
+    if at >= 0 and ":" not in problem[:at]:
+        return problem[at + 1 :]
+    # Of several files that are opened together the first is named.
+    path, colon, rest = problem.partition(": ")
+    return f"{Path(path).name}{colon}{rest}" if Path(path).is_absolute() else problem

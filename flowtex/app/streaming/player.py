@@ -5,12 +5,14 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
+from contextlib import suppress
 
 import numpy as np
 
 from flowtex.app.server.page import Signal
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
+from flowtex.errors import FieldError
 from flowtex.offscreen.movie import run_seconds
 
 __all__ = ["Player"]
@@ -58,13 +60,20 @@ class Player:
         self._stream.moved()
 
     def go_to(self, time: float) -> None:
-        """Show a time, or the nearest there is."""
-        times = self._viewport.field.times
+        """Show a time, or the nearest there is; time stands where that cannot be read."""
+        times, before = self._viewport.field.times, self._viewport.handle.time
         nearest = min(max(float(time), float(times[0])), float(times[-1]))
-        if nearest != self._viewport.handle.time:
+        if nearest == before:
+            return
+        try:
             self._viewport.set_time(nearest)
-            self.time_changed.emit()
-            self._stream.changed()
+        except FieldError as error:
+            self.playing = False
+            with suppress(FieldError):
+                self._viewport.set_time(before)
+            self._stream.data_failed.emit(error)
+        self.time_changed.emit()
+        self._stream.changed()
 
     def seek(self, time_: float) -> None:
         """Go to a time for a person, whose slider must not run away under the hand."""

@@ -30,6 +30,7 @@ from flowtex.app.server.validation import mapping
 from flowtex.app.streaming.navigation import Pointer
 from flowtex.app.streaming.painter import MOVING_S, PLAYING_S, ViewPainter, view_pixels
 from flowtex.app.streaming.viewport import Viewport
+from flowtex.errors import FieldError
 
 __all__ = ["Figures", "FrameStream"]
 
@@ -94,6 +95,8 @@ class FrameStream:
         Signal with :class:`Figures` after each picture.
     frame_skipped
         Signal in place of drawing while it is paused.
+    data_failed
+        Signal with a FieldError when a part of the data, such as a later step, cannot be read.
     painter, pointer
         What draws, and what follows the mouse, the wheel and fingers.
     """
@@ -103,7 +106,7 @@ class FrameStream:
         self.streamer: Any = None
         self.playing = self.paused = self.moving = False
         self.watched: Callable[[], bool] = lambda: True
-        self.frame_drawn, self.frame_skipped = Signal(), Signal()
+        self.frame_drawn, self.frame_skipped, self.data_failed = Signal(), Signal(), Signal()
         self.painter = ViewPainter(viewport)
         self.pointer = Pointer(viewport)
         self._viewport = viewport
@@ -212,14 +215,20 @@ class FrameStream:
 
     @contextmanager
     def _log_faults(self) -> Iterator[None]:
-        """Let a picture that fails be seen in the log; it must not be the last one."""
+        """Let a picture that fails be seen in the log; it must not be the last one.
+
+        What is wrong with the data is for the page.
+        """
         try:
             yield
         except Exception as error:
             # While time goes by it may fail many times in a second.
             if repr(error) != self._fault:
                 self._fault = repr(error)
-                _log.exception("a picture could not be drawn")
+                if isinstance(error, FieldError):
+                    self.data_failed.emit(error)
+                else:
+                    _log.exception("a picture could not be drawn")
             self._drawn.set()
 
     def _is_watched(self) -> bool:

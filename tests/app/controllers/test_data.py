@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 pytest.importorskip("trame_rca")
 
+import xarray as xr
 from cfd_files import box, write_ensight
+from earth_data import winds
 from small_pages import played
 from waiting import until
 
@@ -26,6 +31,19 @@ def test_a_complaint_does_not_tell_where_a_file_lies() -> None:
     assert (
         without_folder("block is 'x'; there are a, b", "torn.vts") == "block is 'x'; there are a, b"
     )
+    several = "/srv/private/runs/winds_0.nc: cannot be read: no"
+    assert without_folder(several, "winds") == "winds_0.nc: cannot be read: no"
+
+
+class Streamer:
+    """Stands for trame-rca's, and counts what is sent."""
+
+    def __init__(self) -> None:
+        self.sent = 0
+        self.coreServer = SimpleNamespace(network_monitor=SimpleNamespace(pending=0))
+
+    def push_content(self, *_: Any) -> None:
+        self.sent += 1
 
 
 def mean_speed(app: FlowApp) -> float:
@@ -74,5 +92,36 @@ def test_a_file_that_crashes_its_reader_is_a_problem_of_one_page(tmp_path: Path)
         assert app.state.get("problem").startswith("torn.case: ")
         assert app.field is shown and app.state.get("file") == "flow.vts"
         assert library.source("flow.vts").alive
+
+    played(app, story)
+
+
+def test_a_later_step_that_cannot_be_read_is_told_and_the_page_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("xarray")
+    monkeypatch.setattr("flowtex.field.remote.source.READER", "child_handler:TrickyReader")
+    ds = winds(np.arange(-180.0, 180.0, 20.0), np.arange(-80.0, 81.0, 20.0))
+    steps = xr.concat([ds] * 12, "time", coords="minimal", join="exact")
+    steps["time"] = ("time", np.arange(12.0), {"units": "days since 2001-01-01"})
+    steps.to_netcdf(tmp_path / "winds.nc")
+    app, streamer = FlowApp(tmp_path / "winds.nc", lines="streamlines"), Streamer()
+    app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})
+
+    async def story() -> None:
+        app.stream.set_streamer(streamer)
+        task = asyncio.create_task(app.stream.run())
+        app.stream.changed()
+        await until(lambda: streamer.sent)
+        app.state.send(time=2 * 86_400.0)  # at which the reader crashes
+        await until(lambda: app.state.get("problem") != "")
+        assert app.state.get("problem").startswith("winds.nc: the reader of this file crashed")
+        assert app.viewport.handle.time == app.state.get("last"), "time stands"
+        app.state.send(problem="")
+        streamer.sent = 0
+        app.stream.changed()
+        await until(lambda: streamer.sent)
+        assert not task.done() and app.state.get("problem") == ""
+        task.cancel()
 
     played(app, story)
