@@ -87,8 +87,7 @@ class ImageSpace:
                 f"{name} is {value!r}; expected more than 0 and at most {most:g}"
                 for name, value, most in ranges
                 if not 0 < value <= most
-            ],
-            ValueError,
+            ]
         )
         self._field, self._blend, self._pixels, self._even = field, blend, pixels, even
         self._velocity = _along_surface(field, step)

@@ -101,7 +101,7 @@ def _check(v: Floats, image: Floats, lengths: Floats, kernel: str) -> None:
         faults.append(f"length is {lengths}; expected a positive number of pixels")
     if kernel not in KERNELS:
         faults.append(f"kernel is {kernel!r}; expected one of {', '.join(map(repr, KERNELS))}")
-    raise_faults(faults, ValueError)
+    raise_faults(faults)
 
 
 def _follow(
