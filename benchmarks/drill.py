@@ -39,6 +39,8 @@ from served import Link, Served, enter, start
 
 from flowtex import examples
 
+#: Seconds for any answer of a server that is busy with all this.
+PATIENCE_S = 600.0
 #: Bytes of the temporary folder, and files that a page may send.
 FOLDER_BYTES, FILES_OF_A_PAGE = 256_000_000, 8
 #: Half-sent requests that are held, and seconds after which each is given up.
@@ -256,7 +258,7 @@ def small_disk() -> Iterator[tuple[Path, bool]]:
         yield folder, mounted
     finally:
         if mounted:
-            subprocess.run(["umount", str(folder)], check=True)
+            subprocess.run(["umount", "--lazy", str(folder)], check=True)
         shutil.rmtree(folder)
 
 
@@ -266,6 +268,7 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=60)
     parser.add_argument("--people", type=int, default=30)
     given = parser.parse_args()
+    sys.modules["served"].PATIENCE_S = PATIENCE_S  # type: ignore[attr-defined]
     most = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
     # The drill has as many connections as all others together; the server keeps to what is usual.
     with small_disk() as (folder, mounted):
@@ -280,7 +283,7 @@ def main() -> int:
             drill.note()
         finally:
             served.process.send_signal(signal.SIGTERM)
-            status = served.process.wait(60)
+            status = served.process.wait(PATIENCE_S)
         left = sorted(path.name for path in folder.iterdir())
     console = Console()
     console.print(drill.table)

@@ -145,7 +145,7 @@ class Link:
     def _take(self, message: dict[str, Any]) -> None:
         name = message["id"]
         waiting = self._answers.pop(name, None)
-        if waiting is not None:
+        if waiting is not None and not waiting.done():
             if "error" in message:
                 assert set(message["error"]) == {"code", "message"}, "more than a page needs"
                 waiting.set_exception(RuntimeError(message["error"]["message"]))

@@ -66,6 +66,8 @@ REPLACE_AFTER_S = 30.0
 RECONNECT_WAIT_S = 2.0
 #: Seconds between two signs of life of a connection.
 HEARTBEAT_S = 20.0
+#: Seconds for which a connection that ends waits for the page to say so too.
+CLOSE_S = 2.0
 #: What wslink adds to a message, in bytes, at most.
 MESSAGE_OVERHEAD_BYTES = 4096
 #: What the page shows when its session has ended.
@@ -132,6 +134,7 @@ class Session:
         socket = web.WebSocketResponse(
             max_msg_size=MAX_MSG_SIZE + MESSAGE_OVERHEAD_BYTES,
             heartbeat=HEARTBEAT_S,
+            timeout=CLOSE_S,
             compress=False,
         )
         await socket.prepare(request)
@@ -177,12 +180,16 @@ class Session:
             await asyncio.sleep(0.02)
         return not self.connected
 
-    async def end(self) -> None:
-        """Close the connection and the application, and forget the trame server."""
-        self.routes.close()
+    async def disconnect(self) -> None:
+        """Close the connection."""
         for socket in list(self._sockets):
             with suppress(ConnectionError):
                 await socket.close(code=WSCloseCode.GOING_AWAY, message=b"the session has ended")
+
+    async def end(self) -> None:
+        """Close the connection and the application, and forget the trame server."""
+        self.routes.close()
+        await self.disconnect()
         try:
             self.app.close()
         finally:
@@ -315,16 +322,19 @@ class Sessions:
 
     async def end(self, session: Session) -> None:
         """End a session, and leave nothing of it."""
+        await self._end(session)
+        del session
+        # Applications and VTK's objects point at each other. They are freed here, where their
+        # window was made, and not in whatever thread next fills up.
+        gc.collect()
+
+    async def _end(self, session: Session) -> None:
         if self._by_token.pop(session.token, None) is None:
             return
         try:
             await session.end()
         except Exception:  # what one page does wrong must not end the others
             _log.exception("a session could not be ended in full")
-        del session
-        # Applications and VTK's objects point at each other. They are freed here, where their
-        # window was made, and not in whatever thread next fills up.
-        gc.collect()
 
     async def sweep(self, every: float = 5.0) -> None:
         """End sessions that nobody has come back to, for as long as the task lives."""
@@ -337,8 +347,11 @@ class Sessions:
     async def close(self) -> None:
         """End all sessions."""
         self._ready = None
-        for session in self:
-            await self.end(session)
+        # No page waits for another one, which may be asleep.
+        await asyncio.gather(*(session.disconnect() for session in self))
+        while self._by_token:
+            await self._end(next(iter(self)))
+        gc.collect()
 
 
 @contextmanager

@@ -151,6 +151,26 @@ def test_a_second_connection_ends_the_first() -> None:
     run(story())
 
 
+def test_the_end_waits_for_no_page_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sessions, "CLOSE_S", PATIENCE_S)
+
+    async def story() -> None:
+        async with place() as here:
+            asleep = []
+            for _ in range(3):
+                address = f"{here.bare}page/{await here.token()}/ws"
+                asleep.append(await here.http.ws_connect(address, autoclose=False))
+            ending = asyncio.create_task(here.site.sessions.close())
+            for socket in asleep:
+                message = await socket.receive(timeout=PATIENCE_S / 2)
+                assert message.type == aiohttp.WSMsgType.CLOSE
+            for socket in asleep:
+                await socket.close()
+            await ending
+
+    run(story())
+
+
 def test_the_page_that_is_one_too_many_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     async def story() -> None:
         async with place(limit=2) as here:
