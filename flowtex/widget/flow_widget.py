@@ -17,14 +17,14 @@ from flowtex.field import FlowField
 from flowtex.field.locate import locate
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.scene import NO_IMAGE, AppearanceAttributes, Change, Scene
-from flowtex.settings import TABLE, Settings, SettingsError
+from flowtex.settings import TABLE, Settings
 from flowtex.textures.images import load_image
 from flowtex.web.assets import asset
 from flowtex.web.export import PREVIEW, page_text, write_page
 from flowtex.web.view import web_views
 from flowtex.widget.display import Displayed
 from flowtex.widget.panel import make_panel
-from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait
+from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait, TraitValueError
 from flowtex.widget.views import HEADERS, Views
 
 __all__ = ["FlowWidget"]
@@ -196,7 +196,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     def _check_noise(self, proposal: Any) -> Any:
         views = getattr(self, "_views", None)
         if proposal["value"] == "image" and views is not None and views.first.image is None:
-            raise SettingsError(NO_IMAGE)
+            raise TraitValueError(NO_IMAGE)
         return proposal["value"]
 
     @traitlets.validate("time")
@@ -206,7 +206,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         slack = SLACK * (last - first)
         if not first - slack <= value <= last + slack:
             msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
-            raise FieldError(msg)
+            raise TraitValueError(msg)
         return min(max(value, first), last)
 
     @traitlets.validate("point")
@@ -214,8 +214,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         point, field = proposal["value"], self.field
         if point is None or field.triangles is None:
             return point
-        # What is drawn may be other triangles than those of the field.
-        at = locate(field, point.get("position"), tolerance=np.inf)
+        try:  # what is drawn may be other triangles than those of the field
+            at = locate(field, point.get("position"), tolerance=np.inf)
+        except FieldError as error:
+            raise TraitValueError(str(error)) from error
         return {**point, "index": None if at is None else at[::-1]}
 
     def set_state(self, sync_data: dict[str, Any]) -> None:

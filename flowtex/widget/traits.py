@@ -8,9 +8,13 @@ import traitlets
 
 from flowtex.camera import Camera
 from flowtex.errors import FieldError
-from flowtex.settings import TABLE, Setting
+from flowtex.settings import TABLE, Setting, SettingsError
 
-__all__ = ["CameraTrait", "SettingTrait", "SettingTraits", "SizeTrait"]
+__all__ = ["CameraTrait", "SettingTrait", "SettingTraits", "SizeTrait", "TraitValueError"]
+
+
+class TraitValueError(SettingsError, traitlets.TraitError):
+    """A value is refused; traitlets restores the old one after its own errors alone."""
 
 
 class SettingTrait(traitlets.TraitType[Any, Any]):
