@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from waiting import PATIENCE_S
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
+#: Seconds that a cell may take.
+CELL_S = 10 * PATIENCE_S
 #: Those that run in a file of tests of their own, beside the others.
 OF_EARTH = ("ocean", "pyramid", "weather")
 
@@ -52,22 +59,51 @@ def test_the_dye_can_be_seen(opengl: Any) -> None:
     assert (off > 60).mean() > 0.08
 
 
+@contextmanager
+def started() -> Iterator[Any]:
+    """Start a kernel, in the folder of the notebooks."""
+    pytest.importorskip("nbclient")
+    pytest.importorskip("anywidget")
+    from jupyter_client.manager import KernelManager
+
+    manager = KernelManager(kernel_name="python3")
+    environment = {**os.environ, "MPLBACKEND": "module://matplotlib_inline.backend_inline"}
+    manager.start_kernel(cwd=str(FOLDER), env=environment)
+    try:
+        yield manager
+    finally:
+        manager.shutdown_kernel(now=True)
+
+
+@pytest.fixture(scope="module")
+def kernel(opengl: Any) -> Iterator[Any]:
+    """One kernel for all notebooks, each of which begins without names."""
+    with started() as manager:
+        yield manager
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("path", [p for p in NOTEBOOKS if p.stem not in OF_EARTH], ids=name)
-def test_a_notebook_runs(path: Path, opengl: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    run(path, monkeypatch)
+def test_a_notebook_runs(path: Path, kernel: Any) -> None:
+    run(path, kernel)
 
 
-def run(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def run(path: Path, kernel: Any, before: str = "", changes: dict[str, str] | None = None) -> None:
     """Run a notebook from top to bottom; it shows a widget, and no warning."""
-    nbclient = pytest.importorskip("nbclient")
-    pytest.importorskip("anywidget")
-    monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
+    import nbclient
+    from nbformat.v4 import new_code_cell
+
     notebook = read(path)
-    client = nbclient.NotebookClient(
-        notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": FOLDER}}
-    )
-    client.execute()
+    for cell in notebook.cells:
+        for old, new in (changes or {}).items():
+            cell.source = re.sub(rf"\b{old}\b", new, cell.source)
+    notebook.cells.insert(0, new_code_cell(f"%reset -f\n{before}"))
+    client = nbclient.NotebookClient(notebook, timeout=CELL_S, km=kernel)
+    try:
+        client.execute()
+    finally:
+        if client.kc is not None:
+            client.kc.stop_channels()
     outputs = [out for cell in notebook.cells for out in cell.get("outputs", ())]
     displays = [out.data for out in outputs if "data" in out]
     widgets = [data for data in displays if "application/vnd.jupyter.widget-view+json" in data]

@@ -7,8 +7,9 @@ time in threads: NumPy releases the interpreter's lock inside its loops.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
@@ -23,7 +24,7 @@ from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
-from flowtex.trace.compose import SideSlices, Within, compose, landings
+from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
 from flowtex.trace.integrate import MOST_CELLS, Paths, follow, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
@@ -133,7 +134,7 @@ def trace(
     step_numbers = _step_numbers(field, steps)
     if field.triangles is not None:
         chosen = field.valid if nodes is None else field.valid & _checked_nodes(field, nodes)
-        with _threads() as pool:
+        with _threads() as run:
             return triangle_slices(
                 field,
                 step_numbers,
@@ -143,7 +144,7 @@ def trace(
                 chosen,
                 two_sided=two_sided,
                 tolerance=tolerance,
-                run=pool.map,
+                run=run,
                 progress=progress,
             )
     directions = (-1.0, 1.0) if two_sided else (-1.0,)
@@ -260,8 +261,16 @@ def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sample
     return [sampler.since(float(field.times[step])) for step in steps]
 
 
-def _threads() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, MOST_THREADS))
+@contextmanager
+def _threads() -> Iterator[Map]:
+    """Give what maps a function over blocks in threads, and a single block in this one."""
+    with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, MOST_THREADS)) as pool:
+
+        def run(work: Callable[[Any], Any], blocks: Iterable[Any]) -> Iterable[Any]:
+            blocks = list(blocks)
+            return map(work, blocks) if len(blocks) == 1 else pool.map(work, blocks)
+
+        yield run
 
 
 def _parameter(field: FlowField, parameter: str) -> str:
@@ -345,8 +354,8 @@ class _Tracing:
             )
             for direction in directions
         }
-        with _threads() as pool:
-            self._integrate(sides, known, pool)
+        with _threads() as run:
+            self._integrate(sides, known, run)
             for direction, flat in sides.items():
                 side = sides[direction] = self._as_grids(flat, direction)
                 if landing is not None and known < len(self.lags):
@@ -357,7 +366,7 @@ class _Tracing:
                         side,
                         known,
                         landing,
-                        pool.map,
+                        run,
                         partial(self._piece, direction),
                         direction,
                     )
@@ -371,9 +380,7 @@ class _Tracing:
         typical = float(np.median(pace[pace > 0])) if pace.any() else 1.0
         return max(int(np.searchsorted(self.lags * typical, DIRECT_CELLS, side="right")), 1)
 
-    def _integrate(
-        self, sides: dict[float, SideSlices], known: int, pool: ThreadPoolExecutor
-    ) -> None:
+    def _integrate(self, sides: dict[float, SideSlices], known: int, run: Map) -> None:
         """Fill the first ``known`` slices."""
         at = np.flatnonzero(self.followed)
         compiled.prepare(len(at) * len(self.samplers) * len(sides))
@@ -403,7 +410,7 @@ class _Tracing:
             for direction in sides
             for first in range(0, len(at), BLOCK)
         ]
-        for _ in track(pool.map(work, jobs), len(jobs), "Tracing", show=self.progress):
+        for _ in track(run(work, jobs), len(jobs), "Tracing", show=self.progress):
             pass
 
     def _piece(

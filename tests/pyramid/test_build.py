@@ -31,16 +31,16 @@ zarr = pytest.importorskip("zarr")
 
 
 @pytest.fixture(autouse=True)
-def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
 
 
 def grid(rows: int, columns: int) -> tuple[Floats, Floats]:
-    y, x = np.mgrid[0:rows, 0:columns].astype(float) / 100
+    y, x = np.mgrid[0:rows, 0:columns].astype(float) / 25
     return x, y
 
 
-def steady(rows: int = 290, columns: int = 530) -> FlowField:
+def steady(rows: int = 74, columns: int = 134) -> FlowField:
     """A flow around an island."""
     x, y = grid(rows, columns)
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
@@ -59,7 +59,7 @@ def steady(rows: int = 290, columns: int = 530) -> FlowField:
 
 
 def series() -> FlowField:
-    x, y = grid(200, 300)
+    x, y = grid(50, 75)
     velocity = np.stack(
         [np.stack([np.cos(3 * y + t), np.sin(4 * x - t)], axis=-1) for t in (0.0, 0.1, 0.2)]
     )
@@ -79,7 +79,7 @@ def late() -> FlowField:
 
 def ring() -> FlowField:
     """Curved, closed around, on a cone."""
-    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 401), np.linspace(0, 1, 190))
+    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 101), np.linspace(0, 1, 48))
     radius = 1 + 0.4 * height
     points = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1)
     around = np.stack([-np.sin(turn), np.cos(turn), 0.3 * np.sin(5 * turn)], axis=-1)
@@ -88,7 +88,9 @@ def ring() -> FlowField:
 
 def globe() -> FlowField:
     """Around both poles, where some nodes have no position."""
-    lon, lat = np.meshgrid(np.radians(np.linspace(0, 360, 361)), np.radians(np.arange(-90, 91.0)))
+    lon, lat = np.meshgrid(
+        np.radians(np.linspace(0, 360, 91)), np.radians(np.linspace(-90, 90, 46))
+    )
     points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
     velocity = np.cross([0.3, 0.1, 1.0], points)
     land = np.hypot(lon - 2, lat - 0.5) < 0.4
@@ -238,11 +240,11 @@ def test_steps_have_one_halo_whichever_tasks_make_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The last steps flow to where cells are small, which asks for a wider halo."""
-    x = np.cumsum(np.where(np.arange(560) < 256, 0.01, 0.003))
+    x = np.cumsum(np.where(np.arange(140) < 64, 0.04, 0.012))
     along = np.array([0, 0, 1, 1.0])[:, None, None]
-    velocity = np.stack(np.broadcast_arrays(along, 1 - along, np.ones((4, 40, 560))), axis=-1)
+    velocity = np.stack(np.broadcast_arrays(along, 1 - along, np.ones((4, 10, 140))), axis=-1)
     field = FlowField.from_arrays(
-        (x, np.arange(40) / 100), velocity[..., :2], times=np.arange(4) / 10, periodic=""
+        (x, np.arange(10) / 25), velocity[..., :2], times=np.arange(4) / 10, periodic=""
     )
     options = {"levels": "all", "lines": "streamlines"}
     made(tmp_path / "a.zarr", field, **options)
@@ -268,7 +270,7 @@ def test_shards_of_land_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     """Though of themselves chunks of zeros are not written, and what is not there is missing."""
     for name in ("layout", "samples"):
         monkeypatch.setattr(sys.modules[f"flowtex.pyramid.{name}"], "SHARD_CHUNKS", (1, 1))
-    x, y = grid(290, 1060)
+    x, y = grid(74, 266)
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
     land = x > 2
     depth = np.where(land, 0, x)

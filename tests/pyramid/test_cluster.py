@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from cluster import Cluster, ObjectStorage, digests
+from small_tiles import shrink
 from waiting import PATIENCE_S
 
 from flowtex.pyramid import PyramidError, build, open_store, workers
@@ -18,6 +19,9 @@ from flowtex.tiles import TileKey, shared_pyramid
 distributed = pytest.importorskip("distributed")
 xr = pytest.importorskip("xarray")
 pytest.importorskip("zarr")
+
+#: Nodes of the coarsest level, here and on the workers.
+ROOT_NODES = 10_000
 
 
 @pytest.fixture
@@ -31,9 +35,9 @@ def storage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ObjectS
     server.close()
 
 
-def flow(rows: int = 1024, columns: int = 2048) -> Any:
+def flow(rows: int = 256, columns: int = 512) -> Any:
     """A dataset of waves of many lengths around an island."""
-    y, x = (np.arange(n) / 100 for n in (rows, columns))
+    y, x = (np.arange(n) / 25 for n in (rows, columns))
     u, v = np.full((2, rows, columns), 0.3)
     for k in (0.5, 2, 7, 23):
         u += np.cos(k * y)[:, None] / k**0.2
@@ -44,13 +48,15 @@ def flow(rows: int = 1024, columns: int = 2048) -> Any:
     ]
     dims = ("y", "x")
     data = {"u": (dims, u.astype("f4"), words[0]), "v": (dims, v.astype("f4"), words[1])}
-    return xr.Dataset(data, {"x": x, "y": y}).chunk(y=256, x=512)
+    return xr.Dataset(data, {"x": x, "y": y}).chunk(y=64, x=128)
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("small_tiles")
 def test_workers_build_what_threads_build_though_one_is_killed(
-    tmp_path: Path, storage: ObjectStorage
+    tmp_path: Path, storage: ObjectStorage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", ROOT_NODES)
     source, place = "s3://flows/source.zarr", "s3://flows/deep/flow.zarr"
     flow().to_zarr(store_at(source, read_only=False), consolidated=False)
     data = xr.open_zarr(store_at(source), consolidated=False)
@@ -67,6 +73,8 @@ def test_workers_build_what_threads_build_though_one_is_killed(
                     lost.kill()
 
             client.subscribe_topic("tile", kill)
+            client.run(shrink)
+            client.run(_small_roots)
             client.run(_tell_tiles)
             built = build(data, place, scheduler=client, progress=False)
             assert lost.wait(PATIENCE_S) != 0
@@ -118,6 +126,12 @@ def _pid() -> int:
     import os
 
     return os.getpid()
+
+
+def _small_roots() -> None:
+    from flowtex.tiles import pyramid
+
+    pyramid.ROOT_NODES = ROOT_NODES
 
 
 def _tell_tiles() -> None:

@@ -23,15 +23,15 @@ VIEW: dict[str, Any] = {"size": (200, 120), "focus": (3.2, 1.4), "samples": 9}
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _small_roots() -> Iterator[None]:
+def _small_roots(small_tiles: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
         yield
 
 
 @pytest.fixture(scope="module")
 def flow() -> FlowField:
-    y, x = np.mgrid[0:290, 0:530].astype(float) / 100
+    y, x = np.mgrid[0:74, 0:134].astype(float) / 25
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
     return FlowField.from_arrays(
         np.stack([x, y], axis=-1),
@@ -109,7 +109,7 @@ def test_the_shell_builds_tells_and_draws(
     assert "were there" in capsys.readouterr().out
     assert main(["info", str(store)]) == 0
     told = capsys.readouterr().out
-    assert "530 × 290 nodes" in told and "all of it" in told
+    assert "134 × 74 nodes" in told and "all of it" in told
     assert main(["render", str(store), "-o", str(tmp_path / "a.png"), "--size", "100x80"]) == 0
     assert (tmp_path / "a.png").exists()
     assert main(["render", str(store), "-o", str(tmp_path / "b.png"), "--plane", "k=0"]) == 2

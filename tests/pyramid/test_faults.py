@@ -45,7 +45,7 @@ class Drawn(dict[Any, list[AnyArray] | None]):
 
 
 def flow() -> FlowField:
-    y, x = np.mgrid[0:580, 0:100].astype(float) / 100
+    y, x = np.mgrid[0:145, 0:25].astype(float) / 25
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
     points = np.stack([x + 0.1 * np.sin(y), y], axis=-1)
     land = np.hypot(x - 0.6, y - 1.2) < 0.3
@@ -55,10 +55,10 @@ def flow() -> FlowField:
 
 
 @pytest.fixture(scope="module", params=["coarse", "all"])
-def whole(request: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(request: Any, tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Path:
     place = tmp_path_factory.mktemp("whole") / "flow.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 5_000)
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 312)
         build(flow(), place, levels=request.param, progress=False)
     return place
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import shutil
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +26,7 @@ TILE = "0/traces/c/{step}/1/0/0/0/0/0"
 
 
 def flow(steps: int = 1) -> FlowField:
-    y, x = np.mgrid[0:400, 0:90].astype(float) / 100
+    y, x = np.mgrid[0:100, 0:23].astype(float) / 25
     velocity = np.stack(
         [np.stack([np.cos(3 * y + t) + 0.3, np.sin(4 * x)], axis=-1) for t in range(steps)]
     )
@@ -33,9 +35,23 @@ def flow(steps: int = 1) -> FlowField:
     )
 
 
-@pytest.fixture(autouse=True)
-def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 4000)
+@pytest.fixture(autouse=True, scope="module")
+def _small_roots(small_tiles: None) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 250)
+        yield
+
+
+@pytest.fixture(scope="module")
+def coarse(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store to read, without its finest tiles."""
+    return built(tmp_path_factory.mktemp("coarse") / "a.zarr")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store to read, with all its tiles."""
+    return built(tmp_path_factory.mktemp("whole") / "b.zarr", levels="all")
 
 
 def built(place: Path, **options: Any) -> Path:
@@ -43,8 +59,7 @@ def built(place: Path, **options: Any) -> Path:
     return place
 
 
-def test_what_is_made_is_what_the_builder_makes(tmp_path: Path) -> None:
-    coarse, whole = built(tmp_path / "a.zarr"), built(tmp_path / "b.zarr", levels="all")
+def test_what_is_made_is_what_the_builder_makes(tmp_path: Path, coarse: Path, whole: Path) -> None:
     before = {path: path.stat().st_mtime_ns for path in coarse.rglob("*")}
 
     async def copy() -> None:
@@ -60,12 +75,13 @@ def test_what_is_made_is_what_the_builder_makes(tmp_path: Path) -> None:
         served.close()
 
     asyncio.run(copy())
-    one, other = (open_store(tmp_path / name) for name in ("copy.zarr", "b.zarr"))
+    places = (tmp_path / "copy.zarr", whole)
+    one, other = map(open_store, places)
     for row in (0, 1):
         both = [shared_pyramid(f, "arclength").tile(TileKey(0, row, 0), [0]) for f in (one, other)]
         layers = [tile.layers(0) for tile in both if tile is not None]
         np.testing.assert_array_equal(layers[0], layers[1])
-    groups = [zarr.open_group(tmp_path / name, mode="r")["0"] for name in ("copy.zarr", "b.zarr")]
+    groups = [zarr.open_group(place, mode="r")["0"] for place in places]
     for name in ("values", "surface"):
         np.testing.assert_array_equal(groups[0][name][:], groups[1][name][:])
     # The store itself is only read.
@@ -90,8 +106,8 @@ def test_times_of_a_tile_have_one_halo(tmp_path: Path) -> None:
 
 def uneven() -> FlowField:
     """Cells that are smaller on both sides of a tile; paths go there at the last time alone."""
-    sides = np.repeat([0.0025, 0.01, 0.0025], [256, 256, 200])
-    x, y = np.meshgrid(np.append(0, np.cumsum(sides)), np.arange(30) / 100)
+    sides = np.repeat([0.0025, 0.01, 0.0025], [64, 64, 50])
+    x, y = np.meshgrid(np.append(0, np.cumsum(sides)), np.arange(8) / 100)
     along = np.array([[0.0, 1.0], [0.0, 1.0], [1.0, 0.0]])
     velocity = np.broadcast_to(along[:, None, None], (3, *x.shape, 2))
     return FlowField.from_arrays(
@@ -99,7 +115,7 @@ def uneven() -> FlowField:
     )
 
 
-@pytest.mark.parametrize(("levels", "spare"), [("coarse", 1), ("all", 4)])
+@pytest.mark.parametrize(("levels", "spare"), [("coarse", 1), ("all", 2)])
 def test_a_tile_that_is_traced_again_keeps_its_halo(
     tmp_path: Path, levels: str, spare: int
 ) -> None:
@@ -132,8 +148,8 @@ NO_NAMES = [
 ]
 
 
-def test_no_name_leads_elsewhere(tmp_path: Path) -> None:
-    served = ServedStore(built(tmp_path / "a.zarr"))
+def test_no_name_leads_elsewhere(coarse: Path) -> None:
+    served = ServedStore(coarse)
     for name in NO_NAMES:
         with pytest.raises(LookupError):
             asyncio.run(served.get(name))
@@ -141,7 +157,7 @@ def test_no_name_leads_elsewhere(tmp_path: Path) -> None:
 
 
 def test_a_tile_is_made_once_for_all_who_wait_and_for_nobody_not_at_all(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    coarse: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import flowtex.pyramid.served as module
     from flowtex.pyramid.tasks import trace_tile
@@ -157,7 +173,7 @@ def test_a_tile_is_made_once_for_all_who_wait_and_for_nobody_not_at_all(
 
     monkeypatch.setattr(module, "trace_tile", slow)
     monkeypatch.setattr(module, "MOST_THREADS", 1)
-    served = ServedStore(built(tmp_path / "a.zarr"))
+    served = ServedStore(coarse)
     name, other = TILE.format(step=0), TILE.format(step=0).replace("/1/0/", "/0/0/", 1)
 
     async def ask() -> None:
@@ -179,12 +195,12 @@ def test_a_tile_is_made_once_for_all_who_wait_and_for_nobody_not_at_all(
 
 
 def test_what_was_used_longest_ago_makes_room(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    coarse: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import flowtex.pyramid.served as module
 
     monkeypatch.setattr(module, "MADE_BYTES", 1)
-    served = ServedStore(built(tmp_path / "a.zarr"))
+    served = ServedStore(coarse)
     folder = served._folder
 
     async def ask() -> None:
@@ -198,8 +214,8 @@ def test_what_was_used_longest_ago_makes_room(
     assert not folder.exists()
 
 
-def test_parts_and_faults(tmp_path: Path) -> None:
-    place = built(tmp_path / "a.zarr")
+def test_parts_and_faults(tmp_path: Path, coarse: Path) -> None:
+    place = Path(shutil.copytree(coarse, tmp_path / "a.zarr"))
     served, name = ServedStore(place), "1/velocity/c/0/0/0/0"
     whole = (place / name).read_bytes()
 
@@ -226,8 +242,8 @@ def test_parts_and_faults(tmp_path: Path) -> None:
     served.close()
 
 
-def test_a_tile_that_was_lost_is_made_again(tmp_path: Path) -> None:
-    place = built(tmp_path / "a.zarr", levels="all")
+def test_a_tile_that_was_lost_is_made_again(tmp_path: Path, whole: Path) -> None:
+    place = Path(shutil.copytree(whole, tmp_path / "a.zarr"))
     lost = place / TILE.format(step=0)
     size = lost.stat().st_size
     lost.unlink()

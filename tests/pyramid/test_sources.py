@@ -24,8 +24,8 @@ xr = pytest.importorskip("xarray")
 
 
 @pytest.fixture(autouse=True)
-def _small(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+def _small(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
 
 
 def dataset(lon: Floats, lat: Floats, *, steps: int = 1, plane: bool = False) -> Any:
@@ -57,18 +57,18 @@ def dataset(lon: Floats, lat: Floats, *, steps: int = 1, plane: bool = False) ->
 
 
 def around(steps: int = 1) -> Any:
-    return dataset(np.arange(0, 360, 0.9), np.linspace(80, -80, 140), steps=steps)
+    return dataset(np.arange(0, 360, 3.6), np.linspace(80, -80, 36), steps=steps)
 
 
 CASES: dict[str, tuple[Any, dict[str, Any]]] = {
     "around": (around, {}),
     "globe": (around, {"globe": True}),
-    "region": (lambda: dataset(np.linspace(150, 230, 300), np.linspace(-40, 10, 190)), {}),
+    "region": (lambda: dataset(np.linspace(150, 230, 75), np.linspace(-40, 10, 48)), {}),
     "mercator": (
-        lambda: dataset(np.linspace(50, 20, 300), np.linspace(-40, 10, 190)),
+        lambda: dataset(np.linspace(50, 20, 75), np.linspace(-40, 10, 48)),
         {"projection": "mercator", "u": "u", "v": "v"},
     ),
-    "plane": (lambda: dataset(np.linspace(0, 9, 300), np.linspace(0, 5, 190), plane=True), {}),
+    "plane": (lambda: dataset(np.linspace(0, 9, 75), np.linspace(0, 5, 48), plane=True), {}),
     "series": (lambda: around(10), {"isel": {"time": 3}}),
 }
 
@@ -106,7 +106,7 @@ def test_tasks_write_what_the_field_in_memory_has(tmp_path: Path, name: str) -> 
 
 
 def test_a_series_of_a_file_is_that_of_the_field(tmp_path: Path) -> None:
-    around(10).isel(lon=slice(0, 200)).to_netcdf(tmp_path / "flow.nc")
+    around(10).isel(lon=slice(0, 50)).to_netcdf(tmp_path / "flow.nc")
     assert isinstance(source_of(tmp_path / "flow.nc"), RegionSource)
     build(tmp_path / "flow.nc", tmp_path / "a.zarr", progress=False)
     field = FlowField.from_file(tmp_path / "flow.nc")
@@ -125,7 +125,7 @@ def test_several_files_of_a_series_are_read_by_regions(tmp_path: Path) -> None:
     source = source_of(paths)
     assert isinstance(source, RegionSource)
     assert all(variable.chunks for variable in source.regions.components)
-    at = (slice(3, 40), slice(5, 60))
+    at = (slice(3, 30), slice(5, 60))
     whole = FlowField.from_xarray(data).velocity
     np.testing.assert_array_equal(source.nodes(1, *at).velocity, np.asarray(whole[1])[at])
 
@@ -150,7 +150,7 @@ def test_a_build_from_regions_goes_on(tmp_path: Path) -> None:
 def test_robust_ranges_of_large_data_are_those_of_a_sample(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.pyramid.samples.MOST_SAMPLES", 5_000)
+    monkeypatch.setattr("flowtex.pyramid.samples.MOST_SAMPLES", 1000)
     field = FlowField.from_xarray(around())
     build(around(), tmp_path / "a.zarr", progress=False)
     ranges = Levels(tmp_path / "a.zarr").about["ranges"]
@@ -190,7 +190,7 @@ def test_a_build_holds_as_many_parts_as_its_memory_allows(
 ) -> None:
     monkeypatch.setattr("os.cpu_count", lambda: 8)
     monkeypatch.setattr(layout, "SHARD_CHUNKS", (1, 1))
-    data = dataset(np.linspace(150, 230, 700), np.linspace(-40, 10, 300))
+    data = dataset(np.linspace(150, 230, 175), np.linspace(-40, 10, 75))
     alive: list[weakref.ref[AnyArray]] = []
     held: list[int] = []
     read = Regions.nodes

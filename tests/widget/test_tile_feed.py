@@ -23,9 +23,9 @@ def swirl(times: int = 1) -> Any:
     """A vortex that wanders, and nothing in a corner."""
     import flowtex
 
-    y, x = np.mgrid[-1:1:300j, -1:1:600j]
+    y, x = np.mgrid[-1:1:76j, -1:1:151j]
     steps = [np.stack([-(y - 0.1 * t), x], axis=-1) for t in range(times)]
-    steps[0][:290, :290] = np.nan
+    steps[0][:73, :73] = np.nan
     points = np.stack([x, y], axis=-1)
     return flowtex.FlowField.from_arrays(points, np.stack(steps), scalars={"depth": x * x + y})
 
@@ -70,8 +70,10 @@ class Client:
 
 
 @pytest.fixture
-def make(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Client]]:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 20_000)
+def make(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> Iterator[Callable[..., Client]]:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
+    for name in ("COARSE_STEADY", "COARSE_VARYING"):
+        monkeypatch.setattr(f"flowtex.widget.feed.{name}", 400)
     made: list[Client] = []
 
     def call(*arguments: Any, **options: Any) -> Client:
@@ -87,17 +89,17 @@ def test_tiles_come_with_all_that_draws_them(make: Callable[..., Client]) -> Non
     client = make(swirl(2), scalars="speed", clim=(0.0, 1.0))
     pyramid = client.header["pyramid"]
     assert pyramid["depth"] == 2
-    assert pyramid["shapes"] == [[300, 600], [151, 301], [76, 151]]
+    assert pyramid["shapes"] == [[76, 151], [39, 76], [20, 39]]
     client.ask((0, 0, 1), (0, 0, 0), steps=(0, 1))
     client.wait(lambda: client.seen == 4)
     own = json.loads(client.arrays["tile/0/0/1/header"].tobytes())
     rows, columns = own["geometry"]["shape"]
-    assert (rows, columns) == (257, 257)
+    assert (rows, columns) == (65, 65)
     slices = client.arrays["tile/0/0/1/slices/1"]
     assert slices.shape[0] == own["slices"]["count"]
     assert slices.shape[1] == own["geometry"]["rows"]["size"]
-    assert client.arrays["tile/0/0/1/position"].shape == (257, 257, 3)
-    speed = swirl(2).speed[1, :257, 256:513]
+    assert client.arrays["tile/0/0/1/position"].shape == (65, 65, 3)
+    speed = swirl(2).speed[1, :65, 64:129]
     np.testing.assert_allclose(client.arrays["tile/0/0/1/scalars/1"], speed, rtol=1e-6)
     # Of a tile without cells there is nothing to draw.
     assert client.arrays["tile/0/0/0/header"].tobytes() == b"null"
@@ -136,7 +138,7 @@ def test_tiles_in_other_colours_are_not_traced_again(
     client.ask((0, 0, 1))
     client.wait(lambda: client.seen == 2)
     assert (client.header["scalars"]["name"], client.header["generation"]) == ("depth", generation)
-    depth = swirl().scalars["depth"][0, :257, 256:513]
+    depth = swirl().scalars["depth"][0, :65, 64:129]
     np.testing.assert_allclose(client.arrays[f"{tile}/scalars/0/1"], depth, rtol=1e-6)
     assert client.arrays["scalars/0/1"].shape == before["scalars/0"].shape
     same = (client.arrays[f"{tile}/slices/0"], before[f"{tile}/slices/0"])
