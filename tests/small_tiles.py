@@ -10,20 +10,20 @@ import pytest
 
 __all__ = ["TILE_CELLS", "shrink", "small_tiles"]
 
-#: Cells along a side of a tile; BLOCK_CELLS stay what they are.
-TILE_CELLS = 64
+#: Cells along a side of a block, and of a tile of four times four of them.
+BLOCK_CELLS, TILE_CELLS = 16, 64
 
 
 def shrink(change: Callable[[Any, str, Any], None] = setattr) -> None:
-    """Make tiles of one block, and not of four times four, in all modules that know the size."""
+    """Make small tiles, in all modules that know their size."""
     from flowtex.pyramid import build, samples, served, stored
     from flowtex.rendering.vtk import surface
-    from flowtex.tiles import Pyramid
+    from flowtex.tiles.pyramid import block_places
 
     del build, samples, served, stored, surface  # what is not there could not be changed
-    change(Pyramid, "tile_blocks", 1)
+    change(block_places, "__defaults__", (BLOCK_CELLS,))
     for name, module in list(sys.modules.items()):
-        for constant, value in (("TILE_BLOCKS", 1), ("TILE_CELLS", TILE_CELLS)):
+        for constant, value in (("BLOCK_CELLS", BLOCK_CELLS), ("TILE_CELLS", TILE_CELLS)):
             if name.startswith("flowtex.") and hasattr(module, constant):
                 change(module, constant, value)
 
