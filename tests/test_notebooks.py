@@ -91,13 +91,14 @@ def test_a_notebook_runs(path: Path, kernel: Any) -> None:
 def run(path: Path, kernel: Any, before: str = "", changes: dict[str, str] | None = None) -> None:
     """Run a notebook from top to bottom; it shows a widget, and no warning."""
     import nbclient
-    from nbformat.v4 import new_code_cell
+
+    nbformat: Any = pytest.importorskip("nbformat.v4")
 
     notebook = read(path)
     for cell in notebook.cells:
         for old, new in (changes or {}).items():
             cell.source = re.sub(rf"\b{old}\b", new, cell.source)
-    notebook.cells.insert(0, new_code_cell(f"%reset -f\n{before}"))
+    notebook.cells.insert(0, nbformat.new_code_cell(f"%reset -f\n{before}"))
     client = nbclient.NotebookClient(notebook, timeout=CELL_S, km=kernel)
     try:
         client.execute()
