@@ -29,7 +29,8 @@ def in_flags(text: str) -> str:
     from flowtex.cli.options import FieldFlags, FrameFlags, ServeFlags
     from flowtex.settings import TABLE
 
-    names = "|".join([*vars(FieldFlags()), *vars(FrameFlags()), *vars(ServeFlags()), *TABLE])
+    flags = (FieldFlags(), FrameFlags(), ServeFlags())
+    names = "|".join([*(name for some in flags for name in vars(some)), *TABLE, "fresh"])
 
     def flag(match: re.Match[str]) -> str:
         return f"--{match['name'].replace('_', '-')} {match['value']}"
@@ -39,6 +40,9 @@ def in_flags(text: str) -> str:
         return f"--{match['name'].replace('_', '-')} {quote}{match['value']}{quote}"
 
     text = re.sub(rf"(?:^|(?<=: |\. ))(?P<name>{names}) (?P<value>is )", flag, text)
+    text = re.sub(
+        rf"\b(?P<name>{names})=True\b", lambda m: f"--{m['name'].replace('_', '-')}", text
+    )
     start = rf"(?<!--beside )\b(?P<name>{names})="
     text = re.sub(rf"""{start}(?P<quote>["'])(?P<value>[^"']+)(?P=quote)""", quoted_flag, text)
     return re.sub(rf"""{start}(?P<value>[^\s"';,)]+)""", flag, text)

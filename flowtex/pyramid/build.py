@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import uuid
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.cache import digest
 from flowtex._util.extras import import_extra
 from flowtex._util.progress import track
 from flowtex.errors import FieldError
@@ -20,29 +21,51 @@ from flowtex.pyramid.layout import (
     HALOS,
     MOST_HELD,
     TRACES,
+    VALUES,
     Part,
     about_source,
     attributes_of,
     create_level,
     has_halos,
     parts_of,
+    tiles_of,
 )
-from flowtex.pyramid.places import PyramidError, place_text, plain_faults, store_at
-from flowtex.pyramid.samples import create_samples, ranges_of
+from flowtex.pyramid.lease import Lease
+from flowtex.pyramid.levels import Levels
+from flowtex.pyramid.places import (
+    DOCUMENT,
+    ChangedError,
+    DamageError,
+    PyramidError,
+    check_room,
+    place_text,
+    plain_faults,
+    store_at,
+)
+from flowtex.pyramid.samples import SAMPLES, create_samples, ranges_of
 from flowtex.pyramid.source import Source, source_of
-from flowtex.pyramid.tasks import TileTask, make_finest, make_part, make_tile
+from flowtex.pyramid.tasks import (
+    TileTask,
+    checks_of,
+    compare_finest,
+    make_finest,
+    make_part,
+    make_tile,
+    mend,
+)
 from flowtex.pyramid.workers import PART_BYTES, TILE_BYTES, Cluster, Threads
 from flowtex.tiles import TileKey
 from flowtex.tiles.pyramid import level_lines, level_shape
 
-__all__ = ["Built", "build"]
+__all__ = ["Built", "build", "verify"]
 
 #: So many failures one after the other end a build: the store is full, or nobody may write there.
 MOST_FAILURES = 20
 #: What a field is known again by, and how it is drawn.
 IDENTITY = (
-    *("format", "fingerprint", "nodes", "parameter", "lines", "depth", "tile_cells"),
-    *("periodic", "projection", "scalars", "units", "time_unit", "length_unit", "start"),
+    *("format", "times", "nodes", "parameter", "lines", "depth", "tile_cells", "components"),
+    *("axes", "height", "has_position", "periodic", "projection", "scalars", "units"),
+    *("time_unit", "length_unit", "start"),
 )
 
 
@@ -82,6 +105,7 @@ def build(
     lines: str = "auto",
     scheduler: Any = None,
     memory: int | str | None = None,
+    fresh: bool = False,
     progress: bool = True,
     **options: Any,
 ) -> Built:
@@ -105,6 +129,8 @@ def build(
     memory
         What threads may take of the memory, in bytes or such as ``"2GB"``; fewer of them run where
         it is little. By default there is one for each core.
+    fresh
+        Whether a pyramid that is there is removed first.
     progress
         Whether a bar is shown.
     **options
@@ -119,15 +145,20 @@ def build(
     ------
     FieldError
         When the source makes no field, is one of triangles or without a sign, has a scalar whose
-        name is none of an array, or the store holds another one.
-        When ``levels`` is none of its words.
+        name is none of an array, or ``levels`` is none of its words.
     PyramidError
-        When tasks have failed; a second call makes what is missing.
+        When the place holds other data, the pyramid of another field or of an earlier state of this
+        one, or is being built already; or when tasks have failed, and a second call makes what is
+        missing.
 
     Notes
     -----
     What is there already is not made again, so a build that was ended at any moment goes on where
-    it was.
+    it was. It reads all that is there, and makes again what is missing or corrupt.
+
+    A store knows its source by the paths, sizes and times of change of the files. Where these
+    differ, and of a dataset or a field that was given, what was read is read again and held against
+    the digest that the store keeps of each part.
 
     Of a dataset on lines of longitude and latitude, or of x and y, each task reads a region, if it
     is drawn on a globe, plate carree or Mercator's map. Neither this process nor a worker then
@@ -151,14 +182,22 @@ def build(
     if lines not in ("auto", "pathlines", "streamlines"):
         msg = f"lines is {lines!r}; expected 'auto', 'pathlines' or 'streamlines'"
         raise FieldError(msg)
-    given = source_of(source, **options)
     place = place_text(store)
+    with plain_faults():
+        check_room(place, _names(store_at(place, read_only=False)))
+    given = source_of(source, **options)
     about = about_source(given, parameter, given.chosen_lines(lines), levels)
-    threads = Threads(memory)
+    wrong = [name for name in about["scalars"] if not is_scalar_name(name)]
+    if wrong:
+        msg = f"scalar {wrong[0]!r} cannot be stored; expected a name without '/', so rename it"
+        raise FieldError(msg)
+    known, threads = about["source"], Threads(memory)
     workers = threads if scheduler is None else Cluster(scheduler)
-    with plain_faults(), closing(workers):
-        group, about = _prepared(place, about, given)
-        run, depth = _Run(place, group, about, progress), about["depth"]
+    with plain_faults(), closing(workers), Lease(place) as lease:
+        group, arrays, about, new = _prepared(place, about, given, fresh=fresh)
+        run, depth = _Run(group, arrays, about, lease, known, progress), about["depth"]
+        if not new:
+            _look_through(run, workers)
         _write_finest(run, given, workers if given.travels else threads)
         for level in range(1, depth + 1):
             parts = _missing_parts(run, level, level_shape(given.shape, level))
@@ -171,61 +210,156 @@ def build(
     return Built(place, depth, run.made, run.kept)
 
 
-def _prepared(place: str, about: dict[str, Any], source: Source) -> tuple[Any, dict[str, Any]]:
-    """Return the group at a place and what it tells, making both where there is none."""
-    wrong = [name for name in about["scalars"] if not is_scalar_name(name)]
-    if wrong:
-        msg = f"scalar {wrong[0]!r} cannot be stored; expected a name without '/', so rename it"
-        raise FieldError(msg)
+def verify(store: str | Path, *, progress: bool = True) -> list[str]:
+    """Read all of a pyramid, and return what of it is missing or corrupt.
+
+    Every object is unpacked and held against its check sum, its size, and what it tells of its
+    place; parts of levels against the digest of their values.
+
+    Parameters
+    ----------
+    store
+        A folder or a URL, as for :func:`flowtex.pyramid.open_store`.
+    progress
+        Whether a bar is shown.
+
+    Returns
+    -------
+    list of str
+        A sentence for each part or tile that is missing or corrupt. A build of the same source
+        makes them again.
+
+    Raises
+    ------
+    PyramidError
+        When there is no pyramid, or its place cannot be read.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    >>> built = flowtex.pyramid.build(field, "gyre.zarr", progress=False)
+    >>> flowtex.pyramid.verify("gyre.zarr", progress=False)
+    []
+    """
+    levels, found = Levels(store), []
+    about = levels.about
+
+    def look(unit: Part | TileTask) -> None:
+        for _, check in checks_of(levels, unit):
+            try:
+                check()
+            except DamageError as error:
+                found.append(str(error))
+
+    units: list[tuple[Part | TileTask]] = []
+    for level in range(about["depth"] + 1):
+        parts = parts_of(level, levels.shape(level), len(about["times"]))
+        units += [(part,) for part in parts]
+    for level in about["traced"]:
+        (rows, columns), _ = tiles_of(level, levels.shape(level), about)
+        keys = (TileKey(level, row, column) for row in range(rows) for column in range(columns))
+        units += [(TileTask(key, tuple(range(len(about["times"])))),) for key in keys]
+    results = Threads().run(look, units, TILE_BYTES)
+    for error in track(results, len(units), "Verifying", show=progress):
+        if error is not None:
+            raise error
+    return sorted(found)
+
+
+def _prepared(
+    place: str, about: dict[str, Any], source: Source, *, fresh: bool
+) -> tuple[Any, dict[str, Sequence[str]], dict[str, Any], bool]:
+    """Return the group at a place, its arrays, what it tells, and whether it is new."""
     zarr = import_extra("zarr", "store")
-    group = zarr.open_group(store_at(place, read_only=False), mode="a")
-    there = group.attrs.get("flowtex")
+    store = store_at(place, read_only=False)
+    if fresh:
+        _remove(store)
+    there = zarr.open_group(store, mode="a").attrs.get("flowtex")
     if there is None:
-        if any(True for _ in group.members()):
-            msg = f"{place} holds other data; give a place where there is nothing yet"
-            raise PyramidError(msg)
         about = {**about, "ranges": source.ranges or {}}
-        group.attrs.update(attributes_of(about))
     else:
         there = check_about(there, place)
         other = [name for name in IDENTITY if there.get(name) != about[name]]
         if other:
             msg = (
-                f"{place} holds the pyramid of another field ({', '.join(other)} differ); remove "
-                "it, or give another place"
+                f"{place} holds the pyramid of another field ({', '.join(other)} differ); build "
+                "with fresh=True to replace it, or give another place"
             )
             raise PyramidError(msg)
         traced = sorted({*there["traced"], *about["traced"]})
         about = {**there, "traced": traced, "complete": False}
-        group.attrs["flowtex"] = sealed(about)
+    arrays = _describe(store, about)
+    return zarr.open_group(store, mode="r+"), arrays, about, there is None
+
+
+def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
+    """Write what tells of the pyramid and its arrays, and return the axes of these by name.
+
+    All of it follows from ``about``.
+    """
+    zarr = import_extra("zarr", "store")
+    described = zarr.storage.MemoryStore()
+    group = zarr.group(described, zarr_format=3, attributes=attributes_of(about))
+    shape = (about["nodes"][0], about["nodes"][1])
     for level in range(about["depth"] + 1):
-        create_level(group, level, level_shape(source.shape, level), about)
+        create_level(group, level, level_shape(shape, level), about)
     if not about["ranges"]:
         create_samples(group, about)
-    return group, about
+
+    async def copy() -> None:
+        kind = zarr.core.buffer.default_buffer_prototype()
+        # That of the group comes first: by it others know that the place is taken.
+        for name in sorted([name async for name in described.list()], key=lambda n: n.count("/")):
+            await store.set(name, await described.get(name, kind))
+
+    zarr.core.sync.sync(copy())
+    arrays = (array for _, array in group.members(max_depth=None) if isinstance(array, zarr.Array))
+    return {array.path: array.metadata.dimension_names for array in arrays}
+
+
+def _names(store: Any) -> list[str]:
+    """Return the names of what lies at a place."""
+    sync = import_extra("zarr.core.sync", "store").sync
+
+    async def listed() -> list[str]:
+        return [name async for name in store.list_dir("")]
+
+    names: list[str] = sync(listed())
+    return names
+
+
+def _remove(store: Any) -> None:
+    """Remove a pyramid, what was made of a level before that; others know it to the end."""
+    sync = import_extra("zarr.core.sync", "store").sync
+    levels = sorted(filter(str.isdecimal, _names(store)), key=int, reverse=True)
+    for name in (*levels, SAMPLES):
+        sync(store.delete_dir(name))
+    sync(store.delete(DOCUMENT))
 
 
 class _Run:
     """One call of :func:`build`, and what it has made."""
 
-    def __init__(self, place: str, group: Any, about: dict[str, Any], progress: bool) -> None:  # noqa: FBT001
-        self.place, self.group, self.about, self.progress = place, group, about, progress
+    def __init__(
+        self,
+        group: Any,
+        arrays: Mapping[str, Sequence[str]],
+        about: dict[str, Any],
+        lease: Lease,
+        source: str,
+        progress: bool,  # noqa: FBT001
+    ) -> None:
+        self.place, self.group, self.arrays, self.about = lease.place, group, arrays, about
+        self.lease, self.source, self.progress = lease, source, progress
         self.name = uuid.uuid4().hex
         self.made = self.kept = 0
 
     def tell(self, **words: Any) -> None:
-        """Write more of what is told of the pyramid; what workers have opened does not know it.
-
-        Another builder may have begun meanwhile, with more tiles to be traced.
-        """
+        """Write more of what is told of the pyramid; what workers have opened does not know it."""
+        self.lease.check()
         self.about = {**self.about, **words}
-        zarr = import_extra("zarr", "store")
-        there = zarr.open_group(self.group.store, mode="r").attrs["flowtex"]
-        traced = sorted({*there["traced"], *self.about["traced"]})
-        told = {**there, **self.about, "traced": traced}
-        if traced != self.about["traced"]:
-            told["complete"] = there["complete"]
-        self.group.attrs["flowtex"] = sealed(told)
+        self.group.attrs["flowtex"] = sealed(self.about)
         self.name = uuid.uuid4().hex
 
     def there(self, name: str) -> set[tuple[int, ...]]:
@@ -263,6 +397,9 @@ class _Run:
         )
         first, failed, in_a_row = None, 0, 0
         for error in track(results, len(tasks), text, show=self.progress):
+            self.lease.check()
+            if isinstance(error, ChangedError):
+                raise error
             if error is None:
                 in_a_row = 0
                 continue
@@ -278,15 +415,47 @@ class _Run:
             raise PyramidError(msg) from first
 
 
+def _look_through(run: _Run, workers: Threads) -> None:
+    """Remove what is corrupt of what is there, and what lacks a part of it."""
+    units = sorted({unit for name in run.arrays for unit in _begun(run, name)}, key=repr)
+    run.work(workers, mend, units, "Checking what is there", TILE_BYTES, new=False)
+
+
+def _begun(run: _Run, name: str) -> Iterator[Part | TileTask]:
+    """Give the parts, or the tiles at a step, of which an array has an object."""
+    axes, (top, _, kind) = run.arrays[name], name.partition("/")
+    if kind in (TRACES, VALUES, HALOS):
+        # Halos of several steps are one object.
+        each = MOST_HELD if kind == HALOS else 1
+        for step, row, column, *_ in run.there(name):
+            yield TileTask(TileKey(int(top), row, column), (step * each,))
+    elif {"j", "i"} <= {*axes}:
+        for numbers in run.there(name):
+            step, row, column = (numbers if axes[0] == "time" else (0, *numbers))[:3]
+            yield Part(int(top), step, row, column)
+
+
 def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
     """Write level 0; nodes of the first step come first, for they tell which are valid."""
+    there, parts = _parts_there(run, 0), _missing_parts(run, 0, source.shape)
+    if parts and run.about.get("levels_done"):
+        run.tell(levels_done=False)
+    first, later = [p for p in parts if p.step == 0], [p for p in parts if p.step > 0]
+    run.work(workers, make_finest, first, "Level 0", PART_BYTES, source)
+    if not run.source or run.source != run.about["source"]:
+        text = "Comparing with the source"
+        run.work(workers, compare_finest, there, text, PART_BYTES, source, new=False)
+        run.tell(source=run.source)
+    run.work(workers, make_finest, later, "Level 0", PART_BYTES, source)
     if run.about["axes"]:
         _write_axes(run, source)
-    parts = _missing_parts(run, 0, source.shape)
-    for some in ([p for p in parts if p.step == 0], [p for p in parts if p.step > 0]):
-        run.work(workers, make_finest, some, "Level 0", PART_BYTES, source)
+    if source.identity() != run.source:
+        run.tell(source="")
+        msg = f"the source of {run.place} has changed while it was read; build again"
+        raise ChangedError(msg)
+    levels = Levels(run.place)
     if not run.about["ranges"]:
-        ranges = ranges_of(run.group, run.about)
+        ranges = ranges_of(levels.samples(), run.about)
         if not ranges:
             msg = (
                 f"none of the {math.prod(source.shape):,} nodes has data; check the variables that "
@@ -294,6 +463,14 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
             )
             raise FieldError(msg)
         run.tell(ranges=ranges)
+    fingerprint = digest(levels.digests(), words=run.about["times"]).hex()
+    if run.about["fingerprint"] not in ("", fingerprint):
+        msg = (
+            f"{run.place} was built from an earlier state of the field; build with fresh=True to "
+            "replace it"
+        )
+        raise ChangedError(msg)
+    run.tell(fingerprint=fingerprint)
 
 
 def _write_axes(run: _Run, source: Source) -> None:
@@ -304,10 +481,14 @@ def _write_axes(run: _Run, source: Source) -> None:
         run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
 
 
+def _parts_there(run: _Run, level: int) -> list[Part]:
+    return sorted(Part(level, *numbers[:3]) for numbers in run.there(f"{level}/velocity"))
+
+
 def _missing_parts(run: _Run, level: int, shape: tuple[int, int]) -> list[Part]:
-    there = run.there(f"{level}/velocity")
+    there = {*_parts_there(run, level)}
     parts = parts_of(level, shape, len(run.about["times"]))
-    missing = [part for part in parts if (part.step, part.row, part.column, 0) not in there]
+    missing = [part for part in parts if part not in there]
     run.kept += len(parts) - len(missing)
     return missing
 

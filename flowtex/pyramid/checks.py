@@ -14,10 +14,12 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import digest
-from flowtex.pyramid.places import FORMAT, PyramidError
+from flowtex.pyramid.places import FORMAT, DamageError, PyramidError
 from flowtex.textures import TextureSet
 from flowtex.tiles import TileKey
+from flowtex.tiles.pyramid import Nodes, level_shape
 
 __all__ = [
     "check_about",
@@ -25,6 +27,7 @@ __all__ = [
     "identity_of",
     "is_scalar_name",
     "nodes_hash",
+    "part_digest",
     "sealed",
 ]
 
@@ -32,6 +35,8 @@ __all__ = [
 MOST_NODES, MOST_STEPS, MOST_LEVELS, MOST_LETTERS, MOST_SCALARS = 10**7, 10**6, 40, 10_000, 1000
 #: Layers of a tile, and texels along its sides, at most; a root may be long and narrow.
 MOST_LAYERS, MOST_TEXELS = 64, 200_000
+#: Nodes of the coarsest level, which is read whole, at most.
+MOST_ROOT_NODES = 1_000_000
 
 Check = Callable[[Any], bool]
 
@@ -106,7 +111,8 @@ def is_scalar_name(name: str) -> bool:
 _ENDS = _list(_list(_number, 2), 2)
 #: What is to be found of what is told of a pyramid; more may be told.
 _ABOUT: dict[str, Check] = {
-    **dict.fromkeys(("name", "length_unit", "time_unit", "fingerprint", "version"), _text),
+    **dict.fromkeys(("name", "length_unit", "time_unit", "version"), _text),
+    **dict.fromkeys(("fingerprint", "source"), _text),
     **dict.fromkeys(("axes", "late", "has_position"), _flag),
     "levels_done": _or_none(_flag),
     "nodes": _list(_whole(2, MOST_NODES), 2),
@@ -154,10 +160,12 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
         )
         raise PyramidError(msg)
     wrong = [name for name, check in _ABOUT.items() if not check(about.get(name))]
+    if not wrong and math.prod(level_shape(about["nodes"], about["depth"])) > MOST_ROOT_NODES:
+        wrong = ["depth"]
     if wrong or about.get("seal") != _seal(about):
         what = f" ({', '.join(wrong)})" if wrong else ""
         msg = f"what {place} tells of itself is damaged{what}; build it anew"
-        raise PyramidError(msg)
+        raise DamageError(msg)
     result: dict[str, Any] = about
     return result
 
@@ -174,6 +182,18 @@ def nodes_hash(textures: TextureSet, step: int) -> str:
     values = [steps[step] for _, steps in sorted(field.scalars.items()) if step < len(steps)]
     nodal = (field.points, field.valid, field.velocity[step], *values)
     return digest(*(np.asarray(some)[drawn] for some in nodal)).hex()
+
+
+def part_digest(nodes: Nodes, about: Mapping[str, Any], step: int) -> bytes:
+    """Return a hash of a part of a level, of its values as they are written."""
+    scalars = {k: v for k, v in sorted(nodes.scalars.items()) if step < about["scalars"][k]}
+    values = [nodes.velocity[..., : about["components"]], *scalars.values()]
+    arrays: list[AnyArray] = [np.asarray(some, np.float32) for some in values]
+    if step == 0:
+        arrays += [nodes.points, nodes.valid]
+        if nodes.has_position is not None:
+            arrays.append(nodes.has_position)
+    return digest(*arrays, words=scalars)
 
 
 def check_header(header: Any, identity: Mapping[str, Any]) -> dict[str, Any]:

@@ -12,6 +12,7 @@
         values             (time, tile row, tile column, scalar, Y, X), single precision
         surface            (tile row, tile column, byte), below the root
         halos              (time, tile row, tile column, 2) of a series; see tasks.py
+        digests            (time, part row, part column, byte), of the values of each part
     samples                of the values at level 0; see samples.py
 
 The root is one tile, traced whole. Velocities and scalars are float32, positions float64. Values
@@ -23,16 +24,16 @@ destination time, and each layer a chunk. Layer 0 tells about the tile: a JSON t
 followed by zeros. The layers of :class:`~flowtex.textures.TextureSet` follow. A chunk of values is
 one scalar of a tile at one time, and an object of its own, so that a browser takes what it shows
 with one request. A surface is a file of parts as clients are handed them, followed by zeros. All is
-packed by gzip, which browsers undo themselves, and has check sums.
+packed by gzip, which browsers undo themselves, and has check sums. A part is a shard of the arrays
+over nodes; a hash of all digests of level 0 tells which field it is.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from datetime import datetime
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -49,6 +50,7 @@ from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS
 from flowtex.tiles.pyramid import root_level
 
 __all__ = [
+    "DIGESTS",
     "HALOS",
     "MOST_HELD",
     "SURFACE",
@@ -81,6 +83,7 @@ MOST_HELD = 8
 #: How hard is tried to pack; more takes longer and gains little.
 GZIP_LEVEL = 1
 TRACES, HALOS, VALUES, SURFACE = "traces", "halos", "values", "surface"
+DIGESTS, DIGEST_BYTES = "digests", 16
 #: Bytes of a surface for each node: its place, whether a cell is drawn, and a normal where it is
 #: curved; and for what is told of it.
 PLACE_BYTES, NORMAL_BYTES, TOLD_BYTES = 13, 6, 16_384
@@ -97,8 +100,7 @@ CONVENTION = {
 }
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(NamedTuple):
     """One shard of the arrays over nodes of a level, at one time step."""
 
     level: int
@@ -180,7 +182,8 @@ def about_source(source: Source, parameter: str, lines: str, levels: str) -> dic
         "scalars": dict(source.scalars),
         "units": dict(field.units),
         "long_names": dict(field.long_names),
-        "fingerprint": source.fingerprint(),
+        "fingerprint": "",
+        "source": source.identity(),
     }
 
 
@@ -198,7 +201,7 @@ def attributes_of(about: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[str, Any]) -> None:
-    """Make the empty arrays of a level."""
+    """Describe the arrays of a level."""
     here = group.require_group(str(level))
     steps, components = len(about["times"]), about["components"]
     chunk = (TILE_CELLS, TILE_CELLS)
@@ -227,6 +230,15 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
             create_array(here, name, (count,), (count,), None, "float64", [axis])
     else:
         nodal(here, "points", 0, (components,), "float64")
+    create_array(
+        here,
+        DIGESTS,
+        (steps, *parts_along(shape), DIGEST_BYTES),
+        (1, 1, 1, DIGEST_BYTES),
+        None,
+        "uint8",
+        ["time", "row", "column", "byte"],
+    )
     for name, count in about["scalars"].items():
         nodal(here.require_group("scalars"), name, count, (), "float32")
     if level in about["traced"]:
@@ -254,7 +266,7 @@ def _create_client_arrays(
     tiles: tuple[int, int],
     about: Mapping[str, Any],
 ) -> None:
-    """Make the empty arrays of a level that a browser needs beside the traces."""
+    """Describe the arrays of a level that a browser needs beside the traces."""
     is_root = level == about["depth"]
     nodes = shape if is_root else (TILE_CELLS + 1, TILE_CELLS + 1)
     create_array(
@@ -287,10 +299,8 @@ def create_array(
     kind: str,
     names: list[str],
 ) -> None:
-    """Make an array, where it is not there yet."""
+    """Describe an array."""
     codecs = import_extra("zarr.codecs", "store")
-    if name in where:
-        return
     where.create_array(
         name,
         shape=shape,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import threading
 from collections.abc import Callable, Coroutine
 from pathlib import Path
@@ -13,20 +14,27 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex._util.blocks import even_runs
 from flowtex._util.extras import import_extra
+from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
 from flowtex.field.steps import LazySteps
-from flowtex.pyramid.checks import check_about, check_header, identity_of
+from flowtex.pyramid.checks import check_about, check_header, identity_of, part_digest
 from flowtex.pyramid.layout import (
+    DIGESTS,
     HALOS,
     MOST_HELD,
+    SURFACE,
     TRACES,
+    VALUES,
+    Part,
     create_level,
     has_halos,
     read_header,
+    value_names,
 )
-from flowtex.pyramid.places import PyramidError, ReadFault, place_text, store_at
+from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at
+from flowtex.pyramid.samples import SAMPLES, create_samples
 from flowtex.tiles import TileKey
-from flowtex.tiles.pyramid import Nodes, level_lines
+from flowtex.tiles.pyramid import Nodes, level_shape
 
 __all__ = ["Levels", "StoredTile"]
 
@@ -39,12 +47,13 @@ MOST_LETTERS = 300
 
 #: Blocks that are read one after the other; more of them are read as single lines.
 MOST_RUNS = 9
-#: Bytes of a velocity, and those of steps that are held; of a longer series each is read late.
-NODE_BYTES, KEPT_BYTES = 24, 64_000_000
+#: Bytes of a number at most, of a velocity, and of steps that are held; those of a longer series
+#: are read late.
+NUMBER_BYTES, NODE_BYTES, KEPT_BYTES = 8, 24, 64_000_000
 
 
-class _Part(NamedTuple):
-    """A part of an array: what an index takes, and of that some rows and columns."""
+class _Piece(NamedTuple):
+    """A piece of an array: what an index takes, and of that some rows and columns."""
 
     array: str
     selection: Any
@@ -102,28 +111,98 @@ class Levels:
         #: What is told of the field and its pyramid.
         self.about = check_about(about, self.place)
         self._arrays: dict[str, Any] = {}
-        self._expected: dict[int, Any] = {}
+        self._expected: dict[str, Any] = {}
         self._lock = threading.Lock()
 
     def _format(self, name: str) -> dict[str, Any]:
         """Return what an array has to be like: as one that is made for the same pyramid."""
-        zarr, level = import_extra("zarr", "store"), int(name.partition("/")[0])
+        zarr, top = import_extra("zarr", "store"), name.partition("/")[0]
         with self._lock:
-            if level not in self._expected:
+            if top not in self._expected:
                 group = zarr.group(store=zarr.storage.MemoryStore())
-                rows, columns = (len(level_lines(n, level)) for n in self.about["nodes"])
-                create_level(group, level, (rows, columns), self.about)
-                self._expected[level] = group
-            group = self._expected[level]
-            if name.partition("/")[2] not in group[str(level)]:
+                if top == SAMPLES:
+                    create_samples(group, self.about)
+                else:
+                    create_level(group, int(top), self.shape(int(top)), self.about)
+                self._expected[top] = group
+            group = self._expected[top]
+            if name not in group:
                 msg = f"{self.place} has no {name}; build it again"
                 raise PyramidError(msg)
             return _format_of(group[name])
 
+    def shape(self, level: int) -> tuple[int, int]:
+        """Return the number of nodes (J, I) of a level."""
+        return level_shape((self.about["nodes"][0], self.about["nodes"][1]), level)
+
+    def digests(self, level: int = 0) -> AnyArray:
+        """Return the digests of the parts of a level, (time, part row, part column, 16)."""
+        (digests,) = self._read(_Piece(f"{level}/{DIGESTS}", (), f"{level}/{DIGESTS}"))
+        return digests
+
+    def digest(self, part: Part) -> bytes:
+        """Return the digest of a part."""
+        level, *at = part
+        (told,) = self._read(_Piece(f"{level}/{DIGESTS}", tuple(at), f"{level}/{DIGESTS}"))
+        return told.tobytes()
+
+    def samples(self) -> AnyArray:
+        """Return the samples of the values at level 0."""
+        (samples,) = self._read(_Piece(SAMPLES, (), SAMPLES))
+        return samples
+
+    def valid(self, level: int, rows: Indices, columns: Indices) -> Bools:
+        """Return which nodes are valid, (J, I)."""
+        (valid,) = self._read(self._nodal(level, "valid", rows, columns))
+        return valid.astype(bool)
+
+    def check_part(self, part: Part) -> None:
+        """Raise a DamageError where some of a part is missing, or is not what was written."""
+        level, step, *at = part
+        rows, columns = (np.arange(s.start, s.stop) for s in part.lines(self.shape(level)))
+        scalars = [name for name, count in self.about["scalars"].items() if step < count]
+        series = ["velocity", *(f"scalars/{name}" for name in scalars)]
+        ground = [*self._places(), "valid", *["has_position"] * self.about["has_position"]]
+        pieces = [_Piece(f"{level}/{DIGESTS}", (step, *at), DIGESTS)]
+        pieces += [self._nodal(level, name, rows, columns, step) for name in series]
+        if step == 0:
+            pieces += [self._nodal(level, name, rows, columns) for name in ground]
+        words = f"of level {level} at step {step}, part {tuple(at)},"
+        told, velocity, *rest = self._read(
+            *(piece._replace(name=f"{piece.name} {words}") for piece in pieces)
+        )
+        known = dict(zip(ground, rest[len(scalars) :], strict=step == 0))
+        nodes = Nodes(
+            self._points([known[k] for k in self._places()], rows, columns) if known else velocity,
+            known.get("valid", velocity).astype(bool),
+            velocity,
+            known["has_position"].astype(bool) if "has_position" in known else None,
+            dict(zip(scalars, rest[: len(scalars)], strict=True)),
+        )
+        if part_digest(nodes, self.about, step) != told.tobytes():
+            msg = f"velocity {words} of {self.place} is not what was written there"
+            raise DamageError(msg)
+
+    def check_tile(self, key: TileKey, step: int) -> None:
+        """Raise a DamageError where some of a tile is missing or corrupt."""
+        name, (level, *at) = f"of tile {tuple(key)} at step {step}", key
+        pieces = []
+        if not self.tile(key, step).about["empty"]:
+            counts = self.about["scalars"]
+            for number, scalar in enumerate(value_names(self.about)):
+                if step < counts.get(scalar, step + 1):
+                    where = (step, *at, number)
+                    pieces.append(_Piece(f"{level}/{VALUES}", where, f"{scalar} {name}"))
+        if step == 0 and level < self.about["depth"]:
+            pieces.append(_Piece(f"{level}/{SURFACE}", tuple(at), f"surface {name}"))
+        if has_halos(self.about, level):
+            pieces.append(_Piece(f"{level}/{HALOS}", (step, *at), f"halos {name}"))
+        self._read(*pieces)
+
     def positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         """Return where nodes are, (J, I, 3), and which of them are valid, (J, I)."""
         names = [*self._places(), "valid"]
-        *places, valid = self._read(*(self._part(level, n, rows, columns) for n in names))
+        *places, valid = self._read(*(self._nodal(level, n, rows, columns) for n in names))
         return self._points(places, rows, columns), valid.astype(bool)
 
     def nodes(
@@ -141,10 +220,10 @@ class Levels:
             for name, count in series.items()
             if count > 1 and (about["late"] or count * nbytes > KEPT_BYTES)
         }
-        parts = [self._part(level, name, rows, columns) for name in names]
+        parts = [self._nodal(level, name, rows, columns) for name in names]
         for name, count in series.items():
             if name not in late:
-                parts += [self._part(level, name, rows, columns, step) for step in range(count)]
+                parts += [self._nodal(level, name, rows, columns, step) for step in range(count)]
         values = iter(self._read(*parts))
         known = {name: next(values) for name in names}
         steps: dict[str, Any] = {}
@@ -171,14 +250,14 @@ class Levels:
         """Return what reads a step of an array when it is asked for."""
 
         def read(step: int) -> AnyArray:
-            (values,) = self._read(self._part(level, name, rows, columns, step))
+            (values,) = self._read(self._nodal(level, name, rows, columns, step))
             return _in_space(values) if name == "velocity" else values
 
         return read
 
     def velocity(self, level: int, step: int, rows: Indices, columns: Indices) -> Floats:
         """Return the velocity of some lines of a level at a time step, (J, I, C)."""
-        (values,) = self._read(self._part(level, "velocity", rows, columns, step))
+        (values,) = self._read(self._nodal(level, "velocity", rows, columns, step))
         return values
 
     def tile(self, key: TileKey, step: int) -> StoredTile:
@@ -191,12 +270,12 @@ class Levels:
         """
         array = f"{key.level}/{TRACES}"
         name = f"tile {tuple(key)} at step {step}"
-        (texels,) = self._read(_Part(array, (step, key.row, key.column), name))
+        (texels,) = self._read(_Piece(array, (step, key.row, key.column), name))
         try:
             header = read_header(texels[0])
             if header is None:
                 msg = f"{name} is missing in {self.place}; build it again"
-                raise PyramidError(msg)
+                raise DamageError(msg)
             about = check_header(header, identity_of(self.about, key, step))
         except PyramidError:
             raise
@@ -210,7 +289,7 @@ class Levels:
             return 0
         array, at = f"{key.level}/{HALOS}", (slice(MOST_HELD), key.row, key.column, 1)
         try:
-            (told,) = self._read(_Part(array, at, array))
+            (told,) = self._read(_Piece(array, at, array))
         except PyramidError:  # no step of it was made
             return 0
         return int(told[np.argmax(told > 0)])
@@ -225,19 +304,26 @@ class Levels:
         grid = np.broadcast_arrays(x[columns], y[rows][:, None], self.about["height"])
         return np.stack(grid, axis=-1)
 
-    def _part(
+    def _nodal(
         self, level: int, name: str, rows: Indices, columns: Indices, step: int | None = None
-    ) -> _Part:
+    ) -> _Piece:
         """Return which part of an array over the nodes some rows and columns are."""
         before = () if step is None else (step,)
         whole = f"{level}/{name}"
         if name in ("x", "y"):
-            return _Part(whole, slice(None), whole)
-        return _Part(whole, before, whole, (rows, columns))
+            return _Piece(whole, slice(None), whole)
+        return _Piece(whole, before, whole, (rows, columns))
 
-    def _read(self, *parts: _Part) -> list[AnyArray]:
+    def _read(self, *parts: _Piece) -> list[AnyArray]:
         """Read parts of arrays, all at once."""
         formats = [self._format(part.array) for part in parts]
+        need, free = sum(map(_size, parts, formats)), available_bytes()
+        if need > free:
+            msg = (
+                f"{parts[0].name} of {self.place} takes {need:,} bytes, and {free:,} bytes of "
+                "memory are available"
+            )
+            raise PyramidError(msg)
 
         async def together() -> list[AnyArray]:
             return await asyncio.gather(*map(self._values, parts, formats))
@@ -245,7 +331,7 @@ class Levels:
         values: list[AnyArray] = _wait(together())
         return values
 
-    async def _values(self, part: _Part, expected: dict[str, Any]) -> AnyArray:
+    async def _values(self, part: _Piece, expected: dict[str, Any]) -> AnyArray:
         try:
             array = await self._opened(part.array, expected)
             if part.lines is None:
@@ -268,12 +354,28 @@ class Levels:
             array = await open_array(store=self._objects, path=name, zarr_format=3, mode="r")
             if _format_of(array) != expected:
                 msg = f"{name} of {self.place} is not as it was written; build the store anew"
-                raise PyramidError(msg)
-            self._arrays[name] = array
+                raise DamageError(msg)
+            from flowtex.pyramid.objects import bounded
+
+            self._arrays[name] = bounded(array)
         return self._arrays[name]
 
     def _error(self, name: str, error: Exception) -> PyramidError:
-        return PyramidError(f"{name} of {self.place} cannot be read: {_words(error)}")
+        unread = isinstance(error, MemoryError) or (
+            isinstance(error, ReadFault) and not error.missing
+        )
+        kind = PyramidError if unread else DamageError
+        return kind(f"{name} of {self.place} cannot be read: {_words(error)}")
+
+
+def _size(part: _Piece, expected: dict[str, Any]) -> int:
+    """Return the bytes that a piece of an array takes in memory."""
+    shape, chosen = expected["shape"], part.selection
+    if part.lines is not None:
+        shape = (*map(len, part.lines), *shape[len(chosen) + 2 :])
+    elif isinstance(chosen, tuple):
+        shape = shape[len(chosen) :]
+    return int(math.prod(shape)) * NUMBER_BYTES
 
 
 async def _lines(array: Any, before: tuple[int, ...], rows: Indices, columns: Indices) -> AnyArray:
@@ -298,7 +400,7 @@ def _in_space(values: Floats, height: float = 0.0) -> Floats:
 def _words(error: Exception) -> str:
     text = str(error)
     if "checksum" in text:
-        return "its check sum is another one: it came to harm"
+        return "checksum mismatch, the object is corrupt"
     known = isinstance(error, (ReadFault, PyramidError))
     return text if known else f"{type(error).__name__}: {text}"[:MOST_LETTERS]
 

@@ -8,17 +8,21 @@ the nodes, are kept as they came.
 from __future__ import annotations
 
 import asyncio
+import math
 import re
 import weakref
-from dataclasses import dataclass
+import zlib
+from dataclasses import dataclass, replace
 from typing import Any
 
+from zarr import AsyncArray
+from zarr.codecs import GzipCodec, ShardingCodec
 from zarr.storage import WrapperStore
 
 from flowtex._util.cache import ByteCache
 from flowtex.pyramid.places import MOST_REPEATS, ReadFault, fault_words, is_refused
 
-__all__ = ["Objects"]
+__all__ = ["Objects", "bounded"]
 
 #: Objects, or parts of them, that are on their way at once from one store.
 MOST_READS = 16
@@ -27,6 +31,8 @@ CACHE_BYTES = 200_000_000
 #: Traces of a tile are read once: whoever draws keeps them.
 _TRACES = re.compile(r"^\d+/traces/c/")
 _CHUNK = re.compile(r"/c(/\d+)+$")
+#: The window of zlib for data with the header and the check sum of gzip.
+_GZIP_WINDOW = 31
 
 
 @dataclass(frozen=True)
@@ -76,5 +82,33 @@ class Objects(WrapperStore[Any]):
                     raise ReadFault(msg) from None
         if result is None and _CHUNK.search(key):
             msg = f"{key} is missing"
-            raise ReadFault(msg)
+            raise ReadFault(msg, missing=True)
         return result
+
+
+class _BoundedGzip(GzipCodec):
+    """gzip that unpacks as many bytes as a chunk has, and no more."""
+
+    def _decode_sync(self, chunk_bytes: Any, chunk_spec: Any) -> Any:
+        size = math.prod(chunk_spec.shape) * chunk_spec.dtype.to_native_dtype().itemsize
+        unpacking = zlib.decompressobj(_GZIP_WINDOW)
+        data = unpacking.decompress(chunk_bytes.to_bytes(), size + 1)
+        if len(data) != size or not unpacking.eof:
+            msg = f"a chunk does not unpack to the {size:,} bytes that its array declares"
+            raise ValueError(msg)
+        return chunk_spec.prototype.buffer.from_bytes(data)
+
+    async def _decode_single(self, chunk_bytes: Any, chunk_spec: Any) -> Any:
+        return await asyncio.to_thread(self._decode_sync, chunk_bytes, chunk_spec)
+
+
+def bounded(array: Any) -> Any:
+    """Return an array of Zarr's whose chunks take no more memory than the array declares."""
+
+    def of(codec: Any) -> Any:
+        if isinstance(codec, ShardingCodec):
+            return replace(codec, codecs=tuple(map(of, codec.codecs)))
+        return _BoundedGzip(level=codec.level) if isinstance(codec, GzipCodec) else codec
+
+    metadata = replace(array.metadata, codecs=tuple(map(of, array.metadata.codecs)))
+    return AsyncArray(metadata, array.store_path, array.config)

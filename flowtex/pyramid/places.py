@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
@@ -20,9 +20,14 @@ from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
 __all__ = [
+    "DOCUMENT",
     "FORMAT",
+    "LEASE",
+    "ChangedError",
+    "DamageError",
     "PyramidError",
     "ReadFault",
+    "check_room",
     "fault_words",
     "is_refused",
     "is_remote",
@@ -34,7 +39,10 @@ __all__ = [
 ]
 
 #: Written into every store; a reader refuses what it does not know.
-FORMAT = "flowtex-pyramid-2"
+FORMAT = "flowtex-pyramid-3"
+#: The object of a store that tells who builds it.
+LEASE = "building.json"
+DOCUMENT = "zarr.json"
 #: A URL, or one of which ``pathlib`` has made a path, on Windows with its slashes turned; those of
 #: files are paths. One letter is a drive.
 _URL = re.compile(r"^(?!file:)([A-Za-z][A-Za-z0-9+.-]+):[/\\]{1,2}(?=[^/\\])")
@@ -44,6 +52,8 @@ _SCHEMES = ("s3", "s3a", "gs", *_AZURE, *_WEB)
 #: Seconds after which a server that says nothing is given up, and a connection that is not made;
 #: and how often it is asked again.
 SILENCE_S, CONNECT_S, MOST_REPEATS, FIRST_PAUSE_S = 10.0, 5.0, 2, 0.2
+#: Names of other data that a message lists.
+MOST_NAMES = 5
 #: Seconds that one object may take on its way.
 LONGEST_S = 300.0
 
@@ -65,8 +75,20 @@ class PyramidError(FieldError):
     """
 
 
+class DamageError(PyramidError):
+    """Some of a store is missing or corrupt, and is made again by a build."""
+
+
+class ChangedError(PyramidError):
+    """A store was built from other values than its source has now."""
+
+
 class ReadFault(OSError):
-    """An object that is not there, or did not come; the text has no secret in it."""
+    """An object that is ``missing``, or did not come; the text has no secret in it."""
+
+    def __init__(self, text: str, *, missing: bool = False) -> None:
+        super().__init__(text)
+        self.missing = missing
 
 
 def place_text(place: str | Path) -> str:
@@ -165,12 +187,10 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Any:
 def is_store(place: Any) -> bool:
     """Whether there is a pyramid at a place; without Zarr for a local one.
 
-    All that is read from a URL is a pyramid.
-
     Raises
     ------
     PyramidError
-        When it is a URL of another kind, or has credentials with it.
+        When it is a URL of another kind, has credentials with it, or does not answer.
 
     Examples
     --------
@@ -181,18 +201,51 @@ def is_store(place: Any) -> bool:
     if not isinstance(place, (str, Path)):
         return False
     text = place_text(place)
-    if is_remote(text):
-        return True
     try:
-        about = json.loads((Path(text) / "zarr.json").read_text(encoding="utf-8"))
-        return "flowtex" in about["attributes"]
-    except (OSError, ValueError, KeyError, TypeError):
+        read = _remote_document if is_remote(text) else _local_document
+        return "flowtex" in json.loads(read(text))["attributes"]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        if isinstance(error, PyramidError):
+            raise
         return False
+
+
+def _local_document(text: str) -> bytes:
+    return (Path(text) / DOCUMENT).read_bytes()
+
+
+def _remote_document(text: str) -> bytes:
+    """Return what tells of a Zarr group at a URL; empty where there is none."""
+    obstore = import_extra("obstore", "store")
+    try:
+        return bytes(obstore.get(objects_at(text), DOCUMENT).bytes())
+    except Exception as error:
+        # What OPeNDAP and other services answer to a name that they do not know.
+        if isinstance(error, FileNotFoundError) or "status code: 400" in str(error):
+            return b""
+        msg = f"{text}/{DOCUMENT} {fault_words(error)}"
+        raise PyramidError(msg) from None
+
+
+def check_room(place: str, names: Iterable[str]) -> None:
+    """Raise a PyramidError where a build would write among other data, whose names these are."""
+    if not is_remote(place) and Path(place).is_file():
+        msg = f"{place} is a file; expected a new folder, an empty one, or a store of flowtex"
+        raise PyramidError(msg)
+    others = sorted({*names} - {LEASE, DOCUMENT})
+    if others and not is_store(place):
+        some = ", ".join(others[:MOST_NAMES]) + (", …" if len(others) > MOST_NAMES else "")
+        msg = (
+            f"{place} holds other data ({some}); expected a new folder, an empty one, or a store "
+            "of flowtex"
+        )
+        raise PyramidError(msg)
 
 
 def is_refused(error: Exception) -> bool:
     """Whether a store has refused what was asked for, as private ones do for what is missing."""
-    return type(error).__name__ in ("PermissionDeniedError", "UnauthenticatedError")
+    refused = type(error).__name__ in ("PermissionDeniedError", "UnauthenticatedError")
+    return refused or re.search(r"status code: 40[13]", str(error)) is not None
 
 
 def fault_words(error: Exception) -> str:

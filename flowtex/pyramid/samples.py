@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
-from flowtex.field.datasets.regions import RegionNodes
+from flowtex._util.array_types import AnyArray, Floats
 from flowtex.pyramid.layout import (
     SHARD_CHUNKS,
     TILE_CELLS,
@@ -24,8 +23,9 @@ from flowtex.pyramid.layout import (
     to_write,
 )
 from flowtex.tiles import ends_of
+from flowtex.tiles.pyramid import Nodes
 
-__all__ = ["create_samples", "ranges_of", "write_samples"]
+__all__ = ["SAMPLES", "create_samples", "ranges_of", "write_samples"]
 
 SAMPLES = "samples"
 #: Nodes of a sample of one quantity at one time.
@@ -33,7 +33,7 @@ MOST_SAMPLES = 1 << 20
 
 
 def create_samples(group: Any, about: Mapping[str, Any]) -> None:
-    """Make the empty array of samples."""
+    """Describe the array of samples."""
     parts = parts_along((about["nodes"][0], about["nodes"][1]))
     size = (len(_quantities(about)), 2 + math.prod(_shape(about)))
     create_array(
@@ -47,7 +47,7 @@ def create_samples(group: Any, about: Mapping[str, Any]) -> None:
     )
 
 
-def write_samples(group: Any, about: Mapping[str, Any], part: Part, nodes: RegionNodes) -> None:
+def write_samples(group: Any, about: Mapping[str, Any], part: Part, nodes: Nodes) -> None:
     """Tell the values of a part of level 0, where its step is one that ranges are taken from."""
     if part.step not in _steps(about):
         return
@@ -64,11 +64,11 @@ def write_samples(group: Any, about: Mapping[str, Any], part: Part, nodes: Regio
     to_write(group, SAMPLES)[_steps(about).index(part.step), part.row, part.column] = result
 
 
-def ranges_of(group: Any, about: Mapping[str, Any]) -> dict[str, list[tuple[float, float]]]:
+def ranges_of(samples: AnyArray, about: Mapping[str, Any]) -> dict[str, list[tuple[float, float]]]:
     """Return the ends of scalars and of the speed, the whole range and the robust one."""
     ranges = {}
     for number, name in enumerate(_quantities(about)):
-        values = np.asarray(group[SAMPLES][:, :, :, number])
+        values = samples[:, :, :, number]
         whole = ends_of(values[..., :2], robust=False)
         robust = ends_of(values[..., 2:], robust=True)
         if whole is not None:

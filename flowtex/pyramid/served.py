@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import re
 import secrets
 import threading
 from collections import OrderedDict
@@ -35,6 +36,8 @@ MADE_BYTES, NODE_BYTES, MOST_TILES = 1_000_000_000, 200_000_000, 16
 #: Tiles that are made at once, and objects of the store that are read.
 MOST_THREADS, MOST_READS = 4, 32
 METADATA = "zarr.json"
+#: Numbers of objects as Zarr writes them.
+_NUMBER = re.compile(r"0|[1-9][0-9]{0,8}")
 
 
 class Piece(NamedTuple):
@@ -100,8 +103,9 @@ class ServedStore:
         )
         for level in range(depth + 1):
             create_level(self._group, level, self._pyramid.shape(level), self.about)
-        self._axes: dict[str, int] = {
-            name: len(array.shape)
+        #: How many objects each array has along its axes.
+        self._counts: dict[str, tuple[int, ...]] = {
+            name: tuple(map(_quotient, array.shape, array.shards or array.chunks))
             for name, array in self._group.members(max_depth=None)
             if isinstance(array, zarr.Array)
         }
@@ -150,7 +154,6 @@ class ServedStore:
             # A tile that was lost is made again.
         step, row, column = (0, *numbers[:2]) if kind == SURFACE else numbers[:3]
         key, path = TileKey(int(level), row, column), self._folder / name
-        self._check(key, step)
         # It may be dropped again before it is read.
         for _ in range(3):
             if not path.is_file():
@@ -165,19 +168,15 @@ class ServedStore:
         raise LookupError(name)
 
     def _find(self, name: str) -> tuple[str, list[int]]:
-        """Return the array and the numbers of a chunk; names lead nowhere else."""
+        """Return the array and the numbers of an object that it has; names lead nowhere else."""
         array, _, rest = name.partition("/c/")
-        numbers = rest.split("/")
-        if len(numbers) != self._axes.get(array) or not all(
-            number.isascii() and number.isdecimal() and len(number) < 10 for number in numbers
-        ):
+        words, counts = rest.split("/"), self._counts.get(array, ())
+        if len(words) != len(counts) or not all(map(_NUMBER.fullmatch, words)):
             raise LookupError(name)
-        return array, [int(number) for number in numbers]
-
-    def _check(self, key: TileKey, step: int) -> None:
-        rows, columns = self._group[f"{key.level}/{TRACES}"].shape[1:3]
-        if step >= len(self.about["times"]) or key.row >= rows or key.column >= columns:
-            raise LookupError(key)
+        numbers = [int(word) for word in words]
+        if not all(number < count for number, count in zip(numbers, counts, strict=True)):
+            raise LookupError(name)
+        return array, numbers
 
     async def _read(self, name: str, asked: slice) -> Piece:
         """Read an object of the store; ``FileNotFoundError`` is for one that is missing."""
@@ -268,6 +267,11 @@ class ServedStore:
             while sum(self._sizes.values()) > MADE_BYTES and len(self._sizes) > len(made):
                 name, _ = self._sizes.popitem(last=False)
                 (self._folder / name).unlink(missing_ok=True)
+
+
+def _quotient(size: int, part: int) -> int:
+    """Return how many parts of some size a whole has."""
+    return -(-size // part)
 
 
 def _bounds(asked: slice, size: int) -> tuple[int, int]:

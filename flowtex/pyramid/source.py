@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from flowtex._util.cache import digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.datasets.detect import is_dataset
+from flowtex.field.datasets.files import dataset_paths
 from flowtex.field.datasets.regions import RegionNodes, Regions
 from flowtex.field.io.constructors import FieldConstructors
 from flowtex.field.steps import LazySteps
@@ -23,9 +25,6 @@ from flowtex.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
 
 __all__ = ["Source", "source_of"]
-
-#: Rows and columns by which a dataset is known again, and steps of what is read when needed.
-KNOWN_BY, KNOWN_STEPS = 16, 3
 
 
 class Source(ABC):
@@ -65,9 +64,9 @@ class Source(ABC):
     def chosen_lines(self, lines: str) -> str:
         """Return what the textures are drawn along, as :func:`flowtex.trace.chosen_lines` does."""
 
-    @abstractmethod
-    def fingerprint(self) -> str:
-        """Return a hash by which the source is known again."""
+    def identity(self) -> str:
+        """Return a hash that changes when the source may have; empty where its values tell."""
+        return ""
 
     @property
     def rectilinear(self) -> bool:
@@ -132,16 +131,6 @@ class FieldSource(Source):
         """Return what the textures are drawn along."""
         return chosen_lines(self.field, lines)
 
-    def fingerprint(self) -> str:
-        """Return a hash of the nodes and steps, of those that are read when needed a few."""
-        field = self.field
-        values = [
-            np.asarray(some[step])
-            for some in (field.velocity, *field.scalars.values())
-            for step in (_few(len(some)) if isinstance(some, LazySteps) else range(len(some)))
-        ]
-        return digest(field.points, field.valid, field.times, *values, words=field.scalars).hex()
-
     @property
     def rectilinear(self) -> bool:
         """Whether two lines of coordinates give all positions."""
@@ -172,9 +161,17 @@ class FieldSource(Source):
 
 
 class RegionSource(Source):
-    """A dataset of which each task reads a region, wherever it runs."""
+    """A dataset of which each task reads a region, wherever it runs.
+
+    Attributes
+    ----------
+    files, choice
+        What it was opened from, and what was chosen of it; empty for a dataset that was given.
+    """
 
     travels = True
+    files: Sequence[Path] = ()
+    choice: str = ""
 
     def __init__(self, regions: Regions) -> None:
         words, lines = regions.words, regions.lines
@@ -225,21 +222,17 @@ class RegionSource(Source):
         )
         return chosen_lines(some, lines)
 
-    def fingerprint(self) -> str:
-        """Return a hash of the lines and of a few nodes at a few steps."""
-        lines, times = self.regions.lines, self.field.times
-        few = [np.unique(np.linspace(0, n - 1, KNOWN_BY).astype(int)) for n in self.shape]
-        values = []
-        for step in _few(len(times)):
-            nodes = self.regions.nodes(step, few[0], few[1])
-            values += [nodes.velocity, *nodes.scalars.values()]
-        name = "" if lines.projection is None else lines.projection.name
-        return digest(lines.shown, lines.b, times, *values, words=(name, *self.scalars)).hex()
+    def identity(self) -> str:
+        """Return a hash of the paths, sizes and times of change of the files."""
+        known = [(str(path), info.st_size, info.st_mtime_ns) for path, info in self._members()]
+        return digest(words=(*known, self.choice)).hex() if known else ""
 
-
-def _few(steps: int) -> list[int]:
-    """Return the first step, the last, and some between."""
-    return sorted({*np.linspace(0, steps - 1, KNOWN_STEPS).astype(int).tolist()})
+    def _members(self) -> Iterator[tuple[Path, os.stat_result]]:
+        """Give the files that the dataset was opened from, also those of folders."""
+        for path in self.files:
+            inside = (p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
+            for one in sorted(inside):
+                yield one.resolve(), one.stat()
 
 
 class _Opened(FieldConstructors):
@@ -269,4 +262,6 @@ def source_of(given: Any, **options: Any) -> Source:
     else:
         one: str | Path | Sequence[str | Path] = given
         made = _Opened.from_file(one, **options)
+        if isinstance(made, RegionSource):
+            made.files, made.choice = dataset_paths(one), repr(sorted(options.items()))
     return made if isinstance(made, Source) else FieldSource(made)

@@ -11,18 +11,29 @@ task had.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import Indices
-from flowtex.pyramid.checks import identity_of, nodes_hash
+from flowtex.pyramid.checks import identity_of, nodes_hash, part_digest
 from flowtex.pyramid.client_parts import write_surface, write_values
-from flowtex.pyramid.layout import HALOS, TRACES, Part, has_halos, shard_texels, to_write
+from flowtex.pyramid.layout import (
+    DIGESTS,
+    HALOS,
+    MOST_HELD,
+    TRACES,
+    VALUES,
+    Part,
+    has_halos,
+    shard_texels,
+    to_write,
+    value_names,
+)
 from flowtex.pyramid.levels import Levels
-from flowtex.pyramid.places import store_at
+from flowtex.pyramid.places import ChangedError, DamageError, store_at
 from flowtex.pyramid.samples import write_samples
 from flowtex.pyramid.source import Source
 from flowtex.pyramid.stored import StoredPyramid, root_of
@@ -34,9 +45,12 @@ from flowtex.trace import SliceStore
 
 __all__ = [
     "TileTask",
+    "checks_of",
+    "compare_finest",
     "make_finest",
     "make_part",
     "make_tile",
+    "mend",
     "trace_tile",
     "write_part",
     "write_tile",
@@ -57,15 +71,81 @@ class TileTask(NamedTuple):
 def make_finest(source: Source, place: str, run: str, part: Part) -> None:
     """Make a part of level 0 from what is in the source; that of the first step tells the valid."""
     levels, group = _levels(place, run), _writable(place, run)
-    about = levels.about
+    nodes = _source_nodes(levels, source, part)
+    if not levels.about.get("ranges"):
+        write_samples(group, levels.about, part, nodes)
+    write_part(group, levels.about, part, part.lines(source.shape), nodes)
+
+
+def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
+    """Raise a ChangedError where the source has other values than a part was made of."""
+    levels = _levels(place, run)
+    own = part_digest(_source_nodes(levels, source, part), levels.about, part.step)
+    if own != levels.digest(part):
+        rows, columns = (f"{s.start}-{s.stop - 1}" for s in part.lines(source.shape))
+        msg = (
+            f"{place} holds the pyramid of another field, or of an earlier state of this one: "
+            f"rows {rows}, columns {columns} differ at step {part.step}. Build with fresh=True to "
+            "replace it, or give another place"
+        )
+        raise ChangedError(msg)
+
+
+def mend(place: str, run: str, unit: Part | TileTask) -> None:
+    """Remove a part, or a tile at its steps, of which some is missing or corrupt."""
+    from zarr.core.sync import sync
+
+    levels, group = _levels(place, run), _writable(place, run)
+    for one, check in checks_of(levels, unit):
+        try:
+            check()
+        except DamageError:
+            for name in _objects(levels.about, one):
+                sync(group.store.delete(name))
+
+
+def checks_of(
+    levels: Levels, unit: Part | TileTask
+) -> Iterator[tuple[Part | TileTask, Callable[[], None]]]:
+    """Give what raises a DamageError for a part, or for each step of a tile."""
+    if isinstance(unit, Part):
+        yield unit, partial(levels.check_part, unit)
+    else:
+        for step in unit.steps:
+            yield TileTask(unit.key, (step,)), partial(levels.check_tile, unit.key, step)
+
+
+def _objects(about: Mapping[str, Any], unit: Part | TileTask) -> Iterator[str]:
+    """Give the objects of a part, or of a tile at a step; by the first one it is known to be there.
+
+    All but surfaces, which are written whole: of what is there Zarr reads what is not written anew.
+    """
+    if isinstance(unit, Part):
+        level, step, row, column = unit
+        series = [f"scalars/{name}" for name, count in about["scalars"].items() if step < count]
+        yield f"{level}/velocity/c/{step}/{row}/{column}/0"
+        yield from (f"{level}/{name}/c/{step}/{row}/{column}" for name in series)
+        if step == 0:
+            yield from (f"{level}/{name}/c/{row}/{column}" for name in ("valid", "has_position"))
+            yield f"{level}/points/c/{row}/{column}/0"
+        return
+    (level, row, column), (step,) = unit.key, unit.steps
+    yield f"{level}/{TRACES}/c/{step}/{row}/{column}/0/0/0/0"
+    for number in range(len(value_names(about))):
+        yield f"{level}/{VALUES}/c/{step}/{row}/{column}/{number}/0/0"
+    if has_halos(about, level):
+        yield f"{level}/{HALOS}/c/{step // MOST_HELD}/{row}/{column}/0"
+
+
+def _source_nodes(levels: Levels, source: Source, part: Part) -> Nodes:
+    """Read what a part of level 0 is made of."""
     lines = part.lines(source.shape)
-    valid = np.asarray(group["0/valid"][lines], dtype=bool) if part.step else None
+    valid = None
+    if part.step and source.travels:  # others have it at hand
+        valid = levels.valid(0, *(np.arange(some.start, some.stop) for some in lines))
     nodes = source.nodes(part.step, *lines, valid)
-    if not about.get("ranges"):
-        write_samples(group, about, part, nodes)
     known = None if source.has_position is None else source.has_position[lines]
-    had = Nodes(nodes.points, nodes.valid, nodes.velocity, known, nodes.scalars)
-    write_part(group, about, part, lines, had)
+    return Nodes(nodes.points, nodes.valid, nodes.velocity, known, nodes.scalars)
 
 
 def make_part(place: str, run: str, part: Part) -> None:
@@ -105,6 +185,8 @@ def write_part(
             to_write(here, "has_position")[lines] = nodes.has_position
         if not about["axes"]:
             to_write(here, "points")[lines] = nodes.points[..., :components]
+    own = np.frombuffer(part_digest(nodes, about, part.step), np.uint8)
+    to_write(here, DIGESTS)[part.step, part.row, part.column] = own
     # The last one: by it a part is known to be whole.
     to_write(here, "velocity")[(part.step, *lines)] = nodes.velocity[..., :components]
 

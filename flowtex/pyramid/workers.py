@@ -8,9 +8,10 @@ import os
 import traceback
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import suppress
 from functools import cache
+from itertools import islice
 from typing import Any
 
 from flowtex._util.extras import import_extra
@@ -96,11 +97,15 @@ class Threads:
                     return None
             return result
 
-        with ThreadPoolExecutor(self.count(need), thread_name_prefix="flowtex-pyramid") as pool:
-            futures = [pool.submit(tried, task) for task in tasks]
+        count, left = self.count(need), iter(tasks)
+        with ThreadPoolExecutor(count, thread_name_prefix="flowtex-pyramid") as pool:
+            # No more wait in line than keep all busy: who is told of failures may end it.
+            running = {pool.submit(tried, task) for task in islice(left, 2 * count)}
             try:
-                for future in as_completed(futures):
-                    yield future.result()
+                while running:
+                    done, running = wait(running, return_when=FIRST_COMPLETED)
+                    running |= {pool.submit(tried, task) for task in islice(left, len(done))}
+                    yield from [future.result() for future in done]
             finally:
                 pool.shutdown(wait=True, cancel_futures=True)
 

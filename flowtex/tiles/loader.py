@@ -40,6 +40,8 @@ MOST_THREADS = 4
 LOOK_INTERVAL_S = 0.1
 #: Seconds before the last request within which a tile must have been asked for, not to be given up.
 GRACE_S = 2.0
+#: Seconds after which a tile that failed may be asked for again.
+RETRY_S = 10.0
 
 
 _turns = threading.BoundedSemaphore(max(os.cpu_count() or 1, MOST_THREADS))
@@ -100,8 +102,8 @@ class TileLoader:
 
     ``prepare`` makes of textures, in a thread, what is needed to draw them beside their layers.
     ``notify`` is called, in a thread, whenever a tile has become ready or has failed. Errors are
-    kept in ``errors`` by tile; a tile that failed is not tried again. ``clock`` gives the seconds
-    by which tiles are given up.
+    kept in ``errors`` by tile; a tile that failed is tried again when it is asked for some seconds
+    later, for what went wrong may be a network. ``clock`` gives the seconds.
     """
 
     def __init__(
@@ -115,6 +117,7 @@ class TileLoader:
     ) -> None:
         self.pyramid = pyramid
         self.errors: dict[TileKey, Exception] = {}
+        self._failed: dict[TileKey, float] = {}
         self._prepare, self._notify, self._clock = prepare, notify, clock
         self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
         #: When each tile was asked for last, on a clock of requests.
@@ -141,6 +144,10 @@ class TileLoader:
         """
         self._asked = self._clock()
         with self._lock:
+            for key in keys:
+                if self._failed.get(key, np.inf) < self._asked - RETRY_S:
+                    del self._failed[key]
+                    self.errors.pop(key, None)
             # What has not begun waits behind what is asked for now.
             later = [job for job, future in self._running.items() if future.cancel()]
             for job in later:
@@ -205,7 +212,7 @@ class TileLoader:
         except Stopped:
             pass
         except Exception as error:
-            self.errors[key] = error
+            self.errors[key], self._failed[key] = error, self._clock()
         finally:
             with self._lock:
                 self._running.pop((key, step), None)

@@ -10,6 +10,7 @@ shows the same mesh many times holds it once, and asks for what it lacks.
 
 from __future__ import annotations
 
+import re
 import threading
 import time
 import traceback
@@ -47,6 +48,8 @@ MESSAGE_BYTES = 2_000_000
 RESEND_WAITS_S = (2.5, 4.0, 8.0, 16.0)
 #: Seconds in which a client asks for what it has just been sent, as the header comes first.
 COMING_S = 2.0
+#: Names of arrays of a time step, such as "slices/3" and "scalars/3/1".
+_OF_STEP = re.compile(r"[a-z]+/([0-9]{1,9})(/[0-9]+)?")
 #: Bytes from which an array is offered before it is sent again.
 LEAST_OFFERED_BYTES = 50_000
 
@@ -278,8 +281,10 @@ class Feed:
     def _send_named(self, names: list[str]) -> None:
         scene = self.scene
         parts = scene.surface()
-        for step in {int(name.split("/")[1]) for name in names if "/" in name}:
-            if 0 <= step < scene.steps:
+        # Tiles, and what is of no step, have other names.
+        matches = map(_OF_STEP.fullmatch, names)
+        for step in {int(match[1]) for match in matches if match}:
+            if step < scene.steps:
                 parts |= scene.step(step)
         with self._lock:
             if scene is self.scene:  # what was offered of another is not waited for any more

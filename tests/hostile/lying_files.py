@@ -142,3 +142,30 @@ def grib2(points: int) -> bytes:
     grid = struct.pack(">IBBIBBH", 72, 3, 0, points, 0, 0, 0) + bytes(58)
     content = struct.pack(">IB", 21, 1) + bytes(16) + grid + b"7777"
     return b"GRIB\0\0\0\x02" + struct.pack(">Q", 16 + len(content)) + content
+
+
+def zarr_of_a_size(path: Path, version: int, **declared: Any) -> None:
+    """Write a Zarr folder of a wind, and then what it declares of its arrays."""
+    import xarray as xr
+
+    lat, lon = np.linspace(0, 9, ROWS), np.linspace(0, 9, COLUMNS)
+    wind = np.ones((ROWS, COLUMNS), "f4")
+    words = [{"standard_name": f"{axis}ward_wind", "units": "m/s"} for axis in ("east", "north")]
+    data = {
+        "u": (("lat", "lon"), wind, words[0]),
+        "v": (("lat", "lon"), wind, words[1]),
+    }
+    axes = {"lat": ("lat", lat, {"units": "degrees_north"})}
+    axes["lon"] = ("lon", lon, {"units": "degrees_east"})
+    xr.Dataset(data, axes).to_zarr(path, zarr_format=version, consolidated=version == 2)
+    for file in (*path.rglob("zarr.json"), *path.rglob(".z*")):
+        told = json.loads(file.read_text())
+        many = told.get("metadata", {file.parent.name + "/": told})
+        for name, one in many.items():
+            if (wanted := declared.get(name.partition("/")[0])) and "shape" in one:
+                one["shape"] = wanted
+                if "chunks" in one:
+                    one["chunks"] = wanted
+                else:
+                    one["chunk_grid"]["configuration"]["chunk_shape"] = wanted
+        file.write_text(json.dumps(told))

@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from range_server import range_server
 
+from flowtex import FlowField
+from flowtex.errors import FieldError
 from flowtex.pyramid import PyramidError, is_store, open_store
 from flowtex.pyramid.places import fault_words, place_text, store_at
 
@@ -49,8 +52,30 @@ def test_secrets_are_refused_and_not_repeated(place: str) -> None:
         assert caught.value.__cause__ is None
 
 
-def test_a_url_is_a_store_and_nothing_is_written_to_the_web() -> None:
-    assert is_store("https://host/flow") and is_store(Path("s3://bucket/flow"))
+@pytest.mark.parametrize("status", [400, 404])
+def test_a_url_is_looked_at_before_it_is_called_a_store(tmp_path: Path, status: int) -> None:
+    """Other Zarr has no such attribute, and OPeNDAP no such object."""
+    with range_server(tmp_path) as server:
+        server.fault = lambda path: status
+        assert not is_store(server.address)
+        server.fault = lambda path: b'{"zarr_format": 3, "node_type": "group", "attributes": {}}'
+        assert not is_store(server.address + "other.zarr")
+        server.fault = lambda path: b"<html>"
+        assert not is_store(server.address)
+        server.fault = lambda path: b'{"attributes": {"flowtex": {}}}'
+        assert is_store(server.address)
+        assert server.paths == ["zarr.json", "other.zarr/zarr.json", "zarr.json", "zarr.json"]
+        server.fault = lambda path: 403
+        with pytest.raises(PyramidError, match=r"zarr.json is missing or not open to us \(403\)"):
+            is_store(server.address)
+        with pytest.raises(FieldError, match="the address of no flowtex pyramid"):
+            server.fault = lambda path: 404
+            FlowField.from_file(server.address + "flow.nc")
+    with pytest.raises(PyramidError, match="nobody answers at this address"):
+        is_store("http://127.0.0.1:9/flow.zarr")
+
+
+def test_nothing_is_written_to_the_web() -> None:
     assert not is_store(3) and not is_store("flow.vts")
     with pytest.raises(PyramidError, match="can only be read"):
         store_at("https://host/flow.zarr", read_only=False)

@@ -250,3 +250,23 @@ def test_a_tile_that_was_lost_is_made_again(tmp_path: Path, whole: Path) -> None
     served = ServedStore(place)
     assert abs(asyncio.run(served.get(TILE.format(step=0))).size - size) < 0.01 * size
     served.close()
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("0/traces/c/0/1/0/1/0/0/0", "0/traces/c/0/1/0/0/0/0/1", "0/traces/c/0/2/0/0/0/0/0"),
+        *("0/values/c/0/1/0/9/0/0", "0/surface/c/1/0/1", "0/surface/c/01/0/0"),
+        *("0/velocity/c/0/0/1/0", "0/velocity/c/1/0/0/0", "0/nothing/c/0", "0/traces/c/x"),
+    ],
+)
+def test_what_a_store_cannot_have_is_not_traced(
+    coarse: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    traced: list[Any] = []
+    monkeypatch.setattr(ServedStore, "_make", lambda *given: traced.append(given))
+    served = ServedStore(coarse)
+    with pytest.raises(LookupError):
+        asyncio.run(served.get(name))
+    served.close()
+    assert traced == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import weakref
 from pathlib import Path
 from typing import Any
@@ -13,9 +14,10 @@ from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
 from flowtex.field.datasets.regions import RegionNodes, Regions
-from flowtex.pyramid import build, layout, open_store
+from flowtex.pyramid import build, layout, open_store, verify
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
+from flowtex.pyramid.places import ChangedError
 from flowtex.pyramid.source import RegionSource, source_of
 from flowtex.pyramid.workers import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
 
@@ -89,7 +91,7 @@ def assert_same(one: Path, other: Path) -> None:
         assert values.tobytes() == wanted.tobytes(), name
     about = [{**Levels(store).about} for store in (one, other)]
     for some in about:
-        some.pop("fingerprint"), some.pop("seal")
+        some.pop("source"), some.pop("seal")
     assert about[0] == about[1]
 
 
@@ -143,8 +145,90 @@ def test_a_build_from_regions_goes_on(tmp_path: Path) -> None:
     assert (again.made, again.kept) == (1, first.made - 1)
     for name, values in contents(store).items():
         assert values.tobytes() == whole[name].tobytes()
-    with pytest.raises(FieldError, match="pyramid of another field"):
-        build(data * 2.0, store, progress=False, u="u", v="v")
+
+
+def small(steps: int = 1) -> Any:
+    return dataset(np.linspace(0, 9, 60), np.linspace(0, 5, 40), steps=steps, plane=True)
+
+
+@pytest.fixture
+def reads(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Time steps of the regions that are read."""
+    found, nodes = list[int](), Regions.nodes
+
+    def counted(self: Regions, step: int, *given: Any) -> Any:
+        found.append(step)
+        return nodes(self, step, *given)
+
+    monkeypatch.setattr(Regions, "nodes", counted)
+    return found
+
+
+def corrected(data: Any, step: int = 0) -> Any:
+    """The same but for one value, which no sample of 16 by 16 nodes has."""
+    other = data.copy(deep=True)
+    other.u[step, 17, 23] += 0.25
+    return other
+
+
+def test_a_file_is_known_by_path_size_and_time_of_change(tmp_path: Path, reads: list[int]) -> None:
+    file, store = tmp_path / "flow.nc", tmp_path / "a.zarr"
+    more: dict[str, Any] = {"progress": False, "lines": "streamlines"}
+    small(2).to_netcdf(file)
+    made = build(file, store, **more).made
+    reads.clear()
+    assert build(file, store, **more).made == 0
+    assert reads == []
+    # It was touched: its values are read, and are the same.
+    os.utime(file, ns=(0, 0))
+    assert build(file, store, **more).made == 0
+    assert reads == [0, 1]
+    build(file, store, **more)
+    assert reads == [0, 1]
+    corrected(small(2), 1).to_netcdf(file)
+    for _ in range(2):
+        with pytest.raises(ChangedError, match=r"columns 0-59 differ at step 1\. .* fresh=True"):
+            build(file, store, **more)
+    assert build(file, store, **more, fresh=True).made == made
+    assert verify(store, progress=False) == []
+    assert build(file, store, **more).made == 0
+
+
+@pytest.mark.parametrize("kind", ["dataset", "field"])
+def test_what_has_no_file_is_known_by_all_of_its_values(tmp_path: Path, kind: str) -> None:
+    def given(data: Any) -> Any:
+        return data if kind == "dataset" else FlowField.from_xarray(data)
+
+    store, data = tmp_path / "a.zarr", small(2)
+    build(given(data), store, progress=False)
+    assert build(given(data), store, progress=False).made == 0
+    for other in (corrected(data), corrected(data, 1), data.assign_coords(x=data.x * 1.01)):
+        with pytest.raises(FieldError, match=r"another field.* fresh=True"):
+            build(given(other), store, progress=False)
+    # Nor is it mixed with what is made anew.
+    (store / "0/velocity/c/1/0/0/0").unlink()
+    with pytest.raises(ChangedError, match="earlier state"):
+        build(given(corrected(data, 1)), store, progress=False)
+    with pytest.raises(FieldError, match="not built to its end"):
+        open_store(store)
+
+
+def test_a_file_that_changes_while_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file, store, nodes = tmp_path / "flow.nc", tmp_path / "a.zarr", Regions.nodes
+    small().to_netcdf(file)
+
+    def touching(self: Regions, *given: Any) -> Any:
+        os.utime(file, ns=(0, len(given)))
+        return nodes(self, *given)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(RegionSource, "nodes", lambda self, *given: touching(self.regions, *given))
+        with pytest.raises(ChangedError, match="has changed while it was read"):
+            build(file, store, progress=False)
+    build(file, store, progress=False)
+    assert verify(store, progress=False) == []
 
 
 def test_robust_ranges_of_large_data_are_those_of_a_sample(

@@ -12,7 +12,7 @@ from waiting import wait_until
 
 from flowtex._util.progress import check
 from flowtex.tiles import TileKey, TileLoader
-from flowtex.tiles.loader import GRACE_S
+from flowtex.tiles.loader import GRACE_S, RETRY_S
 
 KEYS = [TileKey(0, 0, n) for n in range(8)]
 
@@ -98,10 +98,11 @@ def test_what_nobody_wants_is_given_up() -> None:
     loader.close()
 
 
-def test_a_failure_is_told_and_not_tried_again() -> None:
+def test_a_failure_is_told_and_tried_again_later() -> None:
     source: Any = Source(broken=KEYS[1])
     source.go.set()
-    loader = TileLoader(source)
+    now = [0.0]
+    loader = TileLoader(source, clock=lambda: now[0])
     loader.request(KEYS[:3], [0])
     loader.wait()
     loader.request(KEYS[:3], [0])
@@ -109,6 +110,13 @@ def test_a_failure_is_told_and_not_tried_again() -> None:
     assert loader.get(KEYS[0], [0]) is not None
     assert loader.get(KEYS[1], [0]) is None
     assert isinstance(loader.errors[KEYS[1]], OSError)
+    assert source.began.count((KEYS[1], 0)) == 1
+    # The network is there again.
+    source.broken = None
+    now[0] += RETRY_S + 1
+    loader.request(KEYS[:3], [0])
+    loader.wait()
+    assert loader.get(KEYS[1], [0]) is not None and not loader.errors
     loader.close()
 
 

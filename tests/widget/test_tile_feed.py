@@ -163,6 +163,20 @@ def test_errors_are_told_once(make: Callable[..., Client], monkeypatch: pytest.M
     assert client.errors == ["OSError: the disk is gone"]
 
 
+def test_tiles_are_not_taken_for_time_steps(
+    make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a name such as tile/LEVEL/ROW/COLUMN/slices/STEP the first number is the level."""
+    client, asked = make(swirl(3)), list[int]()
+    feed: Any = client.views.feeds[0]
+    step = type(feed.scene).step
+    monkeypatch.setattr(
+        type(feed.scene), "step", lambda scene, n: asked.append(n) or step(scene, n)
+    )
+    feed._send_named(["tile/1/0/0/slices/0", "a/b", "slices/2", "scalars/2/1", "slices/99"])
+    assert asked == [2]
+
+
 @pytest.mark.parametrize("keys", [None, [1], [[0, "a", 0]], [[0, 0]]])
 def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Client], keys: Any) -> None:
     client = make(swirl())

@@ -7,6 +7,7 @@ PyVista's readers open most files; PLOT3D, which says little about itself, goes 
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,10 @@ _KNOWN_FORMATS = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
     ".foam and more), or PLOT3D (.xyz with .q beside it)"
 )
+
+
+#: A URL of which ``pathlib`` has made a path; one letter is a drive.
+_ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")
 
 
 @dataclass(frozen=True)
@@ -93,7 +98,12 @@ def open_file(path: str | Path) -> OpenFile:
 def _check_path(file: Path) -> None:
     """Refuse a path that leads to nothing readable, before any reader sees it."""
     problem = ""
-    if not file.exists():
+    if _ADDRESS.match(str(file)) and not file.exists():
+        problem = (
+            "the address of no flowtex pyramid, and files are read from folders; open data there "
+            "with xarray.open_dataset or xarray.open_zarr, and give the dataset"
+        )
+    elif not file.exists():
         problem = "no such file; check the spelling and the folder"
         near = sorted(p.name for p in file.parent.glob(f"{file.stem}.*")) if file.name else []
         if near:

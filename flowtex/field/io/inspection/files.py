@@ -10,6 +10,7 @@ from typing import BinaryIO
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection import grib, hdf5, netcdf, vtk_legacy, vtk_xml
 from flowtex.field.io.inspection.surfaces import check_obj, check_ply, check_stl
+from flowtex.field.io.inspection.zarr_folder import DOCUMENTS, check_zarr
 
 __all__ = ["inspect_file"]
 
@@ -31,7 +32,7 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
     Parameters
     ----------
     path
-        The file; a folder is left alone.
+        The file, or a folder of Zarr; another folder is left alone.
     whole
         Whether its arrays are read whole, as those of meshes; of others, parts are.
 
@@ -40,6 +41,8 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
     FieldError
         With what is wrong, and of a member its name.
     """
+    if path.is_dir() and any((path / name).is_file() for name in DOCUMENTS):
+        check_zarr(path)
     waiting, seen = [path], {path.resolve()}
     while waiting:
         file = waiting.pop()

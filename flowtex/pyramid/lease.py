@@ -1,0 +1,159 @@
+"""The lease of a store: whoever builds it holds one, so that nobody else builds it meanwhile.
+
+It is an object of the store with the name of its holder and the time at which that was last there.
+A holder renews it; one that is not renewed, or whose process has ended, is stale and taken over.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import platform
+import sys
+import threading
+import time
+import uuid
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from flowtex.pyramid.places import LEASE, PyramidError, store_at
+
+__all__ = ["Lease"]
+
+#: Seconds between renewals, and after which a lease that was not renewed is stale.
+RENEWAL_S, STALE_S = 20.0, 120.0
+
+
+class Lease:
+    """The right to build a store, held inside a ``with``.
+
+    Parameters
+    ----------
+    place
+        A folder or a URL.
+    clock
+        The time in seconds, the same on all machines but for some seconds.
+
+    Raises
+    ------
+    PyramidError
+        On entering when somebody else holds it.
+    """
+
+    def __init__(self, place: str, clock: Callable[[], float] = time.time) -> None:
+        self.place, self._clock = place, clock
+        self._store = store_at(place, read_only=False)
+        self._own = {"id": uuid.uuid4().hex, "host": platform.node(), "process": os.getpid()}
+        self._renewed, self._holder = -math.inf, ""
+        self._end = threading.Event()
+        self._thread = threading.Thread(target=self._keep, name="flowtex-lease", daemon=True)
+
+    def __enter__(self) -> Lease:
+        """Take the lease."""
+        there = self._read()
+        if there and not self._is_stale(there):
+            self._refuse(there)
+        if there:
+            self._sync(self._store.delete(LEASE))
+        self._write(create=True)
+        there = self._read()
+        if there.get("id") != self._own["id"]:
+            self._refuse(there)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Give the lease back."""
+        self._end.set()
+        self._thread.join()
+        if not self._holder:
+            with suppress(Exception):  # of the work inside there may be an error already
+                if self._read().get("id") == self._own["id"]:
+                    self._sync(self._store.delete(LEASE))
+
+    def check(self) -> None:
+        """Raise a PyramidError where somebody else has taken the lease over."""
+        if not self._holder and self._clock() - self._renewed > STALE_S:
+            self.renew()
+        if self._holder:
+            msg = f"{self.place} was taken over by {self._holder}, which builds it now"
+            raise PyramidError(msg)
+
+    def renew(self) -> None:
+        """Tell that the holder is still there."""
+        there = self._read()
+        if there.get("id") != self._own["id"]:
+            self._holder = _words(there)
+        else:
+            self._write(create=False)
+
+    def _keep(self) -> None:
+        while not self._end.wait(RENEWAL_S):
+            with suppress(Exception):  # of the network: check() tries again
+                self.renew()
+
+    def _is_stale(self, there: dict[str, Any]) -> bool:
+        if self._clock() - there["at"] > STALE_S:
+            return True
+        here = there.get("host") == self._own["host"]
+        return here and not _is_running(there.get("process"))
+
+    def _refuse(self, there: dict[str, Any]) -> None:
+        age = max(self._clock() - there.get("at", 0.0), 0.0)
+        msg = (
+            f"{self.place} is being built by {_words(there)}, seen {age:.0f} s ago; wait for its "
+            f"end. If it does not run any more, build again {STALE_S:.0f} s after it was seen"
+        )
+        raise PyramidError(msg)
+
+    def _read(self) -> dict[str, Any]:
+        """Return what the lease tells; nothing where there is none."""
+        from zarr.core.buffer import default_buffer_prototype
+
+        found = self._sync(self._store.get(LEASE, default_buffer_prototype()))
+        if found is None:
+            return {}
+        with suppress(ValueError, KeyError, TypeError):
+            told: dict[str, Any] = json.loads(found.to_bytes())
+            if isinstance(told["at"], (int, float)):
+                return told
+        return {"at": -math.inf}  # it was cut off, so nobody holds it
+
+    def _write(self, *, create: bool) -> None:
+        from zarr.core.buffer import default_buffer_prototype
+
+        now = self._clock()
+        text = json.dumps({**self._own, "at": now}).encode()
+        data = default_buffer_prototype().buffer.from_bytes(text)
+        try:
+            set_ = self._store.set_if_not_exists if create else self._store.set
+            self._sync(set_(LEASE, data))
+        except (OSError, NotImplementedError):
+            # Not all storage has links, or writes on a condition; what is read then decides.
+            self._sync(self._store.set(LEASE, data))
+        self._renewed = now
+
+    @staticmethod
+    def _sync(doing: Any) -> Any:
+        from zarr.core.sync import sync
+
+        return sync(doing)
+
+
+def _words(there: dict[str, Any]) -> str:
+    return f"process {there.get('process', '?')} on {there.get('host', 'another machine')}"
+
+
+def _is_running(process: Any) -> bool:
+    """Whether a process of this machine runs, or that is not known."""
+    if sys.platform == "win32" or type(process) is not int:
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return True

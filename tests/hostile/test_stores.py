@@ -1,0 +1,279 @@
+"""Stores that are cut, flipped, swapped or packed to burst: found, named and made again."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import shutil
+import struct
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import google_crc32c
+import hypothesis.strategies as st
+import numpy as np
+import pytest
+from hypothesis import given
+from lying_files import zarr_of_a_size
+from strategies import property_test
+
+from flowtex import FlowField, cli
+from flowtex.errors import FieldError
+from flowtex.pyramid import PyramidError, build, open_store, verify
+from flowtex.pyramid.checks import sealed
+from flowtex.pyramid.levels import Levels
+from flowtex.tiles import TileKey
+
+zarr = pytest.importorskip("zarr")
+
+Harm = Callable[[Path], None]
+
+
+def flow() -> FlowField:
+    """Two steps on crooked lines, with land and a scalar."""
+    y, x = np.mgrid[0:30, 0:40] / 100
+    steps = [np.stack([np.cos(3 * y + t), np.sin(4 * x - t)], axis=-1) for t in range(2)]
+    return FlowField.from_arrays(
+        np.stack([x + 0.1 * y**2, y], axis=-1),
+        np.stack(steps),
+        times=range(2),
+        periodic="",
+        valid=np.hypot(x - 0.2, y - 0.1) > 0.05,
+        scalars={"heat": x + np.arange(2)[:, None, None]},
+    )
+
+
+@pytest.fixture(autouse=True)
+def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 600)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("whole") / "flow.zarr"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 600)
+        assert build(flow(), place, levels="all", progress=False).depth == 1
+    return place
+
+
+@pytest.fixture
+def copy(whole: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(whole, tmp_path / "flow.zarr"))
+
+
+def objects_of(store: Path) -> list[Path]:
+    """Return the chunks and shards of a store."""
+    return sorted(path for path in (store).rglob("c/**/*") if path.is_file())
+
+
+def first_of_each(store: Path) -> dict[str, Path]:
+    """Return one object of each array."""
+    found: dict[str, Path] = {}
+    for path in objects_of(store):
+        found.setdefault(path.relative_to(store).as_posix().partition("/c/")[0], path)
+    return found
+
+
+def contents(store: Path) -> dict[str, bytes]:
+    members = zarr.open_group(store, mode="r").members(max_depth=None)
+    return {name: np.asarray(a[:]).tobytes() for name, a in members if isinstance(a, zarr.Array)}
+
+
+def cut(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:-9])
+
+
+def flip(path: Path) -> None:
+    data = bytearray(path.read_bytes())
+    data[len(data) // 3] ^= 4
+    path.write_bytes(data)
+
+
+def lengthen(path: Path) -> None:
+    path.write_bytes(path.read_bytes() + bytes(9))
+
+
+HARMS: list[Harm] = [cut, flip, lengthen, Path.unlink]
+
+
+def test_a_store_as_it_was_built_is_whole(whole: Path) -> None:
+    assert verify(whole, progress=False) == []
+
+
+def test_what_is_corrupt_is_named(copy: Path) -> None:
+    paths = first_of_each(copy)
+    names = {"velocity": "velocity", "points": "points", "traces": "tile", "values": "speed"}
+    for name, word in (names | {"digests": "digests"}).items():
+        data = paths[f"1/{name}"].read_bytes()
+        flip(paths[f"1/{name}"])
+        (fault, *_) = verify(copy, progress=False)
+        assert word in fault and "checksum mismatch" in fault
+        paths[f"1/{name}"].write_bytes(data)
+
+
+@pytest.mark.parametrize("first", [0, 2])
+def test_what_is_corrupt_is_made_again(whole: Path, copy: Path, first: int) -> None:
+    for number, path in enumerate(first_of_each(copy).values(), start=first):
+        HARMS[number % len(HARMS)](path)
+    assert len(verify(copy, progress=False)) == 5  # parts and tiles of both levels
+    assert build(flow(), copy, levels="all", progress=False).made > 3
+    assert verify(copy, progress=False) == []
+    assert contents(copy) == contents(whole)
+
+
+@property_test(4)
+@given(share=st.floats(0, 1, exclude_max=True), at=st.floats(0, 1, exclude_max=True))
+def test_any_flipped_bit_is_mended(whole: Path, share: float, at: float) -> None:
+    place = whole.parent / "flipped.zarr"
+    shutil.rmtree(place, ignore_errors=True)
+    shutil.copytree(whole, place)
+    files = objects_of(place)
+    path = files[int(share * len(files))]
+    data = bytearray(path.read_bytes())
+    data[int(at * len(data))] ^= 1 << int(share * 8)
+    path.write_bytes(data)
+    build(flow(), place, levels="all", progress=False)
+    assert contents(place) == contents(whole)
+
+
+def test_shards_in_each_others_place_are_found(whole: Path, copy: Path) -> None:
+    one, other = (copy / f"0/velocity/c/{step}/0/0/0" for step in (0, 1))
+    data = one.read_bytes()
+    one.write_bytes(other.read_bytes())
+    other.write_bytes(data)
+    faults = verify(copy, progress=False)
+    assert len(faults) == 2 and all("is not what was written there" in fault for fault in faults)
+    build(flow(), copy, levels="all", progress=False)
+    assert contents(copy) == contents(whole)
+
+
+def test_what_tells_of_arrays_is_written_anew(whole: Path, copy: Path) -> None:
+    told = copy / "0/velocity/zarr.json"
+    told.write_text(told.read_text().replace("float32", "float64"))
+    (copy / "1/zarr.json").write_text("{")
+    assert any("0/velocity" in fault for fault in [*verify(copy, progress=False)])
+    build(flow(), copy, levels="all", progress=False)
+    assert contents(copy) == contents(whole)
+
+
+def test_the_command_says_what_is_corrupt(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["pyramid", str(copy), "--verify"]) == 0
+    assert "is whole" in capsys.readouterr().out
+    flip(first_of_each(copy)["0/traces"])
+    assert cli.main(["pyramid", str(copy), "--verify"]) == 1
+    told = capsys.readouterr().err
+    assert "tile (0, 0, 0) at step 0" in told and "checksum mismatch" in told
+    text = (copy / "zarr.json").read_text()
+    (copy / "zarr.json").write_text(text.replace('"depth": 1', '"depth": 0'))
+    assert cli.main(["pyramid", str(copy), "--verify"]) == 1
+    assert "damaged" in capsys.readouterr().err
+    assert cli.main(["pyramid", str(copy.parent), "--verify"]) == 2
+
+
+def test_a_fault_of_the_network_is_no_damage(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A build must not remove what it could not read."""
+    read = zarr.storage.LocalStore.get
+
+    async def refused(self: Any, key: str, *given: Any, **named: Any) -> Any:
+        if "/velocity/c/" in key:
+            raise PermissionError(13, "denied")
+        return await read(self, key, *given, **named)
+
+    before = objects_of(copy)
+    monkeypatch.setattr(zarr.storage.LocalStore, "get", refused)
+    with pytest.raises(PyramidError, match="cannot be read"):
+        verify(copy, progress=False)
+    with pytest.raises(PyramidError, match="cannot be read"):
+        build(flow(), copy, levels="all", progress=False)
+    assert objects_of(copy) == before
+
+
+# --- sizes that are declared --------------------------------------------------------------------
+
+
+class Counted:
+    """zlib's unpacking, which counts what comes out of it."""
+
+    def __init__(self) -> None:
+        self.sizes: list[int] = []
+        self.make = zlib.decompressobj
+
+    def __call__(self, window: int) -> Any:
+        unpacking, sizes = self.make(window), self.sizes
+
+        class Unpacking:
+            eof = property(lambda _: unpacking.eof)
+
+            def decompress(self, data: bytes, most: int = 0) -> bytes:
+                result = unpacking.decompress(data, most)
+                sizes.append(len(result))
+                return result
+
+        return Unpacking()
+
+
+def packed(size: int) -> bytes:
+    """Return a chunk of zeros, with its check sum."""
+    data = gzip.compress(bytes(size))
+    return data + struct.pack("<I", google_crc32c.value(data))
+
+
+@pytest.mark.parametrize("size", [10, 50_000_000])
+def test_a_chunk_unpacks_to_what_its_array_declares(
+    copy: Path, monkeypatch: pytest.MonkeyPatch, size: int
+) -> None:
+    declared = zarr.open_array(copy / "0/surface", mode="r").chunks[-1]
+    (copy / "0/surface/c/0/0/0").write_bytes(packed(size))
+    counted = Counted()
+    monkeypatch.setattr("flowtex.pyramid.objects.zlib.decompressobj", counted)
+    (fault,) = verify(copy, progress=False)
+    assert f"does not unpack to the {declared:,} bytes that its array declares" in fault
+    assert min(size, declared + 1) in counted.sizes
+    assert max(counted.sizes) <= max(declared + 1, 64 * 40 * 40 * 8 * 100)
+
+
+def declared_store(place: Path, about: dict[str, Any], **other: Any) -> Path:
+    """A store of metadata alone, whose seal is right."""
+    place.mkdir()
+    told = {"flowtex": sealed({**about, **other})}
+    text = {"zarr_format": 3, "node_type": "group", "attributes": told}
+    (place / "zarr.json").write_text(json.dumps(text))
+    return place
+
+
+def test_a_root_of_any_size_is_refused(whole: Path, tmp_path: Path) -> None:
+    about = Levels(whole).about
+    place = declared_store(tmp_path / "a.zarr", about, nodes=[10**6, 10**6], depth=0, traced=[])
+    with pytest.raises(PyramidError, match=r"damaged \(depth\)"):
+        open_store(place)
+
+
+def test_what_does_not_fit_into_the_memory_is_not_read(
+    whole: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    levels = Levels(whole)
+    monkeypatch.setattr("flowtex.pyramid.levels.available_bytes", lambda: 1000)
+    with pytest.raises(PyramidError, match=r"takes [\d,]+ bytes, and 1,000 bytes .* available"):
+        levels.tile(TileKey(0, 0, 0), 0)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize(
+    ("declared", "name"),
+    [
+        ({"lat": [10**12], "u": [10**12, 9], "v": [10**12, 9]}, "lat|u|v"),
+        ({"u": [10**6, 10**6], "v": [10**6, 10**6]}, "u|v"),
+    ],
+)
+def test_a_zarr_of_any_size_is_refused_as_a_source(
+    tmp_path: Path, version: int, declared: dict[str, Any], name: str
+) -> None:
+    path = tmp_path / "flow.zarr"
+    zarr_of_a_size(path, version, **declared)
+    for read in (FlowField.from_file, lambda file: build(file, tmp_path / "a", progress=False)):
+        with pytest.raises(FieldError, match=rf"the variable ({name}) declares \d+ TB"):
+            read(path)
+    assert not (tmp_path / "a").exists()
