@@ -289,4 +289,4 @@ def test_a_build_holds_as_many_parts_as_its_memory_allows(
     memory = OWN_BYTES + TILE_BYTES
     build(data, tmp_path / "a.zarr", memory=memory, progress=False)
     part = layout.TILE_CELLS**2 * 3 * np.float64().nbytes
-    assert len(held) > 6 and max(held) <= Threads(memory).count(PART_BYTES) * part
+    assert len(held) == 6 and max(held) <= Threads(memory).count(PART_BYTES) * part

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -163,16 +164,16 @@ def test_errors_are_told_once(make: Callable[..., Client], monkeypatch: pytest.M
     assert client.errors == ["OSError: the disk is gone"]
 
 
-def test_tiles_are_not_taken_for_time_steps(
-    make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_tiles_are_not_taken_for_time_steps(make: Callable[..., Client]) -> None:
     """Of a name such as tile/LEVEL/ROW/COLUMN/slices/STEP the first number is the level."""
-    client, asked = make(swirl(3)), list[int]()
-    feed: Any = client.views.feeds[0]
-    step = type(feed.scene).step
-    monkeypatch.setattr(
-        type(feed.scene), "step", lambda scene, n: asked.append(n) or step(scene, n)
-    )
+    asked: list[int] = []
+
+    def step(number: int) -> dict[str, Any]:
+        asked.append(number)
+        return {}
+
+    feed: Any = make(swirl()).views.feeds[0]
+    feed.scene = SimpleNamespace(steps=3, surface=dict, step=step)
     feed._send_named(["tile/1/0/0/slices/0", "a/b", "slices/2", "scalars/2/1", "slices/99"])
     assert asked == [2]
 
