@@ -8,6 +8,27 @@ type Job = readonly [key: TileKey, steps: number[]];
 /** Gives the parts of a tile for some time steps. */
 export type LoadTile = (key: TileKey, steps: number[], signal: AbortSignal) => Promise<NamedPart[]>;
 
+/** Milliseconds after which what could not be had may be asked for again. */
+const FAILED_MS = 10000;
+
+/** What could not be had of late: a network may be there again. */
+export class Failures {
+  private readonly times = new Map<string, number>();
+  private readonly now: () => number;
+
+  constructor(now: () => number = () => performance.now()) {
+    this.now = now;
+  }
+
+  add(name: string): void {
+    this.times.set(name, this.now());
+  }
+
+  has(name: string): boolean {
+    return this.now() - (this.times.get(name) ?? -Infinity) < FAILED_MS;
+  }
+}
+
 export class TileQueue {
   private readonly load: LoadTile;
   private readonly give: (part: NamedPart) => void;

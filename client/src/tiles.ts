@@ -29,6 +29,7 @@ import {
   type Choices,
   type TileKey,
 } from "./tilechoice.ts";
+import { Failures } from "./tilequeue.ts";
 import type { Moment } from "./uniforms.ts";
 
 /** Milliseconds from a change of what is wanted to the request, and after which a request counts as lost. */
@@ -97,7 +98,7 @@ export class Tiles {
   private isOver = false;
   private lastCame = 0;
   /** Tiles that cannot be had, each with what of it was wanted. */
-  private readonly failed = new Set<string>();
+  private readonly failed = new Failures();
   /** Limits of triangles for the colours that the scene came with. */
   private readonly limits: MeshLimits;
 

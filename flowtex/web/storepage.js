@@ -115,14 +115,15 @@ let size=Math.abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).
 digits)))}function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),
 1)),height=Math.max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,
 0),height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,
-widths[n],height),left+=widths[n];return all.convertToBlob(format)}var TileQueue=class{load;give;most;fail;running=new Map;wanted=[];constructor(load,give,most=1,fail=(_,error)=>{throw error}){
-this.load=load,this.give=give,this.most=most,this.fail=fail}request(keys,steps){this.want(keys.map(key=>[key,steps]))}want(jobs){
-this.wanted=[...jobs];let names=new Set(jobs.map(([key,steps])=>`${nameOf(key)} ${steps}`));for(let[name,controller]of this.
-running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.length&&this.running.size<this.most;){let[
-key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;this.running.has(name)||this.run(name,key,
-steps)}}async run(name,key,steps){let controller=new AbortController;this.running.set(name,controller);try{let parts=await this.
-load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(this.give)}catch(error){controller.signal.aborted||
-this.fail(key,error,steps)}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+widths[n],height),left+=widths[n];return all.convertToBlob(format)}var FAILED_MS=1e4,Failures=class{times=new Map;now;constructor(now=()=>performance.now()){this.now=now}add(name){this.times.
+set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},TileQueue=class{load;give;most;fail;running=new Map;wanted=[];constructor(load,give,most=1,fail=(_,error)=>{
+throw error}){this.load=load,this.give=give,this.most=most,this.fail=fail}request(keys,steps){this.want(keys.map(key=>[key,
+steps]))}want(jobs){this.wanted=[...jobs];let names=new Set(jobs.map(([key,steps])=>`${nameOf(key)} ${steps}`));for(let[
+name,controller]of this.running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.length&&this.running.
+size<this.most;){let[key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;this.running.has(name)||
+this.run(name,key,steps)}}async run(name,key,steps){let controller=new AbortController;this.running.set(name,controller);
+try{let parts=await this.load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(this.give)}catch(error){
+controller.signal.aborted||this.fail(key,error,steps)}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
 colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
 let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
 Math.min(share,1)}}function mapOf(header,maps,name){let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
@@ -1130,7 +1131,7 @@ TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.
 get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,
 after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.
 get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
-choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isWatched=!1;isOver=!1;lastCame=0;failed=new Set;limits;constructor(host,root2){
+choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isWatched=!1;isOver=!1;lastCame=0;failed=new Failures;limits;constructor(host,root2){
 this.host=host,this.root=root2,this.limits=root2.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
 root.header.scalars.name}`}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
