@@ -192,7 +192,7 @@ def test_points_of_a_wrong_shape_are_refused() -> None:
 
 @pytest.mark.parametrize("time", [float("nan"), float("inf")])
 def test_a_time_that_is_no_number_is_refused(time: float) -> None:
-    with pytest.raises(ValueError, match=r"time is (nan|inf), expected a finite number"):
+    with pytest.raises(ValueError, match=r"time is (nan|inf); expected a finite number"):
         examples.double_gyre(time)
 
 

@@ -75,4 +75,4 @@ def test_a_movie_that_is_ended_leaves_nothing(tmp_path: Path, opengl: object) ->
     assert process.returncode == 128 + number, said
     assert f"ended by {number.name}" in said and "Traceback" not in said
     assert path.read_bytes() == b"old" and sorted(tmp_path.iterdir()) == [path, mesh, temporary]
-    assert not any(temporary.iterdir())
+    assert list(temporary.iterdir()) == []

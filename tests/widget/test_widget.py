@@ -335,6 +335,7 @@ def test_a_notebook_that_is_read_elsewhere_has_a_picture(
 
 
 def test_nothing_is_left_after_closing(make: Make) -> None:
+    before = set(threading.enumerate())
     widget = make(gyre(3))
     settings = widget.settings
     widget.controls()
@@ -344,7 +345,7 @@ def test_nothing_is_left_after_closing(make: Make) -> None:
     assert repr(widget).endswith("closed)")
 
     def left() -> list[str]:
-        names = [thread.name for thread in threading.enumerate()]
+        names = [thread.name for thread in set(threading.enumerate()) - before]
         return [name for name in names if name.startswith("flowtex")]
 
     wait_until(lambda: not left(), left)

@@ -49,7 +49,7 @@ def settle(memory: int) -> None:
     for standard in (0, 1, 2):  # what C libraries print is for nobody
         os.dup2(device, standard)
     with suppress(OSError):
-        Path("/proc/self/oom_score_adj").write_text(OOM_SCORE, encoding="ascii")
+        Path("/proc/self/oom_score_adj").write_text(OOM_SCORE, encoding="utf-8")
     if sys.platform == "win32":
         return
     import resource
@@ -57,7 +57,7 @@ def settle(memory: int) -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     used = 0
     with suppress(OSError):
-        pages = Path("/proc/self/statm").read_text(encoding="ascii").split()
+        pages = Path("/proc/self/statm").read_text(encoding="utf-8").split()
         used = int(pages[5]) * resource.getpagesize()
     most = resource.getrlimit(resource.RLIMIT_DATA)[1]
     limit = used + memory if most == resource.RLIM_INFINITY else min(used + memory, most)

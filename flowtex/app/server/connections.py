@@ -99,12 +99,13 @@ class LimitedServer:
         """Listen no more, and end all connections."""
         if self._server is not None:
             self._server.close()
+            self._server = None
         await self._runner.cleanup()
 
     def _admit(self) -> asyncio.Protocol:
         """Return what talks to a newcomer, for whom another connection may have to end."""
         server = self._runner.server
-        if server is None:
+        if server is None or self._server is None:  # accepted just before the server stopped
             return _Refusal()
         present = [
             connection

@@ -50,7 +50,7 @@ from flowtex.app.server.files import Routes
 from flowtex.app.server.messages import LimitedMessages, restrict
 from flowtex.app.server.security import new_secret
 
-__all__ = ["FullError", "MakeApp", "Session", "Sessions", "usual_limit"]
+__all__ = ["ClosedError", "FullError", "MakeApp", "Session", "Sessions", "usual_limit"]
 
 #: Makes an application on a trame server. An application has ``server``, ``stream`` (a
 #: :class:`~flowtex.app.streaming.stream.FrameStream`) and ``close()``.
@@ -213,6 +213,10 @@ class FullError(Exception):
     """There are as many sessions as may be."""
 
 
+class ClosedError(Exception):
+    """The server ends, and makes no more sessions."""
+
+
 def usual_limit() -> int:
     """Return how many sessions this machine, or this container, has room for."""
     try:
@@ -250,6 +254,7 @@ class Sessions:
         self._by_token: dict[str, Session] = {}
         self._ready: Session | None = None
         self._making = asyncio.Lock()
+        self._closed = False
 
     def __len__(self) -> int:
         return len(self._by_token)
@@ -291,6 +296,8 @@ class Sessions:
             session.expect()
             return session
         async with self._making:
+            if self._closed:
+                raise ClosedError
             await self._make_room()
             return (await self._make())[0]
 
@@ -346,7 +353,7 @@ class Sessions:
 
     async def close(self) -> None:
         """End all sessions."""
-        self._ready = None
+        self._ready, self._closed = None, True
         # No page waits for another one, which may be asleep.
         await asyncio.gather(*(session.disconnect() for session in self))
         while self._by_token:

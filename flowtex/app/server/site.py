@@ -34,7 +34,7 @@ from flowtex.app.server.bounded_log import bounded_log
 from flowtex.app.server.connections import LimitedServer, keep
 from flowtex.app.server.files import add_route
 from flowtex.app.server.security import FAULT, LOCAL, guard, is_same, new_secret
-from flowtex.app.server.sessions import FullError, MakeApp, Sessions
+from flowtex.app.server.sessions import ClosedError, FullError, MakeApp, Sessions
 from flowtex.errors import FieldError
 
 __all__ = ["ServeError", "Site", "run_site", "serve_until_ended"]
@@ -48,6 +48,7 @@ FULL = (
     "There is room for {pages} at a time here, and all places are taken. One becomes free soon "
     "after somebody closes a page."
 )
+ENDS = "The server is ending. Start it again to open this page."
 BROKEN = "The page could not be made: {error}"
 MALFORMED = "This is no request of this page."
 
@@ -165,6 +166,8 @@ class Site:
             session = await self.sessions.find(token)
         except FullError:
             return _answer(503, words=FULL.format(pages=_pages(self.sessions.limit)))
+        except ClosedError:
+            return _answer(503, words=ENDS)
         except (FieldError, OSError) as error:
             return _answer(500, words=BROKEN.format(error=error))
         except Exception:
