@@ -98,6 +98,13 @@ class LimitedServer:
     async def stop(self) -> None:
         """Listen no more, and end all connections."""
         if self._server is not None:
+            loop = asyncio.get_running_loop()
+            for listener in self._server.sockets:
+                with suppress(NotImplementedError):  # on Windows
+                    loop.remove_reader(listener.fileno())
+            # What was accepted gets its protocol first: of a closed server asyncio would leave it
+            # open and unanswered.
+            await asyncio.sleep(0)
             self._server.close()
             self._server = None
         await self._runner.cleanup()
