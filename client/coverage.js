@@ -16,7 +16,8 @@ const report = new CoverageReport({
   outputDir: join(folder, "client"),
   reports: ["console-summary", "json-summary", "lcovonly"],
   sourceFilter: (path) => path.endsWith(".ts") && !path.includes("node_modules"),
-  sourcePath: (path) => path.slice(path.lastIndexOf("src/")),
+  // Those of libraries keep their folder, by which they are left out.
+  sourcePath: (path) => (path.includes("node_modules") ? path : path.slice(path.lastIndexOf("src/"))),
 });
 
 /** A source as Node runs it: types are blanked out, so that each place stays where it is. */

@@ -217,6 +217,35 @@ test("who does not answer is asked again, some times", async () => {
   }
 });
 
+test("a server that refuses a request is not asked again", async () => {
+  fault = (path) => (path === TRACES ? 400 : null);
+  await assert.rejects(streamOf().stream.tile([0, 0, 0], [0], signal, nothing), failing("broken"));
+  assert.equal(asked.filter((path) => path === TRACES).length, 1);
+  fault = () => null;
+  const text = new TextDecoder().decode(files.get("0/traces/zarr.json"));
+  files.set("0/traces/zarr.json", new TextEncoder().encode(text.replace('"float16"', '"bool"')));
+  await assert.rejects(streamOf().stream.tile([0, 0, 0], [0], signal, nothing), failing("broken"));
+});
+
+test("a store that did not answer is tried again, and a page has to tell where its store is", async () => {
+  mock.timers.enable({ apis: ["setTimeout"] });
+  const turn = setInterval(() => mock.timers.tick(5000), 0);
+  try {
+    const { stream } = streamOf();
+    fault = () => 503;
+    await assert.rejects(stream.open(), failing("unreachable"));
+    fault = () => null;
+    await stream.open();
+    await stream.open();
+    const beside = new Stream({ store: { url: "./flow.zarr" } } as unknown as Header, "file:///page.html");
+    await assert.rejects(beside.open(), /open it from a web server/);
+    assert.throws(() => new Stream({} as Header, BASE), /does not tell where its store is/);
+  } finally {
+    clearInterval(turn);
+    mock.timers.reset();
+  }
+});
+
 test("what is given up ends at once, without a fault", async () => {
   // Time stands still: it does not wait for the next trial.
   mock.timers.enable({ apis: ["setTimeout"] });
