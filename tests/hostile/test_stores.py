@@ -28,12 +28,15 @@ from flowtex.tiles import TileKey
 
 zarr = pytest.importorskip("zarr")
 
+#: A root of 70 by 20 nodes, of which the finest level has 3 tiles and 2 parts.
+ROOT_NODES = 2000
+
 Harm = Callable[[Path], None]
 
 
 def flow() -> FlowField:
     """Two steps on crooked lines, with land and a scalar."""
-    y, x = np.mgrid[0:30, 0:40] / 100
+    y, x = np.mgrid[0:140, 0:40] / 100
     steps = [np.stack([np.cos(3 * y + t), np.sin(4 * x - t)], axis=-1) for t in range(2)]
     return FlowField.from_arrays(
         np.stack([x + 0.1 * y**2, y], axis=-1),
@@ -46,15 +49,15 @@ def flow() -> FlowField:
 
 
 @pytest.fixture(autouse=True)
-def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 600)
+def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", ROOT_NODES)
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Path:
     place = tmp_path_factory.mktemp("whole") / "flow.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 600)
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", ROOT_NODES)
         assert build(flow(), place, levels="all", progress=False).depth == 1
     return place
 
