@@ -202,6 +202,7 @@ PROTOCOLS = {
     "field/remote/packing.py: ValueError",
     "field/steps.py: IndexError",  # of sequences
     "pyramid/checks.py: ValueError",
+    "pyramid/objects.py: ValueError",  # of a codec of Zarr's
     "pyramid/served.py: IndexError",
     "rendering/webgl/client_data.py: IndexError",
     "tiles/pyramid.py: KeyError",
