@@ -10,7 +10,7 @@ from typing import Any
 __all__ = ["PATIENCE_S", "until", "wait_until"]
 
 #: Seconds that a slow and busy machine may take for anything. Nothing passes by being quicker.
-PATIENCE_S = 60.0
+PATIENCE_S = 180.0
 INTERVAL_S = 0.005
 
 

@@ -20,6 +20,11 @@ DECODED = """async () => {
   if (image?.src) await image.decode().catch(() => null);
   await new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)));
 }"""
+#: Ends when the server has answered what the page, which gathers for 0.1 s, has sent.
+SENT = """async () => {
+  await new Promise((f) => setTimeout(f, 120));
+  await window.trame.trigger("nothing");
+}"""
 
 
 def count(page: Page) -> int:
@@ -45,12 +50,18 @@ class Watch:
             return np.asarray(picture.convert(self._mode).crop(self._bare), dtype=float)
 
     def settled(self, page: Page, before: int = 0) -> Any:
-        """Wait for the next full picture after so many, and return what is seen."""
-        page.wait_for_function(
-            "n => Number(document.querySelector('[data-sharp]')?.dataset.sharp) > n"
-            " && document.querySelector('[data-picture=sharp]')",
-            arg=before,
-        )
+        """Wait for a full picture after so many that nothing follows, and return what is seen."""
+        while True:
+            page.wait_for_function(
+                "n => Number(document.querySelector('[data-sharp]')?.dataset.sharp) > n"
+                " && document.querySelector('[data-picture=sharp]')",
+                arg=before,
+            )
+            seen = count(page)
+            # What the page has still to send may move the picture once more.
+            page.evaluate(SENT)
+            if page.query_selector("[data-picture=sharp]") and count(page) == seen:
+                break
         page.evaluate(DECODED)
         return self.shot(page)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 #: Test files, and the folders and files outside their own package that they judge.
@@ -43,6 +44,7 @@ def module_name(path: str) -> str:
     )
 
 
+@cache
 def imported_modules(path: Path) -> set[str]:
     """Return what a file imports anywhere; ``from a import b`` may mean the module ``a.b``."""
     found: set[str] = set()

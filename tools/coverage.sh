@@ -19,9 +19,12 @@ NODE_V8_COVERAGE=$folder/node sh "$here/client.sh" "$bin" test
 trap 'sh "$here/client.sh" "$bin" build' EXIT
 trap 'exit 130' INT TERM
 sh "$here/client.sh" "$bin" plain
-PYTHONPATH=tests:${PYTHONPATH:-} "$bin/coverage" run -m pytest -p client_coverage -n "$(workers "$bin")" \
-    --dist loadfile --no-loadscope-reorder "$@" ||
-    say "some tests failed: what they run counts as far as they came"
+# Where Playwright's event loop runs, no test runs another: tests with a browser are apart.
+for kind in "not browser" browser; do
+    PYTHONPATH=tests:${PYTHONPATH:-} "$bin/coverage" run -m pytest -p client_coverage -n "$(workers "$bin")" \
+        --dist loadfile --no-loadscope-reorder -m "$kind" "$@" ||
+        say "some tests failed: what they run counts as far as they came"
+done
 
 say "flowtex/, in full in $folder/html"
 "$bin/coverage" combine --quiet

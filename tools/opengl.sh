@@ -16,6 +16,11 @@ fi
 stamp=$(dirname "$(dirname "$python")")/.opengl-$kind
 [ -e "$stamp" ] && exit 0
 
+# The trial alone, which loads nothing of the package, says in a second that all is well.
+case $("$python" -P "$here/../flowtex/diagnostics.py" --try 2>/dev/null) in
+*'"usable": true'*) touch "$stamp" && exit 0 ;;
+esac
+
 # draws: whether VTK draws; what it lacks is left in $lacks. A fault of the code must not look like that.
 draws() {
     lacks=$("$python" -c 'import sys

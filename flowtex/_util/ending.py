@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import tempfile
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -41,6 +42,8 @@ def ended_by_signals() -> Iterator[None]:
     as under nohup, is ignored still.
     """
     received: list[int] = []
+    # Python tries that folder by a file, once, which a signal in between would leave there.
+    tempfile.gettempdir()
 
     def end(number: int, frame: FrameType | None) -> None:
         del frame

@@ -87,6 +87,11 @@ def test_a_virtual_dataset_of_the_file_itself_is_read(tmp_path: Path) -> None:
         ("wide.nc", lies.netcdf_header(5, 2**60), "declares some 10^18 bytes"),
         ("constant.grib", lies.grib2(2**32 - 1), "the grid of message 1 declares 34.4 GB"),
         (
+            "sections.grib",
+            lies.grib2(4)[:19] + b"\x16" + lies.grib2(4)[20:],
+            "the sections of message 1 do not lead to its end",
+        ),
+        (
             "list.ply",
             b"ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list\nend_header\n",
             "its header has b'property list",

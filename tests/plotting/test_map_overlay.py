@@ -10,6 +10,7 @@ import pyvista as pv
 from earth_data import winds as winds_on_lines
 from earth_fields import ocean, winds
 from flows import gyre
+from small_tiles import shrink
 
 import flowtex
 from flowtex._util.array_types import Floats
@@ -20,6 +21,7 @@ from flowtex.options import LAND_COLOR
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
 from flowtex.plotting.vtk_camera import read_camera
 from flowtex.rendering.map_overlay import globe_radius, land_cells, map_lines
+from flowtex.rendering.vtk import FlowSurface
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -82,6 +84,39 @@ def test_no_surface_hides_its_lines(name: str, zoom: float) -> None:
     assert rows[SIZE[1] // 4 : -SIZE[1] // 4].mean() > 0.97
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_far_side_of_a_whole_globe_is_left_out(
+    plotter: Any, monkeypatch: pytest.MonkeyPatch, turned: bool
+) -> None:
+    field = winds()
+    if turned:
+        lines = np.arange(field.shape[0])[::-1], np.arange(field.shape[1])
+        field = field.at_lines(*lines)
+    handle = plotter.flowtex.add(field, show_scalar_bar=False, **OFF)
+    prop = handle.actor.prop
+    near = shot(plotter)
+    assert prop.culling == ("front" if turned else "back")
+    other = "back" if turned else "front"
+    prop.culling = other  # chosen by somebody
+    far = shot(plotter)
+    assert prop.culling == other
+    assert np.abs(near - far).mean() > 5
+    prop.culling = "none"
+    for opacity in (0.5, 1.0):
+        handle.opacity = opacity
+        plotter.render()
+        assert (prop.culling == "none") == (opacity < 1)
+    plotter.camera.position, plotter.camera.focal_point = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
+    plotter.render()
+    assert prop.culling == "none"
+    plotter.reset_camera()
+    plotter.view_yz()
+    near = shot(plotter)
+    monkeypatch.setattr(FlowSurface, "_cull", lambda self: None)
+    prop.culling = "none"
+    assert np.mean(np.abs(shot(plotter) - near).max(axis=-1) > 3) < 1e-3
+
+
 def test_what_is_behind_the_globe_is_hidden() -> None:
     field = ocean("globe")
     camera = Camera((2e7, 0, 0), (0, 0, 0), (0, 0, 1))
@@ -118,11 +153,12 @@ def test_land_has_its_colour_or_none(plotter: Any) -> None:
 def test_islands_that_only_finer_levels_have_are_land(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1000)
-    lon, lat = np.linspace(0, 30, 301), np.linspace(0, 20, 201)
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 300)
+    shrink(monkeypatch.setattr)
+    lon, lat = np.linspace(5, 20, 151), np.linspace(5, 15, 101)
     data = winds_on_lines(lon, lat)
     # Of three nodes; the coarsest level has every 16th.
-    data.u.values[102:105, 152:155] = np.nan
+    data.u.values[52:55, 102:105] = np.nan
     field = flowtex.FlowField.from_xarray(data, projection=name)
     assert field.projection is not None
     focus = field.projection.positions(np.array(15.3), np.array(10.3))
@@ -224,24 +260,30 @@ def test_a_line_along_nodes_is_not_torn() -> None:
     assert len(lines.starts) - 1 == 8  # four meridians and four parallels
 
 
-@pytest.mark.parametrize("zoom", [1.0, 4.0, 30.0])
-def test_the_globe_below_comes_through_nowhere(opengl: Any, zoom: float) -> None:
-    """However coarse the triangles are that a view takes of a fine mesh."""
-    del opengl
+@pytest.fixture(scope="module")
+def fine() -> flowtex.FlowField:
+    """A field that is traced once for all views."""
     projection = Projection("globe")
-    lon, lat = np.meshgrid(np.arange(-180.0, 180.0, 0.75), np.arange(-80.0, 80.1, 0.75))
+    lon, lat = np.meshgrid(np.arange(-180.0, 180.0, 1.5), np.arange(-80.0, 80.1, 1.5))
     u, v = 10 * np.cos(np.radians(lat)), 3 * np.sin(np.radians(3 * lon))
-    field = flowtex.FlowField.from_arrays(
+    return flowtex.FlowField.from_arrays(
         projection.positions(lon, lat), projection.vectors(lon, lat, u, v), projection=projection
     )
+
+
+@pytest.mark.parametrize("zoom", [1.0, 4.0, 30.0])
+def test_the_globe_below_comes_through_nowhere(fine: flowtex.FlowField, zoom: float) -> None:
+    """However coarse the triangles are that a view takes of a fine mesh."""
+    projection = Projection("globe")
+    field = fine
     options: dict[str, Any] = {"coastlines": False, "graticule": False, "zoom": zoom}
     options |= {
-        "size": (240, 180),
+        "size": (120, 90),
         "focus": tuple(projection.positions(np.array(20.0), np.array(45.0))),
     }
     with_globe, without = (
         flowtex.render(field, land=land, **options).astype(int) for land in ("red", None)
     )
     # Only beyond the last parallel is there anything of it.
-    inside = np.s_[60:150, 70:170]
+    inside = np.s_[30:75, 35:85]
     assert np.abs(with_globe - without)[inside].max() == 0

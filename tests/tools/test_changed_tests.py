@@ -1,7 +1,8 @@
 from __future__ import annotations
 
+import contextlib
 import runpy
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -9,13 +10,11 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.fixture
-def concerned_tests(monkeypatch: pytest.MonkeyPatch) -> Callable[[set[str]], list[str]]:
-    monkeypatch.chdir(ROOT)
-    found: Callable[[set[str]], list[str]] = runpy.run_path("tools/changed_tests.py")[
-        "concerned_tests"
-    ]
-    return found
+@pytest.fixture(scope="module")
+def concerned_tests() -> Iterator[Callable[[set[str]], list[str]]]:
+    """One for all, as it keeps what it has read of each file."""
+    with contextlib.chdir(ROOT):
+        yield runpy.run_path("tools/changed_tests.py")["concerned_tests"]
 
 
 def test_a_module_concerns_its_folder_and_who_imports_it(

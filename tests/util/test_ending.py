@@ -6,14 +6,23 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from served import signals_of_a_terminal
 from waiting import wait_until
 
 from flowtex import examples
 from flowtex._util.ending import Ended, ended_by_signals
 from flowtex.cli import commands, main
+
+
+@pytest.fixture(autouse=True)
+def _signals() -> Iterator[None]:
+    with signals_of_a_terminal():
+        yield
+
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 

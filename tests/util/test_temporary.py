@@ -47,11 +47,17 @@ def hold(how: str) -> subprocess.Popen[str]:
     )
 
 
+def path_of(process: subprocess.Popen[str]) -> Path:
+    assert process.stdout is not None
+    return Path(process.stdout.readline().strip())
+
+
 def test_a_folder_of_a_process_that_was_killed_is_removed_by_the_next(place: Path) -> None:
-    with hold("killed") as killed, hold("waits") as waits:
-        assert killed.stdout is not None and waits.stdout is not None
-        left, used = (Path(p.stdout.readline().strip()) for p in (killed, waits))  # type: ignore[union-attr]
-        killed.wait(60)
+    with hold("waits") as waits:
+        used = path_of(waits)
+        # Begun after the other has its folder, which would remove that of a killed process.
+        with hold("killed") as killed:
+            left = path_of(killed)
         # Folders of other programs and of people are none of ours.
         others = [place / "flowtex-results.tmp.d", place / "flowtex-data", place / "flowtex-a.tmp"]
         for other in others:

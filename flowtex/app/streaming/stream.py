@@ -91,8 +91,9 @@ class FrameStream:
         Whether the last picture was one in motion.
     watched
         Tells whether anyone looks; nothing is drawn for nobody.
-    frame_drawn
-        Signal with :class:`Figures` after each picture.
+    frame_drawn, frame_due
+        Signal with :class:`Figures` after each picture, and one when a sharp picture has become
+        out of date.
     frame_skipped
         Signal in place of drawing while it is paused.
     data_failed
@@ -106,14 +107,15 @@ class FrameStream:
         self.streamer: Any = None
         self.playing = self.paused = self.moving = False
         self.watched: Callable[[], bool] = lambda: True
-        self.frame_drawn, self.frame_skipped, self.data_failed = Signal(), Signal(), Signal()
+        self.frame_drawn, self.frame_due = Signal(), Signal()
+        self.frame_skipped, self.data_failed = Signal(), Signal()
         self.painter = ViewPainter(viewport)
         self.pointer = Pointer(viewport)
         self._viewport = viewport
         self._spent = {"drawing": 0.0, "encoding": 0.0, "network": 0.0}
         self._wake = asyncio.Event()
         self._drawn = asyncio.Event()
-        self._sized = False
+        self._sized = self._shown_sharp = False
         self._closed = False
         self._fault = ""
         self._tiled = 0.0
@@ -168,6 +170,9 @@ class FrameStream:
         self._wake.set()
         if self.paused:
             self.frame_skipped.emit()
+        elif self._shown_sharp:
+            self._shown_sharp = False
+            self.frame_due.emit()
 
     def changed(self) -> None:
         """Ask for a picture after a change of what is seen."""
@@ -268,7 +273,8 @@ class FrameStream:
                     looked = time.perf_counter()
         if canvas is not None:
             await self._send(canvas, REST_QUALITY)
-            self._report(started, sharp=True)
+            if not self._wake.is_set():
+                self._report(started, sharp=True)
 
     async def _send(self, pixels: Bytes, quality: int) -> None:
         height, width = pixels.shape[:2]
@@ -296,7 +302,7 @@ class FrameStream:
         limit = max(self._spent, key=lambda part: self._spent[part])
         if not sharp and now - started < 0.9 / MOST_RATE_HZ:
             limit = "nothing"
-        self.moving = not sharp
+        self.moving, self._shown_sharp = not sharp, sharp
         self.frame_drawn.emit(Figures(sharp, rate, now - started, self._viewport.size, limit))
 
     def _spend(self, part: str, since: float) -> float:

@@ -27,16 +27,15 @@ await this.load(source.surface),playing&&this.viewer?.play()}async load(address)
 isDisposed)for(let part of parts)this.viewer?.setPart(part)}async parts(address,signal){let answer=await fetch(address,{
 signal});if(!answer.ok)throw new Error(`${address}: ${answer.status}`);return this.client?.partsOfFile(await answer.arrayBuffer())??
 []}look(){let now=performance.now();this.viewer?.sharp?this.emit("sharp",now-this.started):this.started=now}take(name){let{
-viewer,lastCamera,lastTime}=this,{settings,camera,time,playing}=this.props;viewer&&(name==="source"?this.show():name==="\
-settings"?viewer.setSettings(settings):name==="camera"&&camera&&!isEqual(camera,lastCamera)?viewer.setCamera(camera):name===
-"time"&&time!==lastTime&&!viewer.playing?viewer.setTime(time):name==="playing"&&playing?viewer.play():name==="playing"&&
-viewer.pause())}dispose(){this.isDisposed=!0,this.watcher.disconnect(),this.viewer?.dispose()}},browser={name:"flowtex-c\
-lient",props:PROPS,emits:["update:camera","update:time","update:playing","setting","sharp","point","hover"],setup(props,{
-emit}){let{h,ref,watch,onMounted,onBeforeUnmount}=vue(),place=ref(null),view=new BrowserView(props,emit);onMounted(()=>place.
-value&&void view.begin(place.value)),onBeforeUnmount(()=>view.dispose());let follow=name=>watch(()=>props[name],()=>view.
-take(name));PROPS.forEach(follow);let sendHover=slowly(at=>emit("hover",at)),onPointermove=event=>{if(!place.value)return;
-let{x,y}=placeIn(place.value,event);sendHover(event.buttons?null:[x,y])},onPointerleave=()=>sendHover(null);return()=>h(
-"div",{ref:place,onPointermove,onPointerleave})}};var PANELS=".flowtex-title, .flowtex-buttons, .flowtex-panel, .flowtex-corner, .flowtex-player",CORNER_PX=200,GAP_PX=4;function coverOf(panel,whole){
+viewer,lastCamera,lastTime}=this,{settings,camera,time,playing}=this.props;if(!viewer)return;({source:()=>{this.show()},
+settings:()=>viewer.setSettings(settings),camera:()=>camera&&!isEqual(camera,lastCamera)&&viewer.setCamera(camera),time:()=>time!==
+lastTime&&!viewer.playing&&viewer.setTime(time),playing:()=>playing?viewer.play():viewer.pause()})[name]()}dispose(){this.
+isDisposed=!0,this.watcher.disconnect(),this.viewer?.dispose()}},browser={name:"flowtex-client",props:PROPS,emits:["upda\
+te:camera","update:time","update:playing","setting","sharp","point","hover"],setup(props,{emit}){let{h,ref,watch,onMounted,
+onBeforeUnmount}=vue(),place=ref(null),view=new BrowserView(props,emit);onMounted(()=>place.value&&void view.begin(place.
+value)),onBeforeUnmount(()=>view.dispose());let follow=name=>watch(()=>props[name],()=>view.take(name));PROPS.forEach(follow);
+let sendHover=slowly(at=>emit("hover",at)),onPointermove=event=>{if(!place.value)return;let{x,y}=placeIn(place.value,event);
+sendHover(event.buttons?null:[x,y])},onPointerleave=()=>sendHover(null);return()=>h("div",{ref:place,onPointermove,onPointerleave})}};var PANELS=".flowtex-title, .flowtex-buttons, .flowtex-panel, .flowtex-corner, .flowtex-player",CORNER_PX=200,GAP_PX=4;function coverOf(panel,whole){
 let{left,top,right,bottom,width}=panel.getBoundingClientRect();if(!width)return null;let end=panel.matches(".flowtex-cor\
 ner")?Math.min(right,left+CORNER_PX):right,foot=panel.matches(".flowtex-panel")?whole.bottom:bottom,share=(edge,start,size)=>Number(
 clamp((edge-start)/size,0,1).toFixed(4));return[share(left-GAP_PX,whole.left,whole.width),share(top-GAP_PX,whole.top,whole.

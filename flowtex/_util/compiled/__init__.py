@@ -33,12 +33,12 @@ def prepare(size: int) -> threading.Thread | None:
 
 def _load() -> None:
     try:
-        from flowtex._util import kernels as module
+        from flowtex._util.compiled import loops as module
     except Exception:  # whatever numba or LLVM lack here, NumPy does the same
         return
     _loaded.append(module)
 
 
 def kernels() -> Any:
-    """Return the module :mod:`flowtex._util.kernels` once it is compiled, before that ``None``."""
+    """Return :mod:`flowtex._util.compiled.loops` once it is compiled, before that ``None``."""
     return _loaded[0] if _loaded else None

@@ -3,7 +3,7 @@
 One particle after the other by the same scheme and rules as in NumPy, so that both give the same
 up to rounding. Paths over poles, those in fields without a sign, and on triangles those in flows
 that vary are left to the other. Importing
-this module compiles it, or loads it from numba's cache; :mod:`flowtex.trace.compiled` does.
+this module compiles it, or loads it from numba's cache; :mod:`flowtex._util.compiled` does.
 """
 
 from __future__ import annotations

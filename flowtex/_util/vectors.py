@@ -1,0 +1,19 @@
+"""Products of vectors along the last axis, of which NumPy's sums over few components are slow."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+
+__all__ = ["dot", "norm"]
+
+
+def dot(one: Floats, other: Floats) -> Floats:
+    """Inner products of vectors (..., C), of shape (...)."""
+    return np.asarray(np.einsum("...c,...c->...", one, other))
+
+
+def norm(vectors: Floats) -> Floats:
+    """Lengths of vectors (..., C), of shape (...)."""
+    return np.sqrt(dot(vectors, vectors))
