@@ -6,7 +6,8 @@ report as one line of JSON::
 
     opengl_report()  ->  python diagnostics.py --try  ->  OpenGLReport, also after a crash
 
-The second process is started once per process.
+The second process is started once per process. It runs this file alone, without the package, so
+nothing of that is imported before it is needed.
 """
 
 from __future__ import annotations
@@ -22,17 +23,16 @@ import signal
 import subprocess
 import sys
 from collections.abc import Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal
-
-from flowtex._util.extras import install_extra
-from flowtex._util.terminal.console import terminal
 
 __all__ = [
     "Check",
     "OpenGLMissingError",
     "OpenGLReport",
+    "begin_trial",
     "diagnose",
     "main",
     "opengl_report",
@@ -44,7 +44,7 @@ __all__ = [
 WINDOW_VARIABLE = "VTK_DEFAULT_OPENGL_WINDOW"
 TRIAL_COMMAND = (sys.executable, "-P", str(Path(__file__).resolve()), "--try")
 TRIAL_TIMEOUT_S = 120.0
-REQUIRED = ("numpy", "scipy", "pyvista", "vtk")
+REQUIRED = ("numpy", "scipy", "pyvista", "vtk", "h5py")
 OPTIONAL = {"trame": "app", "trame-vuetify": "app", "trame-rca": "app", "anywidget": "notebook"}
 #: Words in the names of renderers that draw with the processor.
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render", "gdi generic")
@@ -126,9 +126,22 @@ def prefer_headless() -> None:
         os.environ.setdefault(WINDOW_VARIABLE, "vtkEGLRenderWindow")
 
 
+def begin_trial() -> Future[OpenGLReport]:
+    """Begin to try OpenGL in a second process, beside what else there is to do before drawing."""
+    # A forked process has not the thread that waits for the report.
+    return _trial_of(os.getpid())
+
+
+@functools.cache
+def _trial_of(process: int) -> Future[OpenGLReport]:
+    del process
+    prefer_headless()
+    return ThreadPoolExecutor(1, "flowtex OpenGL").submit(run_trial, TRIAL_COMMAND)
+
+
 @functools.cache
 def opengl_report() -> OpenGLReport:
-    """Try OpenGL in a second process, which takes about one second; the report is cached.
+    """Return what a second process found, which takes about one second; the report is cached.
 
     Examples
     --------
@@ -136,8 +149,7 @@ def opengl_report() -> OpenGLReport:
     >>> opengl_report().usable
     True
     """
-    prefer_headless()
-    return run_trial(TRIAL_COMMAND)
+    return begin_trial().result()
 
 
 def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenGLReport:
@@ -272,6 +284,8 @@ def _shaders() -> Check:
 
 
 def _packages() -> list[Check]:
+    from flowtex._util.extras import install_extra
+
     checks = []
     for name in (*REQUIRED, *OPTIONAL):
         extra = OPTIONAL.get(name)
@@ -289,6 +303,8 @@ def print_checks(checks: Sequence[Check]) -> None:
     """Print the checks as a table, and each remedy on a line of its own that can be copied."""
     from rich.table import Table
     from rich.text import Text
+
+    from flowtex._util.terminal.console import terminal
 
     colours = {"ok": "green", "warn": "yellow", "fail": "bold red"}
     table = Table("", "what", "found", box=None)
@@ -341,6 +357,7 @@ def try_opengl() -> OpenGLReport:
 
 if __name__ == "__main__":
     if sys.argv[1:] == ["--try"]:
+        prefer_headless()
         sys.stdout.write(json.dumps(asdict(try_opengl())) + "\n")
     else:
         sys.exit(main())

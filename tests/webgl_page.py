@@ -17,14 +17,18 @@ from PIL import Image
 from flowtex.camera import Camera
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Parts, part_info, parts_file
+from flowtex.tiles import TileKey
 from flowtex.web.assets import asset
+from flowtex.web.tiles import packed_tile, tile_loader
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
-__all__ = ["ClientPage", "packed", "state"]
+__all__ = ["ClientPage", "TileMaker", "packed", "state", "tile_maker"]
 
 Pixels = NDArray[np.uint8]
+#: Gives the parts of a tile, by its key and time steps.
+TileMaker = Callable[[Any, Any], Parts]
 
 HTML = """<!doctype html><meta charset="utf-8"><title>client</title>
 <style>body { margin: 0 } .view { width: 300px; height: 200px }</style><body></body>"""
@@ -82,6 +86,21 @@ def packed(scene: ClientData, header: Mapping[str, Any], steps: tuple[int, ...] 
     return {"header": dict(header), "parts": parts}
 
 
+def tile_maker(data: ClientData) -> TileMaker:
+    """Return what makes the tiles of a surface when they are asked for."""
+    assert data.pyramid is not None
+    loader = tile_loader(data, data.pyramid)
+
+    def tile(key: Any, steps: Any) -> Parts:
+        loader.request([TileKey(*key)], steps)
+        loader.wait()
+        made = loader.get(TileKey(*key), steps)
+        assert made is not None
+        return packed_tile(data, made, steps)
+
+    return tile
+
+
 @dataclass
 class ClientPage:
     """A page that has loaded the client, with what it complained of and asked for."""
@@ -89,8 +108,7 @@ class ClientPage:
     page: Page
     errors: list[str] = field(default_factory=list)
     asked: list[str] = field(default_factory=list)
-    #: Gives the parts of a tile, by its key and time steps.
-    tile: Callable[[Any, Any], Parts] = lambda key, steps: {}
+    tile: TileMaker = lambda key, steps: {}
     tiles: list[Any] = field(default_factory=list)
 
     def __post_init__(self) -> None:

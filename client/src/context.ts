@@ -3,6 +3,7 @@
 
 import type { Part } from "./protocol.ts";
 import { Programs } from "./programs.ts";
+import type { Tracing } from "./tracer.ts";
 
 const OUTLINE_SAMPLES = 4;
 /** Milliseconds that all viewers may draw in one frame of the page. */
@@ -41,6 +42,8 @@ export class Graphics {
   /** What views of the same scene have in common: objects by what they were made of, and arrays. */
   readonly common = new Map<string, Resource>();
   readonly stock = new Map<string, { part: Part; users: number }>();
+  /** Slices that are being traced, by their digests. */
+  readonly tracings = new Map<string, Tracing>();
   objects = 0;
   isLost = false;
   /** Whether half-precision textures are drawn into, which their mip levels are made with. */
@@ -65,6 +68,7 @@ export class Graphics {
       this.objects = 0;
       this.programs.clear();
       this.common.clear();
+      this.tracings.clear();
       this.picker = this.smooth = null;
       for (const user of this.users) user.lost();
     });

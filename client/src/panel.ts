@@ -34,6 +34,7 @@ export interface PanelHost extends ControlsHost, ColoursHost {
   readonly player: Player;
   readonly card: PointCard;
   readonly lacking: string[];
+  readonly tiles: { pending: number; wanted: number } | null;
   readonly together: readonly { canvas: HTMLCanvasElement }[];
   togglePlaying(): void;
   scrub(share: number): void;
@@ -55,7 +56,7 @@ export class Panel {
   private readonly readout = dom("div", { class: "readout", role: "status" });
   private readonly head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.readout]);
   private readonly note = dom("div", { class: "note", hidden: "", role: "alert" });
-  private readonly busy = dom("div", { class: "busy", hidden: "" }, ["waiting for data …"]);
+  private readonly busy = dom("div", { class: "busy", hidden: "" });
   private readonly told = dom("div", { class: "told glass", hidden: "", role: "status" });
   private readonly words = new Set<string>();
   private readonly hintBox = dom("div", { class: "hint glass", hidden: "" }, [HINT]);
@@ -240,10 +241,15 @@ export class Panel {
     this.gear.setAttribute("aria-pressed", String(this.isOpen));
   }
 
-  /** Show that parts are on their way, or that none are. */
-  wait(missing: string[]): void {
-    this.busy.hidden = !missing.length;
-    const { viewer } = this;
+  /** Show that parts are on their way, paths being traced or tiles to come, or nothing of these. */
+  wait(missing: string[], isMade: boolean): void {
+    const { viewer, busy } = this;
+    const { pending = 0, wanted = 0 } = viewer.tiles ?? {};
+    const tiles = pending ? `${wanted - pending} of ${wanted} tiles …` : "";
+    const traces = isMade ? tiles : "tracing paths …";
+    const text = missing.length ? "waiting for data …" : traces;
+    if (busy.textContent !== text) busy.textContent = text;
+    busy.hidden = !text;
     if (!missing.length || viewer.options.onNeed || this.lateTimer) return;
     // Parts come in any order.
     this.lateTimer = viewer.lifetime.later(() => {
@@ -271,6 +277,7 @@ export class Panel {
 
   /** Take a message away, as a picture is complete. */
   clear(): void {
+    this.wait([], true);
     this.note.hidden = true;
     delete this.viewer.root.dataset.failed;
   }

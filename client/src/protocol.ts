@@ -5,7 +5,7 @@
 import type { CameraLimits, CameraState, Surface } from "./camera.ts";
 
 /** Form of header and parts that this client reads. */
-export const FORMAT = 3;
+export const FORMAT = 4;
 /** Share of the larger end of a range below which a legend tells the other one as 0. */
 const ZERO_SHARE = 1e-5;
 
@@ -25,9 +25,14 @@ export interface NamedPart extends Part {
   name: string;
 }
 
-/** A part without its numbers. */
+/** A part without its numbers, and how these are packed in a page. */
 export interface PartInfo extends Omit<NamedPart, "data"> {
   dtype: string;
+  /** How often numbers are those of the differences to the ones so far before them. */
+  differences?: number;
+  stride?: number;
+  /** Exponent of the unit of single precision that comes as whole numbers. */
+  scale?: number | null;
 }
 
 /** A line of nodes along an axis of the textures. */
@@ -177,15 +182,34 @@ export interface StoreHeader {
   steps: number[];
 }
 
+/** What slices are traced from, where the client does: flowtex/rendering/webgl/velocity.py. */
+export interface TraceHeader {
+  /** Names of the parts that are the same at all times. */
+  parts: string[];
+  /** Rows and columns of the nodes, the one that the first texel would hold, and the first drawn one. */
+  nodes: [number, number];
+  first: [number, number];
+  drawn: [number, number];
+  closed: [boolean, boolean];
+  /** Change of a position with a period, along j and i, and the point that positions are relative to. */
+  offset: number[];
+  middle: number[];
+  /** Typical length of a unit of lag, and nominal length of one. */
+  unit: number;
+  pace: number;
+}
+
 type ShaderName =
   "vertex" | "fragment" | "pick" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment";
+/** Those of a client that traces. */
+type TraceShaderName = "fullVertex" | "trace" | "layers";
 
 export interface Header {
   format: number;
   name: string;
   /** Names of the shaders' variant, such as FLOWTEX_PLANAR. */
   variant: string[];
-  shaders: Record<ShaderName, string>;
+  shaders: Record<ShaderName, string> & Partial<Record<TraceShaderName, string>>;
   geometry: Geometry;
   slices: {
     count: number;
@@ -203,6 +227,8 @@ export interface Header {
     times: number[];
     timeUnit: string;
     dates: Dates;
+    /** Where the client makes the slices. */
+    trace?: TraceHeader;
   };
   lengthUnit: string;
   /** Words and unit of the speed in the surface, and a typical one. */
@@ -327,16 +353,19 @@ export function decoded(info: PartInfo, bytes: ArrayBuffer | ArrayBufferView): N
 
 /** Parts of a file: the length of the descriptions in four bytes, descriptions in JSON, arrays. */
 export function partsOfFile(file: ArrayBuffer): NamedPart[] {
-  const length = new DataView(file).getUint32(0, true);
-  const infos: (PartInfo & { bytes: number })[] = JSON.parse(
-    new TextDecoder().decode(new Uint8Array(file, 4, length)),
-  );
-  let start = 4 + length;
+  const [infos, first] = infosOfFile(new Uint8Array(file));
+  let start = first;
   return infos.map((info) => {
     const bytes = new Uint8Array(file, start, info.bytes);
     start += info.bytes;
-    return decoded(info, bytes);
+    return info.stride === undefined ? decoded(info, bytes) : partOfPlanes(info, bytes);
   });
+}
+
+/** Descriptions of the parts of a file, of which the beginning will do, and where its arrays begin. */
+export function infosOfFile(file: Uint8Array): [infos: (PartInfo & { bytes: number })[], first: number] {
+  const first = 4 + new DataView(file.buffer, file.byteOffset).getUint32(0, true);
+  return [JSON.parse(new TextDecoder().decode(file.subarray(4, first))), first];
 }
 
 /** A part of its text in a page: base64 of gzip of the numbers' bytes, those of one significance together. */
@@ -346,12 +375,32 @@ export async function partOfText(info: PartInfo, text: string): Promise<NamedPar
   const packed = new Uint8Array(letters.length);
   for (let n = 0; n < packed.length; n += 1) packed[n] = letters.charCodeAt(n);
   const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  const planes = new Uint8Array(await new Response(unpacked).arrayBuffer());
+  return partOfPlanes(info, new Uint8Array(await new Response(unpacked).arrayBuffer()));
+}
+
+function partOfPlanes(info: PartInfo, planes: Uint8Array): NamedPart {
   const count = info.shape.reduce((product, n) => product * n, 1);
   const width = count ? planes.length / count : 1;
+  const { stride = 1 } = info;
+  const steps = count / stride;
+  if (!Number.isInteger(steps)) throw new Error(`the part "${info.name}" is not packed as it tells`);
   const bytes = new Uint8Array(planes.length);
-  for (let plane = 0; plane < width; plane += 1) {
-    for (let n = 0; n < count; n += 1) bytes[n * width + plane] = planes[plane * count + n];
+  for (let n = 0, from = 0; n < width * stride; n += 1) {
+    const [plane, channel] = [Math.floor(n / stride), n % stride];
+    for (let k = 0; k < steps; k += 1) bytes[(k * stride + channel) * width + plane] = planes[from++];
   }
-  return decoded(info, bytes);
+  return decoded(info, summed(info, bytes, width));
+}
+
+const UNSIGNED = { 1: Uint8Array, 2: Uint16Array, 4: Uint32Array } as const;
+
+/** Bytes of numbers of which a page has differences, or multiples of a unit. */
+function summed(info: PartInfo, bytes: Uint8Array<ArrayBuffer>, width: number): ArrayBuffer {
+  const { differences = 0, stride = 1, scale = null } = info;
+  const numbers = new UNSIGNED[width as 1 | 2 | 4](bytes.buffer);
+  for (let order = 0; order < differences; order += 1) {
+    for (let n = stride; n < numbers.length; n += 1) numbers[n] += numbers[n - stride];
+  }
+  if (scale === null) return bytes.buffer;
+  return Float32Array.from(new Int32Array(bytes.buffer), (n) => n * 2 ** scale).buffer;
 }

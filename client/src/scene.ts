@@ -7,6 +7,7 @@ import { coordinates, cornersAt, noiseCoordinates, positions, shares, type Corne
 import { MeshLevels, type Sight } from "./meshlevels.ts";
 import { SAMPLERS } from "./programs.ts";
 import { stepOf, type Data, type Header, type Part } from "./protocol.ts";
+import { normalOf, positionOf, Tracing, type Made } from "./tracer.ts";
 import {
   atVertices,
   cornersOf,
@@ -30,6 +31,8 @@ const USERS: Record<string, string[]> = {
   step: ["step"],
   scalars: ["scalar"],
 };
+/** Parts that slices are traced from beside the flow. */
+const SOURCES = ["padded", "unit", "open", "nearest"];
 
 type Scalar = Pick<Header["scalars"], "name" | "steps" | "number">;
 
@@ -52,6 +55,8 @@ export class Scene {
   /** Levels of the mesh's blocks, and of their borders. */
   private drawn: { levels: Int8Array; joins: Int8Array } | null = null;
   private meshLevels: MeshLevels | TriangleMesh | null = null;
+  /** Slices that are being traced, by their digest. */
+  private tracing = "";
 
   constructor(graphics: Graphics, header: Header, parts: Map<string, Part>) {
     this.graphics = graphics;
@@ -63,11 +68,12 @@ export class Scene {
   /** Names of the parts that a moment needs and that are not there. */
   missing(before: number, after: number): string[] {
     const { geometry, slices, scalars, paper, pyramid } = this.header;
-    const names = ["position", "mesh", ...(geometry.planar ? [] : ["normal"])];
+    const { trace } = slices;
+    const names = ["mesh", ...(trace?.parts ?? ["position", ...(geometry.planar ? [] : ["normal"])])];
     if (pyramid) names.push("places");
     if (geometry.triangles) names.push("triangles", "blocks");
     for (const step of new Set([before, after])) {
-      names.push(`slices/${step}`);
+      names.push(`${trace ? "flow" : "slices"}/${step}`);
       if (slices.channels === 2) names.push(`extra/${step}`);
     }
     names.push(...this.scalarParts(before, after));
@@ -90,7 +96,11 @@ export class Scene {
     if (!part) return false;
     const { geometry, slices, paper, mesh } = this.header;
     const blocks = geometry.shape.map((n) => Math.max(Math.ceil((n - 1) / mesh.tileCells), 1));
+    const nodes = slices.trace?.nodes ?? [];
     const shapes: Record<string, number[]> = {
+      flow: [...nodes, part.shape[2]],
+      unit: nodes,
+      padded: [...nodes.map((n) => n + 2), 3],
       slices: [slices.count, geometry.rows.size, geometry.columns.size, slices.channels],
       position: [...geometry.shape, 3],
       mesh: geometry.triangles ? part.shape : [...blocks, part.shape[2]],
@@ -98,6 +108,68 @@ export class Scene {
     };
     const shape = shapes[name.split("/")[0]];
     return !shape || String(shape) === String(part.shape);
+  }
+
+  /**
+   * Make the parts of some steps that are not handed over, as far as there is time; tells whether all are
+   * there. Nothing that they are made of may be missing.
+   */
+  make(steps: number[], until: number): boolean {
+    const { slices, geometry } = this.header;
+    const { trace } = slices;
+    if (!trace) return true;
+    const padded = this.part("padded");
+    const digest = (name: string) => this.key(["padded"], name, trace);
+    this.put("position", digest("position"), () => positionOf(padded, trace, geometry.shape));
+    if (!geometry.planar && !trace.parts.includes("normal")) {
+      this.put("normal", digest("normal"), () => normalOf(padded, trace, geometry.shape));
+    }
+    return steps.every((step) => this.trace(step, until));
+  }
+
+  /** Trace the slices of a step, or take those that another view has. */
+  private trace(step: number, until: number): boolean {
+    const { graphics, header } = this;
+    const { trace, lags, sides } = header.slices;
+    if (!trace) return true;
+    const name = `slices/${step}`;
+    const digest = this.key([`flow/${step}`, ...SOURCES], trace, lags, sides);
+    const { tracings } = graphics;
+    if (this.parts.get(name)?.digest === digest) return true;
+    let made: Made | null = graphics.stock.get(digest)?.part ?? null;
+    if (!made) {
+      if (this.tracing !== digest) this.stopTracing();
+      const find = (part: string) => this.parts.get(part);
+      const tracing = tracings.get(digest) ?? new Tracing(graphics, header, trace, find, step);
+      tracings.set((this.tracing = digest), tracing);
+      made = tracing.advance(until);
+      if (!made) return false;
+      this.stopTracing();
+    }
+    this.put(name, digest, () => made);
+    return true;
+  }
+
+  /** Have a part that is made of others, once for all who have the same. */
+  private put(name: string, digest: string, make: () => Made): void {
+    const { graphics, parts } = this;
+    if (parts.get(name)?.digest === digest) return;
+    const part = graphics.stock.get(digest)?.part ?? { ...make(), digest };
+    graphics.release(parts.get(name));
+    parts.set(name, graphics.hold(part));
+    this.forget(name);
+  }
+
+  /** Whether all is there that shows some steps. */
+  isMade(steps: number[]): boolean {
+    const isWhole = !this.missing(steps[0], steps[steps.length - 1]).length;
+    return isWhole && steps.every((step) => this.parts.has(`slices/${step}`));
+  }
+
+  private stopTracing(): void {
+    this.graphics.tracings.get(this.tracing)?.dispose();
+    this.graphics.tracings.delete(this.tracing);
+    this.tracing = "";
   }
 
   part(name: string): Part {
@@ -128,6 +200,7 @@ export class Scene {
 
   dispose(): void {
     for (const name of [...this.resources.keys()]) this.drop(name);
+    this.stopTracing();
     this.earth.dispose();
   }
 

@@ -150,13 +150,6 @@ async function object(url: string, signal: AbortSignal): Bytes {
   }
 }
 
-/** Metadata in which numbers of half precision are whole ones: they go to the graphics card as they are. */
-function readable(bytes: Uint8Array): Uint8Array {
-  const described = JSON.parse(new TextDecoder().decode(bytes)) as Record<string, unknown>;
-  if (described?.data_type !== "float16") return bytes;
-  return new TextEncoder().encode(JSON.stringify({ ...described, data_type: "uint16", fill_value: 0 }));
-}
-
 /** Objects of a store, of which ranges are given from the whole: one request for a shard and its chunks. */
 export class Objects implements zarr.AsyncReadable {
   private readonly url: string;
@@ -192,10 +185,9 @@ export class Objects implements zarr.AsyncReadable {
     const known = this.described.get(key);
     if (known) return known;
     const found = object(this.url + key, new AbortController().signal);
-    const bytes = found.then((there) => there && readable(there));
-    this.described.set(key, bytes);
-    bytes.catch(() => this.described.delete(key));
-    return bytes;
+    this.described.set(key, found);
+    found.catch(() => this.described.delete(key));
+    return found;
   }
 }
 

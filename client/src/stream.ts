@@ -2,6 +2,7 @@
 // where, and flowtex/pyramid/client_parts.py what the surface of a tile is.
 
 import {
+  infosOfFile,
   partsOfFile,
   stepOf,
   tilePart,
@@ -11,22 +12,16 @@ import {
   type StoreHeader,
   type TileHeader,
 } from "./protocol.ts";
-import { Store, StoreError, storeError, type Numbers, type StoreFault } from "./store.ts";
+import { Store, StoreError, storeError, type StoreFault } from "./store.ts";
 import { nameOf, type TileKey } from "./tilechoice.ts";
 
-/** Greatest numbers of layers and of lags, and of nodes along a side, that a tile can have. */
+/** Greatest numbers of layers and of lags, of nodes along a side of a tile, and of bytes of a file. */
 const MOST_LAYERS = 64;
 const MOST_LAGS = 32;
 const MOST_NODES = 4096;
-/** Parts of a surface, their types and numbers of a node. */
-const KINDS: Record<string, [type: abstract new (...args: never[]) => Data, size: number]> = {
-  position: [Float32Array, 3],
-  normal: [Int16Array, 3],
-  cells: [Uint8Array, 1],
-};
-/** Layer in which it is told of a tile what it is. */
-const TOLD = 0;
-const CHANNELS = 4;
+const MOST_BYTES = 2 ** 28;
+/** Parts that a tile may need beside its flow. */
+const TRACED_FROM = ["padded", "unit", "open", "nearest", "normal"];
 
 /** What is said of what could not be had, and why. */
 const COARSE = "A part of the surface is shown coarse:";
@@ -41,17 +36,6 @@ const REASONS: Record<Exclude<StoreFault, "other">, string> = {
 
 /** What of a store has to be that of the page. */
 const IDENTITY = ["format", "fingerprint", "parameter", "lines"] as const;
-/** Share of a number by which it may differ where it was computed elsewhere. */
-const ROUNDING = 1e-6;
-
-/** What traces tell of themselves: which they are, and what they are measured in. */
-type Told = Partial<Pick<Header["slices"], "count" | "lags" | "unit" | "cell">> & {
-  tile?: number[];
-  step?: number;
-  of?: string;
-  size?: number[];
-};
-
 /** Tells whether a part is there, of a tile or of the whole. */
 export type Has = (part: string) => boolean;
 
@@ -61,25 +45,18 @@ interface Surface {
   parts: NamedPart[];
 }
 
-/** Where a tile is read, and what of. */
-interface Place {
-  key: TileKey;
-  header: TileHeader;
-  signal: AbortSignal;
-}
-
 const isCount = (value: unknown, most: number): value is number =>
   Number.isInteger(value) && Number(value) > 0 && Number(value) <= most;
 const areNumbers = (values: unknown, count?: number): values is number[] =>
   Array.isArray(values) && values.every(Number.isFinite) && (count ?? values.length) === values.length;
-const areAlike = (some: unknown[], others: unknown[]) =>
-  some.length === others.length &&
-  some.every((n, k) => Math.abs(Number(n) - Number(others[k])) <= ROUNDING * Math.abs(Number(n)));
+const areWhole = (values: unknown, count: number): boolean =>
+  areNumbers(values, count) && values.every(Number.isInteger);
 
 /** Refuse what is told of a tile where it cannot be drawn. */
 function checkHeader(own: TileHeader, { geometry: whole, slices: all }: Header): void {
   const { geometry, slices, ranges } = own;
   const { shape, rows, columns } = geometry;
+  const { trace } = slices;
   const fits =
     areNumbers(shape, 2) &&
     shape.every((n) => isCount(n, MOST_NODES) && n > 1) &&
@@ -97,30 +74,62 @@ function checkHeader(own: TileHeader, { geometry: whole, slices: all }: Header):
     areNumbers(geometry.center, 3) &&
     areNumbers(geometry.frame, 9) &&
     isCount(slices.count, MOST_LAYERS) &&
-    slices.channels === all.channels &&
+    [2, 4].includes(slices.channels) &&
     areNumbers(slices.lags) &&
     isCount(slices.lags.length, MOST_LAGS) &&
     slices.sides === all.sides &&
     areNumbers(slices.extra) &&
     slices.extra.every((n) => Number.isInteger(n) && n >= 0 && n < slices.count) &&
     areNumbers([slices.unit, slices.cell, slices.critical]) &&
+    (!trace ||
+      (trace.parts.every((part) => TRACED_FROM.includes(part)) &&
+        areNumbers(trace.nodes, 2) &&
+        trace.nodes.every((n, axis) => isCount(n, MOST_NODES) && trace.drawn[axis] + shape[axis] <= n) &&
+        areWhole([...trace.first, ...trace.drawn], 4) &&
+        trace.drawn.every((n) => n >= 0) &&
+        areNumbers(trace.closed.map(Number), 2) &&
+        areNumbers([...trace.offset, ...trace.middle, trace.unit, trace.pace], 11))) &&
     Object.values(ranges ?? {}).every((range) => areNumbers(range, 2));
   if (!fits) throw new Error("what is told of a tile does not fit the page");
 }
 
-/** Refuse a surface whose arrays are not as long as it is told. */
-function checkSurface(parts: Map<string, NamedPart>, header: TileHeader, tileCells: number): void {
-  const { shape, planar } = header.geometry;
-  const needed = ["position", "mesh", ...(planar ? [] : ["normal"])];
-  const missing = needed.filter((name) => !parts.has(name));
-  if (missing.length) throw new Error(`a tile has no ${missing.join(", ")}`);
-  for (const [name, { data, shape: own }] of parts) {
-    const [rows, columns] = shape.map((n) => (name === "cells" ? n - 1 : n));
-    const blocks = shape.map((n) => Math.ceil((n - 1) / tileCells));
-    const kind = KINDS[name];
+/** Types of the parts of a tile, and how many numbers each has. */
+function sizesOf({ geometry, slices }: Pick<Header, "geometry" | "slices">) {
+  const { shape, planar } = geometry;
+  const { trace, count, channels, extra } = slices;
+  const size = (numbers: number[], ...more: number[]) => [...numbers, ...more].reduce((a, b) => a * b, 1);
+  const texels = [geometry.rows.size, geometry.columns.size];
+  const nodes = trace?.nodes ?? [];
+  const sizes: Record<string, [type: abstract new (...args: never[]) => Data, sizes: number[]]> = {
+    cells: [Uint8Array, [size(shape.map((n) => n - 1))]],
+    normal: [Int16Array, [size(shape, 3)]],
+    scalars: [Float32Array, [size(shape)]],
+  };
+  if (trace) {
+    sizes.unit = [Uint16Array, [size(nodes)]];
+    sizes.padded = [Float32Array, [size(nodes.map((n) => n + 2), 3)]];
+    sizes.open = [Uint8Array, [size(nodes)]];
+    sizes.nearest = [Int16Array, [size(nodes, 2)]];
+    sizes.flow = [Uint16Array, [size(nodes, 3), size(nodes, 4)]];
+  } else {
+    sizes.position = [Float32Array, [size(shape, 3)]];
+    sizes.slices = [Uint16Array, [size(texels, count, channels)]];
+    sizes.extra = [Uint16Array, [size(texels, extra.length)]];
+  }
+  const needed = trace ? ["mesh", ...trace.parts] : ["mesh", "position", ...(planar ? [] : ["normal"])];
+  return { sizes, needed };
+}
+
+/** Refuse parts whose sizes do not match the header of the tile. */
+function checkParts(parts: NamedPart[], header: Pick<Header, "geometry" | "slices">, tileCells: number): void {
+  const { sizes } = sizesOf(header);
+  const blocks = header.geometry.shape.map((n) => Math.ceil((n - 1) / tileCells));
+  for (const { name, data, shape: own } of parts) {
+    const kind = sizes[name.split("/")[0]];
     const fits = kind
-      ? data instanceof kind[0] && data.length === rows * columns * kind[1]
-      : data instanceof Float32Array &&
+      ? data instanceof kind[0] && kind[1].includes(data.length)
+      : name === "mesh" &&
+        data instanceof Float32Array &&
         own.length === 3 &&
         own[0] === blocks[0] &&
         own[1] === blocks[1] &&
@@ -128,21 +137,6 @@ function checkSurface(parts: Map<string, NamedPart>, header: TileHeader, tileCel
         own[2] % 2 === 1;
     if (!fits) throw new Error(`the part "${name}" of a tile has another size than is told`);
   }
-}
-
-/** Numbers of a chunk, of which there must be so many at least along each axis. */
-async function chunkOf(
-  array: Numbers,
-  at: number[],
-  least: number[],
-  signal: AbortSignal,
-): Promise<{ data: Data; shape: number[] }> {
-  const { data, shape } = await array.getChunk(at, { signal });
-  const last = shape.slice(shape.length - least.length);
-  const count = shape.reduce((product, n) => product * n, 1);
-  const fits = last.every((n, k) => n >= least[k]) && data.length === count;
-  if (!fits) throw new Error(`a chunk of ${array.path} has the shape ${shape}`);
-  return { data: data as Data, shape: last };
 }
 
 export class Stream {
@@ -196,20 +190,24 @@ export class Stream {
   async tile(key: TileKey, steps: number[], signal: AbortSignal, has: Has): Promise<NamedPart[]> {
     const name = nameOf(key);
     return this.loaded(COARSE, signal, async (whole) => {
-      const known = has("header") ? this.headers.get(name) : undefined;
-      const surface = known === undefined ? this.surface(key, whole) : { header: known, parts: [] };
-      const late = steps.filter((step) => !has(`slices/${step}`));
-      // On its way before it is known what it belongs to.
-      const traces = late.map((step) => this.traces(key, step, whole));
+      const late = steps.filter((step) => !has(`slices/${step}`) && !has(`flow/${step}`));
+      const known = has("header") && !late.length ? this.headers.get(name) : undefined;
+      const surface: Surface | Promise<Surface> = known === undefined ? this.surface(key, whole) : { header: known, parts: [] };
+      // On their way before it is known what they belong to.
+      const flows = late.map((step) => this.flow(key, step, whole));
       const rest = async () => {
         const { header, parts } = await surface;
         this.headers.set(name, header);
         if (!header) return parts;
-        const place = { key, header, signal: whole };
-        const slices = late.map(async (step, n) => this.slices(place, step, await traces[n]));
-        return [parts, ...(await Promise.all([...slices, this.values(place, steps, has)]))].flat();
+        const [values, ...slices] = await Promise.all([
+          this.values(key, header, steps, has, whole),
+          ...flows,
+        ]);
+        checkParts(slices.flat(), header, this.header.mesh.tileCells);
+        if (!slices.every((each) => each.length)) throw new Error(`tile ${name} has no flow`);
+        return [...parts, ...slices.flat(), ...values];
       };
-      const [parts] = await Promise.all([rest(), ...traces]);
+      const [parts] = await Promise.all([rest(), ...flows]);
       return parts.map((part) => ({ ...part, name: `tile/${name}/${part.name}` }));
     });
   }
@@ -219,14 +217,13 @@ export class Stream {
     const { header } = this;
     const key: TileKey = [this.told.depth, 0, 0];
     return this.loaded(ABSENT_STEP, signal, async (whole) => {
-      const place = { key, header, signal: whole };
-      const names = lacking();
       const parts: NamedPart[] = [];
-      if (names.some((name) => /^(slices|extra)\//.test(name))) {
-        parts.push(...(await this.slices(place, step, await this.traces(key, step, whole))));
+      if (lacking().some((name) => /^(flow|slices|extra)\//.test(name))) {
+        parts.push(...(await this.flow(key, step, whole)));
+        checkParts(parts, header, header.mesh.tileCells);
       }
       const has = (part: string) => !lacking().includes(part);
-      return [...parts, ...(await this.values(place, [step], has))];
+      return [...parts, ...(await this.values(key, header, [step], has, whole))];
     });
   }
 
@@ -251,21 +248,50 @@ export class Stream {
     }
   }
 
-  /** What of a tile is the same at all times. */
-  private async surface([level, row, column]: TileKey, signal: AbortSignal): Promise<Surface> {
-    const array = await this.store.array(`${level}/surface`);
-    const { data } = await chunkOf(array, [row, column, 0], [1], signal);
+  /** The parts of a file of a tile, by their names in it. */
+  private async file(
+    kind: string,
+    key: TileKey,
+    at: number[],
+    signal: AbortSignal,
+  ): Promise<Map<string, NamedPart>> {
+    const array = await this.store.array(`${key[0]}/${kind}`);
+    const chunk = async (n: number) => {
+      const { data } = await array.getChunk([...at, n], { signal });
+      if (!(data instanceof Uint8Array)) throw new Error(`${array.path} has no bytes`);
+      return data;
+    };
+    const first = await chunk(0);
+    const [infos, start] = infosOfFile(first);
+    const size = infos.reduce((sum, { bytes }) => sum + bytes, start);
+    if (!isCount(size, MOST_BYTES)) throw new Error(`a file of ${array.path} tells another size`);
+    const file = new Uint8Array(Math.ceil(size / first.length) * first.length);
+    file.set(first);
+    for (let n = 1; n * first.length < size; n += 1) file.set(await chunk(n), n * first.length);
     const parts = new Map<string, NamedPart>();
-    for (const part of partsOfFile(new Uint8Array(data as Uint8Array).buffer)) {
-      const [tile, name] = tilePart(part.name) ?? ["", ""];
-      if (tile === nameOf([level, row, column])) parts.set(name, { ...part, name });
+    for (const part of partsOfFile(file.buffer)) {
+      const [tile, name] = tilePart(part.name) ?? ["", part.name];
+      if (tile && tile !== nameOf(key)) throw new Error(`in place of tile ${nameOf(key)} is ${tile}`);
+      parts.set(name, { ...part, name });
     }
+    const of = new TextDecoder().decode(parts.get("of")?.data as Uint8Array | undefined);
+    if (of !== this.told.fingerprint) throw new Error(`tile ${nameOf(key)} is that of another flow`);
+    parts.delete("of");
+    return parts;
+  }
+
+  /** What of a tile is the same at all times. */
+  private async surface(key: TileKey, signal: AbortSignal): Promise<Surface> {
+    const parts = await this.file("surface", key, [key[1], key[2]], signal);
     const header = this.tileHeader(parts.get("header"));
     parts.delete("header");
-    if (header) checkSurface(parts, header, this.header.mesh.tileCells);
+    if (header) {
+      const missing = sizesOf(header).needed.filter((name) => !parts.has(name));
+      if (missing.length) throw new Error(`a tile has no ${missing.join(", ")}`);
+      checkParts([...parts.values()], header, this.header.mesh.tileCells);
+    }
     const text = new TextEncoder().encode(JSON.stringify(header));
-    const digest = this.digest([level, row, column], "header");
-    const told = { name: "header", data: text, shape: [text.length], digest };
+    const told = { name: "header", data: text, shape: [text.length], digest: `${this.told.fingerprint} ${nameOf(key)} header` };
     return { header, parts: [told, ...parts.values()] };
   }
 
@@ -278,71 +304,25 @@ export class Stream {
     return { ...own, slices: { ...own.slices, steps, times, timeUnit, dates, pace } };
   }
 
-  /** The traces of a tile, and what is told of them. */
-  private async traces([level, row, column]: TileKey, step: number, signal: AbortSignal) {
-    const { steps, fingerprint, parameter, lines } = this.told;
-    const array = await this.store.array(`${level}/traces`);
-    const at = [steps[step], row, column];
-    const { data } = await chunkOf(array, [...at, TOLD, 0, 0, 0], [1, 1, CHANNELS], signal);
-    const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
-    const text = new TextDecoder().decode(bytes.subarray(0, Math.max(bytes.indexOf(0), 0)));
-    if (!text) throw new StoreError("missing", `tile ${level}/${row}/${column} is empty`);
-    const told = JSON.parse(text) as Told;
-    const which = [level, row, column, steps[step], `${fingerprint} ${parameter} ${lines}`];
-    if (String([told.tile, told.step, told.of]) !== String(which)) {
-      throw new Error(`in place of tile ${level}/${row}/${column} there is another one`);
-    }
-    return { array, at, told };
-  }
-
-  /** Slopes of a time step, as they are sent by a host: flowtex/rendering/webgl/packing.py. */
-  private async slices(
-    { key, header, signal }: Place,
-    step: number,
-    { array, at, told }: Awaited<ReturnType<Stream["traces"]>>,
-  ): Promise<NamedPart[]> {
-    const { count, channels, extra, unit, cell, lags } = header.slices;
-    const [height, width] = [header.geometry.rows.size, header.geometry.columns.size];
-    const measures = [told.unit, told.cell, ...(told.lags ?? [])];
-    if (
-      told.count !== count ||
-      String(told.size) !== String([height, width]) ||
-      !areAlike([unit, cell, ...lags], measures)
-    ) {
-      throw new Error(`the traces of tile ${nameOf(key)} do not fit its surface`);
-    }
-    const texels = height * width;
-    // Two halves are copied at a time.
-    const slopes = new Uint32Array((count * texels * channels) / 2);
-    const fourth = new Uint16Array(extra.length * texels);
-    for (let layer = 0; layer < count; layer += 1) {
-      signal.throwIfAborted();
-      const place = [...at, TOLD + 1 + layer, 0, 0, 0];
-      const { data, shape } = await chunkOf(array, place, [height, width, CHANNELS], signal);
-      const pairs = new Uint32Array(data.buffer, data.byteOffset, data.length / 2);
-      const also = extra.indexOf(layer);
-      let to = (layer * texels * channels) / 2;
-      for (let j = 0; j < height; j += 1) {
-        const row = j * shape[1];
-        for (let i = row; i < row + width; i += 1) {
-          slopes[to++] = pairs[2 * i];
-          if (channels === CHANNELS) slopes[to++] = pairs[2 * i + 1];
-          if (also >= 0) fourth[also * texels + j * width + i - row] = data[CHANNELS * i + 3];
-        }
-      }
-    }
-    const part = (name: string, values: Uint16Array, shape: number[]): NamedPart => ({
-      name: `${name}/${step}`,
-      data: values,
-      shape,
-      digest: this.digest(key, `${name}/${step}`),
+  /** The flow of a tile at a time step, by the names that the page has for it. */
+  private async flow(key: TileKey, step: number, signal: AbortSignal): Promise<NamedPart[]> {
+    const source = this.told.steps[step];
+    const parts = await this.file("flow", key, [source, key[1], key[2]], signal);
+    return [...parts.values()].map((part) => {
+      const [kind, own] = part.name.split("/");
+      if (Number(own) !== source) throw new Error(`in place of step ${source} is ${part.name}`);
+      return { ...part, name: `${kind}/${step}` };
     });
-    const rest = part("extra", fourth, [extra.length, height, width]);
-    return [rest, part("slices", new Uint16Array(slopes.buffer), [count, height, width, channels])];
   }
 
   /** Values to colour by at some steps, once more where the colours have changed meanwhile. */
-  private async values(place: Place, steps: number[], has: Has): Promise<NamedPart[]> {
+  private async values(
+    key: TileKey,
+    place: Pick<Header, "geometry" | "slices">,
+    steps: number[],
+    has: Has,
+    signal: AbortSignal,
+  ): Promise<NamedPart[]> {
     const parts = new Map<string, NamedPart>();
     for (;;) {
       const { name, steps: count, number } = this.header.scalars;
@@ -351,35 +331,16 @@ export class Stream {
       const lacking = name === null ? [] : names.filter((each) => !has(each) && !parts.has(each));
       if (!lacking.length) return [...parts.values()];
       const found = await Promise.all(
-        lacking.map((each) => this.valuesOf(place, each, count > 1 ? stepOf(each) : null, number)),
+        lacking.map(async (each) => {
+          const source = count > 1 ? this.told.steps[stepOf(each)] : 0;
+          const file = await this.file("values", key, [source, key[1], key[2], number], signal);
+          const part = file.get(`scalars/${source}/${number}`);
+          if (!part) throw new Error(`tile ${nameOf(key)} has no values of step ${source}`);
+          return { ...part, name: each };
+        }),
       );
+      checkParts(found, place, this.header.mesh.tileCells);
       for (const part of found) parts.set(part.name, part);
     }
-  }
-
-  private async valuesOf(
-    { key, header, signal }: Place,
-    name: string,
-    step: number | null,
-    number: number,
-  ): Promise<NamedPart> {
-    const [level, row, column] = key;
-    const [rows, columns] = header.geometry.shape;
-    const array = await this.store.array(`${level}/values`);
-    const source = step === null ? 0 : this.told.steps[step];
-    const at = [source, row, column, number, 0, 0];
-    const { data, shape } = await chunkOf(array, at, [rows, columns], signal);
-    const values = new Float32Array(rows * columns);
-    for (let j = 0; j < rows; j += 1) {
-      values.set(data.subarray(j * shape[1], j * shape[1] + columns), j * columns);
-    }
-    return { name, data: values, shape: [rows, columns], digest: this.digest(key, name) };
-  }
-
-  /** What a part is known by on the whole page. */
-  private digest(key: TileKey, name: string): string {
-    const [kind, step, ...rest] = name.split("/");
-    const source = step === undefined ? [] : [this.told.steps[Number(step)]];
-    return [this.told.fingerprint, nameOf(key), kind, ...source, ...rest].join(" ");
   }
 }

@@ -80,6 +80,9 @@ export class Tiles {
   layers: Layer[] = [];
   /** Names of the tiles that are wanted and not there. */
   missing: string[] = [];
+  /** Number of the tiles that are wanted, and of those that cannot be drawn yet. */
+  wanted = 0;
+  pending = 0;
   private readonly host: TileHost;
   private readonly root: Scene;
   private readonly tiles = new Map<string, Tile>();
@@ -264,7 +267,11 @@ export class Tiles {
     this.missing = wanted.filter((name) => !this.isHere(name, steps));
     this.ask(steps);
     this.trim(steps);
+    // The largest on the screen come first.
+    for (const name of wanted) if (this.isHere(name, steps)) this.load(name, steps, until);
     const shown = cover(choices, (name) => this.isHere(name, steps) && this.load(name, steps, until));
+    this.wanted = wanted.length;
+    this.pending = wanted.filter((name) => !this.isHere(name, steps) || !this.isLoaded(name, steps)).length;
     this.chosen = { choices, steps, names: String([...shown.keys()]) };
     return shown;
   }
@@ -289,11 +296,16 @@ export class Tiles {
     return scene === null || (scene?.missing(steps[0], steps[steps.length - 1]).length === 0);
   }
 
+  private isLoaded(name: string, steps: number[]): boolean {
+    const scene = this.tiles.get(name)?.scene;
+    return scene === null || (scene?.isLoaded(steps) ?? false);
+  }
+
   /** Have a tile on the graphics card; the others of many come with the next picture. */
   private load(name: string, steps: number[], until: number): boolean {
     const scene = this.tiles.get(name)?.scene;
-    if (!scene || scene.isLoaded(steps)) return true;
-    if (performance.now() > until) {
+    if (!scene || this.isLoaded(name, steps)) return true;
+    if (performance.now() > until || !scene.make(steps, until)) {
       this.host.refine();
       return false;
     }
@@ -346,7 +358,7 @@ export class Tiles {
       for (const part of slices.slice(0, Math.max(slices.length - STEPS_HELD, 0))) {
         const step = stepOf(part);
         if (steps.includes(step)) continue;
-        for (const kind of ["slices", "extra"]) this.release(tile, `${kind}/${step}`);
+        for (const kind of ["slices", "extra", "flow"]) this.release(tile, `${kind}/${step}`);
         const values = [...parts.keys()].filter((each) => isOfStep(each, step, this.root.header));
         for (const each of values) this.release(tile, each);
       }

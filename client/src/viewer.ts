@@ -42,6 +42,7 @@ const LOST_MS = 5000;
 /** Time steps that are held where the host can send the others again, and where memory is short. */
 const STEPS_HELD = 12;
 const FEW_STEPS_HELD = 4;
+const FLOWS_HELD = 100;
 
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
 
@@ -78,8 +79,8 @@ export class Viewer implements User {
     const { root } = this;
     root.className = "flowtex";
     root.tabIndex = 0;
-    // How far the picture is, for hosts: whether it is the full one, the number of full ones so far, and
-    // of tiles and of parts of the present time that are not there yet.
+    // For hosts: whether the picture is the full one, the number of full ones so far, and of tiles and of
+    // parts of the present time that are not there yet.
     Object.assign(root.dataset, { sharp: "false", frames: "0", tiles: "0", lacking: "0" });
     // JupyterLab has shortcuts of its own for the keys that move the view.
     root.setAttribute("data-lm-suppress-shortcuts", "true");
@@ -213,20 +214,19 @@ export class Viewer implements User {
     this.parts.delete(name);
   }
 
-  /** Hold a few time steps where the host can send the others again. */
+  /** Hold a few time steps where the others can be traced, or sent by the host, again. */
   private trim(): void {
-    if (!this.options.onNeed || !this.header) return;
-    const names = [...this.parts.keys()].filter((name) => name.startsWith("slices/"));
-    const [before, after] = this.player.moment;
-    const held = this.options.memory ? FEW_STEPS_HELD : STEPS_HELD;
-    for (const name of names.slice(0, Math.max(names.length - held, 0))) {
+    const { header, options } = this;
+    if (!header || (!options.onNeed && !header.slices.trace)) return;
+    const named = (kind: string) => [...this.parts.keys()].filter((name) => name.startsWith(kind));
+    const flows = options.onNeed && named("flow/").length > FLOWS_HELD ? ["flow"] : [];
+    const held = options.memory ? FEW_STEPS_HELD : STEPS_HELD;
+    for (const name of named("slices/").slice(0, -held)) {
       const step = stepOf(name);
-      if (step === before || step === after) continue;
-      for (const kind of ["slices", "extra"]) this.remove(`${kind}/${step}`);
-      if (!this.options.memory) continue;
-      for (const other of [...this.parts.keys()]) {
-        if (isOfStep(other, step, this.header)) this.remove(other);
-      }
+      if (this.player.moment.slice(0, 2).includes(step)) continue;
+      for (const kind of ["slices", "extra", ...flows]) this.remove(`${kind}/${step}`);
+      const values = options.memory ? named("scalars/") : [];
+      for (const other of values) if (isOfStep(other, step, header)) this.remove(other);
     }
   }
 
@@ -386,7 +386,7 @@ export class Viewer implements User {
   /** Choose what is drawn at a moment: the whole, or the root and the tiles of a large surface. */
   arrange(shown: Moment): Scene[] {
     const scenes = this.tiles?.arrange(shown) ?? [];
-    this.root.dataset.tiles = String(this.tiles?.missing.length ?? 0);
+    this.root.dataset.tiles = String(this.tiles?.pending ?? 0);
     return scenes;
   }
 
@@ -446,19 +446,24 @@ export class Viewer implements User {
     return this.scene?.missing(before, after) ?? [];
   }
 
-  /** Ask for the parts of the steps that are missing; gives what can be shown. */
-  private available(): Moment | null {
-    const { header, scene, player, shown } = this;
+  /** Ask for the parts of the steps that are missing, and trace them until a time; gives what can be shown. */
+  private available(until: number): Moment | null {
+    const { header, scene, player, shown, lacking } = this;
     if (!header || !scene) return null;
     const moment = player.moment;
-    const count = header.slices.steps;
-    const ahead = player.playing ? [1, 2].map((n) => (moment[1] + n) % count) : [];
+    const ahead = player.playing ? [1, 2].map((n) => (moment[1] + n) % header.slices.steps) : [];
     this.ask([moment[0], moment[1], ...ahead]);
-    const { lacking } = this;
-    this.root.dataset.lacking = String(lacking.length);
-    this.panel.wait(lacking);
-    if (!lacking.length) return (this.shown = moment);
-    return shown && !scene.missing(shown[0], shown[1]).length ? shown : null;
+    const isMade = !lacking.length && scene.make(moment.slice(0, 2), until);
+    this.root.dataset.lacking = String(lacking.length || Number(!isMade));
+    this.panel.wait(lacking, isMade);
+    // A picture that was begun before the slices were there shows another moment.
+    if (isMade && String(moment.slice(0, 2)) !== String(shown?.slice(0, 2))) {
+      this.trim();
+      this.change();
+    }
+    if (isMade) return (this.shown = moment);
+    if (!lacking.length) this.request();
+    return shown && scene.isMade(shown.slice(0, 2)) ? shown : null;
   }
 
   /** Go on without a tile at some steps, or a step, that a host could not give, and say why once. */
@@ -510,7 +515,7 @@ export class Viewer implements User {
 
   /** Go on with the picture until a time. */
   private drawPicture(header: Header, until: number): void {
-    const shown = this.available();
+    const shown = this.available(until);
     if (!this.camera) this.place();
     if (!shown || !this.camera) return;
     const { programs } = this.graphics;
@@ -533,7 +538,8 @@ export class Viewer implements User {
   /** Go on with the time or the clock. */
   private advance(now: number): void {
     const { player, options } = this;
-    if (!player.playing || !player.advance(now, (steps) => this.ask(steps))) return;
+    const isMade = (steps: number[]) => this.ask(steps) && !!this.scene?.make(steps, now);
+    if (!player.playing || !player.advance(now, isMade)) return;
     if (player.varies) options.onTime?.(player.time);
     else options.onClock?.(player.clock);
     this.panel.tick();

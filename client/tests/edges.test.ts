@@ -5,6 +5,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { Camera, fitted, type CameraLimits, type CameraState } from "../src/camera.ts";
 import { narrowed } from "../src/colours.ts";
+import { groundAt } from "../src/earthlayer.ts";
 import { toHalf } from "../src/half.ts";
 import { eastNorth, lonLatOf } from "../src/lonlat.ts";
 import { grainAt, mover, pathThrough, type PathPlace } from "../src/pointpath.ts";
@@ -100,6 +101,24 @@ test("a globe is turned up to its poles and not over them, with and without pers
 test("nodes without a position do not count for what is seen", () => {
   const seen = fitted(geometry, limits, nodes, 1.5);
   assert.deepEqual(fitted(geometry, limits, [NaN, NaN, NaN, ...nodes], 1.5), seen);
+});
+
+test("the ground is where a ray meets the globe or the map, and nowhere beside them", () => {
+  const header = (earth: object | null) =>
+    ({ earth, geometry: { frame: FRAME, center: [0, 0, 0] } }) as unknown as Header;
+  const camera = new Camera(eye([0, 0, 5], { up: [0, 1, 0], parallel: true, parallel_scale: 4 }), limits, true, 1);
+  const globe = header({ map: null, radius: 2 });
+  assertClose(groundAt(globe, camera, 0, 0), [0, 0, 2], 1e-9); // on the near side
+  assertClose(groundAt(globe, camera, 0.25, 0), [1, 0, Math.sqrt(3)], 1e-9);
+  assert.equal(groundAt(globe, camera, 0.75, 0), null);
+  camera.state.focal_point = [0, 0, 10]; // away from it
+  assert.equal(groundAt(globe, camera, 0, 0), null);
+  camera.state.focal_point = [0, 0, 0];
+  const map = header({ map: [-1, -2, 3, 2] });
+  assertClose(groundAt(map, camera, 0.5, 0.25), [2, 1, 0], 1e-9);
+  const beside = [[-0.5, 0], [0.9, 0], [0, -0.6], [0, 0.6]].map(([x, y]) => groundAt(map, camera, x, y));
+  assert.deepEqual(beside, [null, null, null, null]);
+  assert.equal(groundAt(header(null), camera, 0, 0), null);
 });
 
 // --- paths ---

@@ -61,6 +61,17 @@ test("text has the bytes of one significance side by side", async () => {
   assert.deepEqual([...part.data], [1.5, -2]);
 });
 
+test("differences are summed, channel by channel, and whole numbers are multiples of a unit", async () => {
+  // Of (1, 10), (3, 20), (6, 30) and (10, 40): twice the differences of each channel.
+  const numbers = [1, 1, 1, 1, 10, 0, 0, 0];
+  const planes = new Uint8Array(32);
+  planes.set(numbers);
+  const packing = { differences: 2, stride: 2, scale: -1 };
+  const info = { ...INFO, shape: [4, 2], ...packing };
+  const part = await partOfText(info, gzipSync(planes).toString("base64"));
+  assert.deepEqual([...part.data], [0.5, 5, 1.5, 10, 3, 15, 5, 20]);
+});
+
 test("an array without numbers is a part as well", async () => {
   const part = await partOfText({ ...INFO, shape: [0, 3] }, gzipSync("").toString("base64"));
   assert.equal(part.data.length, 0);

@@ -15,11 +15,11 @@ from flowtex.camera import CAMERA_LIMITS, Camera, CameraError
 from flowtex.diagnostics import require_opengl
 from flowtex.errors import FieldError
 from flowtex.offscreen.annotations import annotate, difference_text
-from flowtex.options import Options, ViewOptions
+from flowtex.options import FieldOptions, Options, ViewOptions
 from flowtex.plotting.component import FlowtexComponent
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import apply_camera, look, read_camera
-from flowtex.scene import Scene
+from flowtex.scene import Scene, share_field
 from flowtex.textures.images import averaged
 
 __all__ = ["OffscreenPlotter", "add_scenes", "new_plotter", "point_camera"]
@@ -58,6 +58,9 @@ class OffscreenPlotter:
     ) -> None:
         require_opengl()
         _check_size(size, supersampling)
+        # Whoever draws the same numbers once more finds what was traced of them.
+        field = share_field(options.field.field(mesh))
+        options = replace(options, field=FieldOptions())
         appearance = options.appearance
         self._legend = appearance.has_bar
         if annotations or appearance.show_scalar_bar is None:
@@ -74,7 +77,7 @@ class OffscreenPlotter:
                 self._plotter.disable_anti_aliasing()
             self._plotter.set_background(options.view.background)
             self.handles = add_scenes(
-                self._plotter, mesh, options, scalar_bar_args, labels=not annotations
+                self._plotter, field, options, scalar_bar_args, labels=not annotations
             )
             window = self._plotter.render_window
             window.SetDPI(window.GetDPI() * supersampling)

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from flowtex._util.array_types import Bytes
+from flowtex._util.cache import ByteCache
 from flowtex.camera import CAMERA_LIMITS
+from flowtex.field import FlowField
+from flowtex.field.steps import LazySteps
 from flowtex.offscreen.plotter import OffscreenPlotter
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+from flowtex.scene import Scene
+from flowtex.tiles import Pyramid, has_pyramid
+from flowtex.trace import SliceStore
 
 __all__ = ["render"]
+
+
+#: Memory of fields and traces that are kept after a picture, and of a node of a field.
+KEPT_BYTES, NODE_BYTES = 500_000_000, 200
 
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
@@ -83,4 +93,31 @@ def render(
         annotations=annotations,
         scalar_bar_args=scalar_bar_args,
     ) as plotter:
-        return plotter.picture(time=time, clock=clock)
+        picture = plotter.picture(time=time, clock=clock)
+        _keep(plotter.handles[0].scene)
+        return picture
+
+
+class _Drawn(NamedTuple):
+    """A field that was drawn, and what was traced of it."""
+
+    field: FlowField
+    store: SliceStore
+    pyramid: Pyramid | None
+
+    @property
+    def nbytes(self) -> int:
+        return self.field.valid.size * len(self.field.times) * NODE_BYTES + self.store.nbytes
+
+
+_drawn: ByteCache[int, _Drawn] = ByteCache(KEPT_BYTES, min_count=0)
+
+
+def _keep(scene: Scene) -> None:
+    """Keep the field of a scene and its traces, for a script that draws the same numbers again.
+
+    :func:`flowtex.scene.share_field` finds the field. What was drawn longest ago is dropped first,
+    and a field that reads its steps late, and so holds a file open, is not kept.
+    """
+    if not has_pyramid(scene.field) and not isinstance(scene.field.velocity, LazySteps):
+        _drawn.put(id(scene.store), _Drawn(scene.field, scene.store, scene.pyramid))

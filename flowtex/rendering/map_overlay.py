@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.blocks import bounds
@@ -68,7 +68,7 @@ def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
     if projection is None:
         return {}
     middles, reach = _cells(field)
-    tree = cKDTree(middles)
+    tree = scipy.spatial.cKDTree(middles)
 
     def there(lines: MapLines) -> MapLines:
         distances, nearest = tree.query(lines.points)

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices, Ints
+from flowtex._util.vectors import dot, norm
 from flowtex.textures import TextureSet
 from flowtex.tiles import BLOCK_CELLS, block_places
 
@@ -217,18 +218,22 @@ class MeshLevels:
         for level in range(1, count):
             step = 1 << level
             next_rows, next_columns = (_lines(n, step) for n in self._shape)
-            here, kept = np.ix_(rows, columns), values[np.ix_(next_rows, columns)]
-            along_rows = self._size(_deviation(values[here], rows, next_rows), directions, here)
-            here = np.ix_(next_rows, columns)
-            off = _deviation(kept.swapaxes(0, 1), columns, next_columns).swapaxes(0, 1)
-            along_columns = self._size(off, directions, here)
-            twist = kept[:, np.searchsorted(columns, next_columns)]
+            # Only lines that are left out have an error.
+            left = ~np.isin(rows, next_rows)
+            size = np.zeros((len(rows), len(columns)))
+            off = _deviation(values[:, columns], rows[left], next_rows)
+            size[left] = self._size(off, directions, np.ix_(rows[left], columns), border=1)
+            errors[level] = errors[level - 1] + self._greatest(size, rows, columns)
+            left = ~np.isin(columns, next_columns)
+            kept = values[next_rows]
+            size = np.zeros((len(next_rows), len(columns)))
+            off = _deviation(kept.swapaxes(0, 1), columns[left], next_columns).swapaxes(0, 1)
+            size[:, left] = self._size(off, directions, np.ix_(next_rows, columns[left]), border=0)
+            errors[level] += self._greatest(size, next_rows, columns)
+            twist = kept[:, next_columns]
             twist = twist[1:, 1:] + twist[:-1, :-1] - twist[1:, :-1] - twist[:-1, 1:]
             here = np.ix_(next_rows[:-1], next_columns[:-1])
-            errors[level] = errors[level - 1]
-            errors[level] += self._greatest(along_rows, rows, columns)
-            errors[level] += self._greatest(along_columns, next_rows, columns)
-            size = self._size(twist / 4, directions, here, border=False)
+            size = self._size(twist / 4, directions, here)
             errors[level] += self._greatest(size, next_rows[:-1], next_columns[:-1])
             rows, columns = next_rows, next_columns
         return errors
@@ -239,19 +244,22 @@ class MeshLevels:
         directions: Floats | None,
         at: tuple[Indices, ...],
         *,
-        border: bool = True,
+        border: int | None = None,
     ) -> Floats:
-        """Size of errors (J, I, C) at some nodes, where those along the surface count less."""
-        size: Floats = np.linalg.norm(off, axis=-1)
-        if directions is None:
+        """Size of errors (J, I, C) at some nodes, where those along the surface count less.
+
+        ``border`` is the axis whose first and last nodes are on the outline.
+        """
+        size = norm(off)
+        if directions is None or not size.size:
             return size
-        normal, *lines = (np.sum(off * direction[at], axis=-1) for direction in directions)
-        less: Floats = np.maximum(np.abs(normal), self._slide * size)
-        if border:
-            along_i, along_j = (np.sqrt(np.maximum(size**2 - line**2, 0)) for line in lines)
-            for side in (0, -1):
-                less[side] = np.maximum(less[side], OUTLINE_SHARE * along_i[side])
-                less[:, side] = np.maximum(less[:, side], OUTLINE_SHARE * along_j[:, side])
+        less: Floats = np.maximum(np.abs(dot(off, directions[0][at])), self._slide * size)
+        if border is not None:
+            ends = (slice(None),) * border + ([0, -1],)
+            along = np.broadcast_arrays(*at)
+            line = directions[1 + border][along[0][ends], along[1][ends]]
+            aside = np.sqrt(np.maximum(size[ends] ** 2 - dot(off[ends], line) ** 2, 0))
+            less[ends] = np.maximum(less[ends], OUTLINE_SHARE * aside)
         return less
 
     def _greatest(self, values: Floats, rows: Indices, columns: Indices) -> Floats:
@@ -309,19 +317,16 @@ def _directions(points: Floats) -> Floats:
     points = points / max(float(np.abs(points).max()), np.finfo(float).tiny)
     along_i, along_j = np.gradient(points, axis=1), np.gradient(points, axis=0)
     found = np.stack([np.cross(along_i, along_j), along_i, along_j])
-    length = np.linalg.norm(found, axis=-1, keepdims=True)
+    length = norm(found)[..., None]
     return np.asarray(found / np.where(length > 0, length, 1.0))
 
 
-def _deviation(values: Floats, lines: Indices, kept: Indices) -> Floats:
-    """How each line of values differs from those that are kept beside it, by axis 0."""
-    if len(kept) == 1:
-        return np.zeros_like(values)
-    after = np.clip(np.searchsorted(kept, lines), 1, max(len(kept) - 1, 1))
+def _deviation(values: Floats, left: Indices, kept: Indices) -> Floats:
+    """How lines of values that are left out differ from the kept ones beside them, by axis 0."""
+    after = np.searchsorted(kept, left)
     low, high = kept[after - 1], kept[after]
-    share = ((lines - low) / (high - low))[:, None, None]
-    at = np.searchsorted(lines, low), np.searchsorted(lines, high)
-    return np.asarray(values - (values[at[0]] * (1 - share) + values[at[1]] * share))
+    share = ((left - low) / (high - low))[:, None, None]
+    return np.asarray(values[left] - (values[low] * (1 - share) + values[high] * share))
 
 
 def _lines(nodes: int, step: int) -> Indices:

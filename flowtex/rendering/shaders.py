@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 __all__ = [
     "VARIANTS",
@@ -81,11 +81,13 @@ def shader_source(name: str) -> str:
     FileNotFoundError
         When there is no such shader; the text lists those that there are.
     """
-    names = shader_names()
-    if name not in names:
-        msg = f"no shader is called {name!r}; there are: {', '.join(names) or 'none'}"
+    path = shader_folder() / name
+    # Listing all names takes longer than reading one, and is left to the error.
+    inside = not any(part.startswith((".", "/")) for part in PurePosixPath(name).parts)
+    if not inside or not path.is_file():
+        msg = f"no shader is called {name!r}; there are: {', '.join(shader_names()) or 'none'}"
         raise FileNotFoundError(msg)
-    return (shader_folder() / name).read_text(encoding="utf-8")
+    return path.read_text(encoding="utf-8")
 
 
 def shader_text(name: str, variants: Iterable[str] = ()) -> str:

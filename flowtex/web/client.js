@@ -74,14 +74,14 @@ name);sampler&&gl.uniform1i(sampler.location,n)}),entry.ready=!0}use(entry,value
 entry.program);for(let[name,value]of Object.entries(values)){let uniform=entry.uniforms.get(name);if(!uniform)continue;let{
 location,type}=uniform,numbers=typeof value=="object"?value:[Number(value)];type===gl.FLOAT?gl.uniform1fv(location,numbers):
 type===gl.FLOAT_VEC2?gl.uniform2fv(location,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(location,numbers):type===gl.FLOAT_VEC4?
-gl.uniform4fv(location,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,!1,numbers):gl.uniform1i(location,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
+gl.uniform4fv(location,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,!1,numbers):gl.uniform1i(location,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16,this.gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"\
 high-performance"}),this.programs=new Programs(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",
-event=>{event.preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.picker=this.
-smooth=null;for(let user of this.users)user.lost()}),this.canvas.addEventListener("webglcontextrestored",()=>{this.isLost=
-!1,this.findFeatures();for(let user of this.users)user.change()})}findFeatures(){let{gl}=this;if(!gl)return;let extensions=[
-"EXT_color_buffer_float","EXT_color_buffer_half_float"];this.floats=extensions.some(name=>gl.getExtension(name)!==null),
-this.programs.findFeatures()}get context(){if(!this.gl)throw new Error("there is no WebGL2");return this.gl}leave(user){
+event=>{event.preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.tracings.clear(),
+this.picker=this.smooth=null;for(let user of this.users)user.lost()}),this.canvas.addEventListener("webglcontextrestored",
+()=>{this.isLost=!1,this.findFeatures();for(let user of this.users)user.change()})}findFeatures(){let{gl}=this;if(!gl)return;
+let extensions=["EXT_color_buffer_float","EXT_color_buffer_half_float"];this.floats=extensions.some(name=>gl.getExtension(
+name)!==null),this.programs.findFeatures()}get context(){if(!this.gl)throw new Error("there is no WebGL2");return this.gl}leave(user){
 if(this.users.delete(user),this.waiting.delete(user),!this.users.size){cancelAnimationFrame(this.scheduled),this.scheduled=
 0,this.programs.dispose();for(let target of[this.picker,this.smooth])target&&this.freeTarget(target);this.picker=this.smooth=
 null,this.canvas.width=this.canvas.height=16}}request(user){this.waiting.add(user),this.scheduled||=requestAnimationFrame(
@@ -138,9 +138,18 @@ number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&step
 row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
 let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
 {name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.
-keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let length3=new DataView(
-file).getUint32(0,!0),infos=JSON.parse(new TextDecoder().decode(new Uint8Array(file,4,length3))),start=4+length3;return infos.
-map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,decoded(info,bytes)})}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
+keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let[infos,
+first]=infosOfFile(new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);
+return start+=info.bytes,info.stride===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){
+let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(
+4,first))),first]}function partOfPlanes(info,planes){let count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:
+1,{stride=1}=info,steps=count/stride;if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed \
+as it tells`);let bytes=new Uint8Array(planes.length);for(let n=0,from=0;n<width*stride;n+=1){let[plane,channel]=[Math.floor(
+n/stride),n%stride];for(let k=0;k<steps;k+=1)bytes[(k*stride+channel)*width+plane]=planes[from++]}return decoded(info,summed(
+info,bytes,width))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function summed(info,bytes,width){let{differences=0,
+stride=1,scale:scale3=null}=info,numbers=new UNSIGNED[width](bytes.buffer);for(let order=0;order<differences;order+=1)for(let n=stride;n<
+numbers.length;n+=1)numbers[n]+=numbers[n-stride];return scale3===null?bytes.buffer:Float32Array.from(new Int32Array(bytes.
+buffer),n=>n*2**scale3).buffer}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
 cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;places=[];constructor(header,places){
 this.header=header;let start=0;for(let[rows,columns]of header.blocks){let end=start+PLACE*rows*columns;this.places.push(
@@ -755,9 +764,11 @@ input[role="switch"]::after {
 input[role="switch"]:checked { background: var(--accent); }
 input[role="switch"]:checked::after { transform: translateX(12px); }
 .busy {
-  position: absolute; left: 50%; top: 50%; transform: translate(-50%, -50%); padding: 5px 12px;
+  position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 5px 12px;
   border-radius: 10px; background: var(--glass); color: var(--quiet); pointer-events: none;
+  animation: appear 1ms 600ms backwards; /* what takes but a moment is not told */
 }
+@keyframes appear { from { visibility: hidden } }
 .hint {
   position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 4px 12px;
   color: var(--quiet); pointer-events: none; white-space: nowrap; max-width: calc(100% - 20px);
@@ -796,61 +807,63 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
 ld ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,
 styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;colours;isShown;isOpen=!1;legendLook="";title=dom(
 "div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
-[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""},
-["waiting for data …"]);told=dom("div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{
-class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom("input",{type:"range",...TIME_RANGE});timeText=dom(
-"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;constructor(viewer){
-this.viewer=viewer;let{root,canvas,options}=viewer;this.isShown=options.controls??!0,this.controls=new Controls(viewer),
-this.colours=new ColourControls(viewer),this.handle=this.button("show","Show the bar (h)",()=>this.toggle()),this.handle.
-classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.
-listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.choose(name,!viewer.
-settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button("levels","Sh\
-ow level",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.
-makeBar(),canvas.className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.attachShadow(
-{mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,told,note}=this,left=dom(
-"div",{class:"left"},[head,viewer.card.element]);shadow.append(canvas,viewer.card.overlay,left,legend.element,controls.element),
-shadow.append(bar,handle,busy,hintBox,told,note),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){
-let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
-listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
-label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.
-lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill \
-the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.
-viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.controls.element.prepend(...this.colours.rows),this.
-showLegend(),this.update(),this.arrange())}update(){let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;
-this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.
-entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"Pause (space)":"Pl\
-ay (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute(
-"aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,
-this.slider.disabled=!varies&&settings.motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??
-"").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.
-viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label2=header?.table.find(row=>row.name===
-name)?.label??name,value=settings[name];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||
-header?.name||"";this.title.textContent=title,this.title.hidden=!title;let label=options.label??title;root.setAttribute(
-"aria-label",label?`Flow texture: ${label}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
-track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
-slices.timeUnit,moment=this.date(header)??`${numberText(now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;
-this.timeText.textContent!==text&&(this.timeText.textContent=text)}date({slices}){return dateText(slices.dates,slices.times,
-this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){
-let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(
-header,settings,parts.get("cmap")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),
-this.legend.point(null);let position=point?.position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;
-if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.
-scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,
-unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==
-this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.
-viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
-!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
-isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-presse\
-d",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
-onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
-names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
-cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){
-this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.note.hidden=!0,
-delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pr\
-e",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.
-viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(
-viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).
-click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""});told=dom(
+"div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom(
+"input",{type:"range",...TIME_RANGE});timeText=dom("span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.
+timeText]);hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,canvas,options}=viewer;this.isShown=
+options.controls??!0,this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.button(
+"show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("pl\
+ay","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.
+value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of d\
+etail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button("setting\
+s","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flo\
+wtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,
+controls,head,bar,handle,busy,hintBox,told,note}=this,left=dom("div",{class:"left"},[head,viewer.card.element]);shadow.append(
+canvas,viewer.card.overlay,left,legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,told,note),viewer.
+lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){let button=dom("button",{type:"\
+button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",press),
+button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.playButton,
+this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,
+this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),
+this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.viewer;header&&(this.note.hidden=!0,
+this.controls.build(header),this.controls.element.prepend(...this.colours.rows),this.showLegend(),this.update(),this.arrange())}update(){
+let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==
+this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
+ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
+playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
+null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,this.slider.disabled=!varies&&settings.
+motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??"").length;this.timeText.style.minWidth=
+`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,title=(header?.differs??[]).filter(
+name=>name in settings).map(name=>{let label2=header?.table.find(row=>row.name===name)?.label??name,value=settings[name];
+return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";this.title.textContent=
+title,this.title.hidden=!title;let label=options.label??title;root.setAttribute("aria-label",label?`Flow texture: ${label}`:
+"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;let{first,last,now}=player.
+range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.slices.timeUnit,moment=this.date(
+header)??`${numberText(now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&
+(this.timeText.textContent=text)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({
+show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.
+viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("c\
+map")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.
+position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(
+position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==
+void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){
+this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.isShown=shown,this.arrange(),this.
+viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.
+follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.
+isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("fl\
+owtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade){
+let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},tiles=pending?`${wanted-pending} of ${wanted} tiles …`:"",
+traces=isMade?tiles:"tracing paths …",text=missing.length?"waiting for data …":traces;busy.textContent!==text&&(busy.
+textContent=text),busy.hidden=!text,!(!missing.length||viewer.options.onNeed||this.lateTimer)&&(this.lateTimer=viewer.lifetime.
+later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missin\
+g: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.
+later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),
+this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.root.dataset.
+failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=
+!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(
+".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.
+header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(
+()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -1016,51 +1029,116 @@ let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((le
 own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+
 place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.
 max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=
-values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
+values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,UNIT,REACH,SPEED]=[0,1,2,
+3],[TANGENTS,SLOPES,VELOCITY]=[0,1,2],UNITS=6;function positionOf(padded,trace,shape){let[rows,columns]=shape,width=padded.
+shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1){let first=3*((j+top+1)*
+width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%3]}return{data,shape:[rows,columns,
+3]}}function normalOf(padded,trace,shape){let[rows,columns]=shape,width=3*padded.shape[1],[top,left]=trace.drawn,data=new Int16Array(
+rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3){let at=width*(j+top+1)+3*(i+left+1),along=step=>[
+0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(along(3),along(width)),size=length2(normal)||
+1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}return{data,shape:[rows,columns,3]}}var Tracing=class{graphics;header;trace;find;textures=[];frames=[];passes;constructor(graphics,header,trace,find,step){
+this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.passes=this.slices(`flow/${step}`)}advance(until){
+if(![this.program("trace"),this.program("layers")].every(({ready})=>ready))return null;let gl=this.graphics.context;try{
+do{let{done,value}=this.passes.next();if(gl.isContextLost())return null;if(done)return value}while(performance.now()<until);
+return null}finally{this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",texture);for(let frame of this.
+frames)this.graphics.free("Framebuffer",frame);this.textures.length=this.frames.length=0}program(fragment){let{fullVertex="",
+[fragment]:text=""}=this.header.shaders,program=this.graphics.programs.get(fullVertex,text);if(program.error)throw new Error(
+`the tracer cannot be built: ${program.error}`);return program}data(name){let part=this.find(name);if(!part)throw new Error(
+`the part "${name}" of the scene is missing`);return part.data}texture(width,height,inner,data){let gl=this.graphics.context,
+texture=this.graphics.counted(gl.createTexture());return this.textures.push(texture),gl.bindTexture(gl.TEXTURE_2D,texture),
+gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.
+texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.texSubImage2D(gl.TEXTURE_2D,0,0,0,width,height,gl.
+RGBA,gl.FLOAT,data),texture}target(width,height){let gl=this.graphics.context,texture=this.texture(width,height,gl.RGBA32UI,
+null),frame=this.graphics.counted(gl.createFramebuffer());return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,
+frame),gl.framebufferTexture2D(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.
+graphics.context;for(let n=0;n<UNITS;n+=1)gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,null);gl.bindFramebuffer(
+gl.FRAMEBUFFER,null)}flow(name){let data=this.data(name),unit2=this.data("unit"),channels=data.length/unit2.length,flow=new Float32Array(
+4*unit2.length),whole=new Float32Array(4*unit2.length);for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=HALVES[data[at+
+2]],size=HALVES[unit2[n]]*this.trace.unit;flow[4*n]=HALVES[data[at]]*speed/size,flow[4*n+1]=HALVES[data[at+1]]*speed/size,
+flow[4*n+2]=speed,flow[4*n+3]=size,whole[4*n]=HALVES[data[at+channels-1]]}return[flow,whole]}cells(){let[rows,columns]=this.
+trace.nodes,[open,nearest]=["open","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<
+rows*columns;n+=1){cells[4*n]=open?open[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest?nearest[2*n+k]:0}return cells}padded(){
+let data=this.data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=
+1)result2[4*n+k]=data[3*n+k];return result2}*slices(name){let{graphics,trace,header}=this,gl=graphics.context,{geometry,
+slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.size,geometry.columns.size],pairs=Math.ceil(width/
+2),[flow,whole]=this.flow(name);gl.activeTexture(gl.TEXTURE0);let inputs=[this.texture(columns,rows,gl.RGBA32F,flow),this.
+texture(columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.padded()),this.texture(columns,
+rows,gl.RGBA32F,whole)],[first,...paths]=[0,1,2,3].map(()=>this.target(columns,rows)),[,texels]=this.target(pairs,height),
+uniforms2={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_nodes:[columns,rows],u_closed:[Number(
+trace.closed[1]),Number(trace.closed[0])],u_first:[trace.first[1],trace.first[0]],u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.
+offset.slice(3,6),u_pace:trace.pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(geometry.planar),u_mostReach:2*
+slices.lags[slices.lags.length-1]},draw=(frame,size,before,last,pass,values)=>{gl.bindFramebuffer(gl.FRAMEBUFFER,frame),
+gl.viewport(0,0,...size);for(let ability of[gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);[...inputs,
+before,last].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(
+null),graphics.programs.use(pass,{...uniforms2,...values}),gl.drawArrays(gl.TRIANGLES,0,3)},data=new Uint16Array(slices.
+count*height*width*4),read=new Uint32Array(pairs*height*4),halves=new Uint16Array(read.buffer),layer=(n,at,last,values)=>{
+draw(texels,[pairs,height],at,last,this.program("layers"),{u_lag:1,...values}),gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,
+gl.UNSIGNED_INT,read);for(let row=0;row<height;row+=1){let texelsOfRow=halves.subarray(8*pairs*row,8*pairs*row+4*width);
+data.set(texelsOfRow,4*width*(n*height+row))}},{lags,sides,count}=slices,[none]=first;layer(0,none,none,{u_kind:TANGENTS,
+u_fourth:UNIT}),count>1+sides*lags.length&&layer(count-1,none,none,{u_kind:VELOCITY,u_fourth:SPEED});for(let side=0;side<
+sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[unused]=paths[0],[last]=first,before=last;for(let[m,lag]of lags.
+entries()){let[at,frame]=m?paths[m%3]:first,[from,earlier]=[lags[m-1]??0,lags[m-2]??0],steps={u_lagEarlier:earlier,u_from:from,
+u_to:lag,u_side:sign},pass=this.program("trace");draw(frame,[columns,rows],m?last:unused,m>1?before:unused,pass,steps);let values={
+u_kind:SLOPES,u_fourth:m===1&&!side?SPEED:NOTHING,u_lag:sign*lag};m&&layer(start+m,at,at,values),[before,last]=[last,at],
+yield}layer(start,none,last,{u_kind:SLOPES,u_fourth:REACH,u_lag:sign*lags[0]})}return{data,shape:[count,height,width,4]}}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
-alar"]},Scene=class{graphics;header;parts;earth;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;constructor(graphics,header,parts){
+alar"]},SOURCES=["padded","unit","open","nearest"],Scene=class{graphics;header;parts;earth;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts)}missing(before,after){
-let{geometry,slices,scalars,paper,pyramid}=this.header,names=["position","mesh",...geometry.planar?[]:["normal"]];pyramid&&
-names.push("places"),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))names.
-push(`slices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),
-scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after,of=this.
-header.scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
-after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
-slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[
-slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?
-part.shape:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(
-shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}" of the\
- scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=
-this.drawn=null);let sliced=kind==="slices"||kind==="extra";!sliced&&kind!=="scalars"&&this.earth.forget(name);for(let user of sliced?
-[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.
-resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),
-this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.earth.
-dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.
-every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.
-object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.get(whole):void 0,object=shared?.
-object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.
-resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
-let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
-bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
-take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.
-header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,
-parts={blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,
-...parts},mesh)}cornersAt(place){let{triangles,shape}=this.header.geometry;return triangles?cornersOf(this.part("triangl\
-es").data,place):cornersAt(shape,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
-return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String(
-[drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.
-every(step=>this.resources.has(`slices/${step}`))}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){
-let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","arra\
-y"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.
-scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();
-gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,
-{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},
-key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["\
-cells","mesh","blocks"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?
-this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
-positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
-vertexNormals(nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
-map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
+let{geometry,slices,scalars,paper,pyramid}=this.header,{trace}=slices,names=["mesh",...trace?.parts??["position",...geometry.
+planar?[]:["normal"]]];pyramid&&names.push("places"),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
+[before,after]))names.push(`${trace?"flow":"slices"}/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.
+push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(
+names)].filter(name=>!this.fits(name))}scalarParts(before,after,of=this.header.scalars){let{name,steps,number}=of;if(name===
+null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){
+let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.
+max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??[],shape={flow:[...nodes,part.shape[2]],unit:nodes,padded:[
+...nodes.map(n=>n+2),3],slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.
+shape,3],mesh:geometry.triangles?part.shape:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.
+split("/")[0]];return!shape||String(shape)===String(part.shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;
+if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(["padded"],name,trace);return this.put("position",
+digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.
+put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),steps.every(step=>this.trace(step,until))}trace(step,until){
+let{graphics,header}=this,{trace,lags,sides}=header.slices;if(!trace)return!0;let name=`slices/${step}`,digest=this.key(
+[`flow/${step}`,...SOURCES],trace,lags,sides),{tracings}=graphics;if(this.parts.get(name)?.digest===digest)return!0;let made=graphics.
+stock.get(digest)?.part??null;if(!made){this.tracing!==digest&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
+get(digest)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=digest,tracing),made=tracing.advance(
+until),!made)return!1;this.stopTracing()}return this.put(name,digest,()=>made),!0}put(name,digest,make){let{graphics,parts}=this;
+if(parts.get(name)?.digest===digest)return;let part=graphics.stock.get(digest)?.part??{...make(),digest};graphics.release(
+parts.get(name)),parts.set(name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.missing(steps[0],steps[steps.
+length-1]).length&&steps.every(step=>this.parts.has(`slices/${step}`))}stopTracing(){this.graphics.tracings.get(this.tracing)?.
+dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.parts.get(name);if(!part)
+throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.
+includes("index")&&(this.meshLevels=this.drawn=null);let sliced=kind==="slices"||kind==="extra";!sliced&&kind!=="scalars"&&
+this.earth.forget(name);for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){
+let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.
+free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.
+keys()])this.drop(name);this.stopTracing(),this.earth.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.
+has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
+let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?
+graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,
+key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&
+graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
+let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
+target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
+fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.
+meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,parts={blocks:this.part(
+"mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}cornersAt(place){
+let{triangles,shape}=this.header.geometry;return triangles?cornersOf(this.part("triangles").data,place):cornersAt(shape,
+place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==
+null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.
+joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.
+resources.has(`slices/${step}`))}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.
+graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.
+some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,
+this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(
+this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,
+paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
+key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape,
+[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
+null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("p\
+osition").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(
+nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(
+name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
 shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns,corners?.length]),place=()=>corners?
 vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
 Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
@@ -1101,7 +1179,7 @@ image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),thi
 activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
 SAMPLERS.length)}get triangles(){return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.
 graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),
-gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isWatched=!1;isOver=!1;lastCame=0;failed=new Failures;limits;constructor(host,root){
 this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
@@ -1138,30 +1216,33 @@ let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)retur
 pyramid,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),planes:camera.
 planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.tiles.
 get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,
-header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(steps);let shown=cover(
-choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));return this.chosen={choices,steps,names:String([...shown.
-keys()])},shown}obtainable(names,steps,depth){let needs=[steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.
-failed.has(this.need(name,some))),found=names.map(name=>{let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf(
-[level,row,column]));)[level,row,column]=[level+1,row>>1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});
-return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===
-null||scene?.missing(steps[0],steps[steps.length-1]).length===0}load(name,steps,until){let scene=this.tiles.get(name)?.scene;
-return!scene||scene.isLoaded(steps)?!0:performance.now()>until?(this.host.refine(),!1):(scene.load(steps),!0)}ask(all){let{
-options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.isHere(name,[step])),steps=all.filter(isLacking),
-open=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps)),isAsked=performance.now()-this.lastCame<LOST_MS&&
-String(open.sort())===String([...this.missing].sort())&&(!open.length||String(steps)===String(this.asked.steps));if(!(this.
-isWaiting||!options.onTiles)){if(isAsked)return this.watch();this.isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.
-isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(this.missing.map(keyOf),
-steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||(this.isWatched=!0,this.host.lifetime.later(
-()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.now()-this.lastCame)))}trim(steps){
-let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.
-keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(
-part);if(steps.includes(step))continue;for(let kind of["slices","extra"])this.release(tile,`${kind}/${step}`);let values=[
-...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)this.release(tile,each)}for(let{
-data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>(this.host.options.memory??BUDGET_BYTES)&&used<this.count&&
-this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??
-[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(tile?.parts.
-get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,FEW_STEPS_HELD=4,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
-createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
+header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(steps);for(let name of wanted)
+this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,
+steps,until));return this.wanted=wanted.length,this.pending=wanted.filter(name=>!this.isHere(name,steps)||!this.isLoaded(
+name,steps)).length,this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,steps,depth){let needs=[
+steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.failed.has(this.need(name,some))),found=names.map(
+name=>{let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([level,row,column]));)[level,row,column]=[level+
+1,row>>1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){
+let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){
+let scene=this.tiles.get(name)?.scene;return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.
+tiles.get(name)?.scene;return!scene||this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.
+host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.
+isHere(name,[step])),steps=all.filter(isLacking),open=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps)),
+isAsked=performance.now()-this.lastCame<LOST_MS&&String(open.sort())===String([...this.missing].sort())&&(!open.length||
+String(steps)===String(this.asked.steps));if(!(this.isWaiting||!options.onTiles)){if(isAsked)return this.watch();this.isWaiting=
+!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},
+options.onTiles?.(this.missing.map(keyOf),steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||
+(this.isWatched=!0,this.host.lifetime.later(()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.
+now()-this.lastCame)))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{
+parts,used}=tile,slices=[...parts.keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(
+slices.length-STEPS_HELD,0))){let step=stepOf(part);if(steps.includes(step))continue;for(let kind of["slices","extra","f\
+low"])this.release(tile,`${kind}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));
+for(let each of values)this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>(this.
+host.options.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.
+dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
+part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,FEW_STEPS_HELD=4,FLOWS_HELD=100,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
+b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.createElement("d\
+iv");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,Object.assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.
 setAttribute("data-lm-suppress-shortcuts","true"),root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(
@@ -1174,7 +1255,7 @@ tychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())
 {frames}=this.renderer;return{...this.lifetime.stats(),objects,users:users.size,frames}}dispose(){if(!this.lifetime.isOver){
 this.player.playing=!1,this.lifetime.end(),this.tiles?.dispose(),this.tiles=null,this.scene?.dispose(),this.scene=null;for(let name of[
 ...this.parts.keys()])this.remove(name);this.graphics.leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){
-if(header.format!==3){this.panel.fail(`The scene has format ${header.format}, and this client reads format ${3}.`,"Use t\
+if(header.format!==4){this.panel.fail(`The scene has format ${header.format}, and this client reads format ${4}.`,"Use t\
 he client of the flowtex that made the scene.");return}let old=this.header;if(old&&old.generation!==void 0&&old.generation===
 header.generation)return this.recolour(coloursOf(header));if(this.header=header,this.settings={...header.settings,...header.
 own},this.player.setHeader(header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),
@@ -1189,70 +1270,73 @@ name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});if
 this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),
 this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&
 this.panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){
-if(!this.options.onNeed||!this.header)return;let names=[...this.parts.keys()].filter(name=>name.startsWith("slices/")),[
-before,after]=this.player.moment,held=this.options.memory?FEW_STEPS_HELD:STEPS_HELD2;for(let name of names.slice(0,Math.
-max(names.length-held,0))){let step=stepOf(name);if(!(step===before||step===after)){for(let kind of["slices","extra"])this.
-remove(`${kind}/${step}`);if(this.options.memory)for(let other of[...this.parts.keys()])isOfStep(other,step,this.header)&&
-this.remove(other)}}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||
-(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){name in(this.header?.
-own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.
-onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){
-if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(
-state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.
-camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,aspect}=this,
-nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(geometry,
-limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.radius:
-0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??this.
-ground(x,y),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.
-clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(
-time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),value=first+
-share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),
-options.onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.
-options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.motion===
-"off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){
-if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.
-change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?leader.pause():
-leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.now()<
-this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
-this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.
-root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){
-sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
-!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||
-1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),
-1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.
-aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;
-return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){
-return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
-header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
-let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
-playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.root.
-dataset.lacking=String(lacking.length),this.panel.wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).
-length?shown:null:this.shown=moment}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(
-reason)}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(step,step).length);
-for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),
-this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.
-graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(
-this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.
+let{header,options}=this;if(!header||!options.onNeed&&!header.slices.trace)return;let named=kind=>[...this.parts.keys()].
+filter(name=>name.startsWith(kind)),flows=options.onNeed&&named("flow/").length>FLOWS_HELD?["flow"]:[],held=options.memory?
+FEW_STEPS_HELD:STEPS_HELD2;for(let name of named("slices/").slice(0,-held)){let step=stepOf(name);if(this.player.moment.
+slice(0,2).includes(step))continue;for(let kind of["slices","extra",...flows])this.remove(`${kind}/${step}`);let values=options.
+memory?named("scalars/"):[];for(let other of values)isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){
+Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
+panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
+this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
+camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(
+state);else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.
+holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),
+this.reportCamera())}place(){let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||
+!nodes)return;let{geometry,limits}=header,state=first?widened(geometry,limits,first,nodes,aspect):fitted(geometry,limits,
+nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.radius:0;this.camera=new Camera(state,limits,geometry.planar,
+aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),(!first||!isEqual(first,state))&&this.
+options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.max(this.root.clientHeight,
+1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}scrub(share){
+let{player,options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.
+varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){
+this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();
+this.playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.
+start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.
+follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
+let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.
+now()+STILL_MS}get isBusy(){return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(
+cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){
+let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.pending??0),scenes}draw(){this.
+frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.
+sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&
+this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(this.root.
+clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===this.
+canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,
+this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||!header?
+this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.
+clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){let[
+before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){let{header,scene,player,shown,
+lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.
+slices.steps):[];this.ask([moment[0],moment[1],...ahead]);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until);
+return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,isMade),isMade&&String(moment.
+slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:(lacking.length||this.request(),
+shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),
+this.panel.tell(reason)}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(
+step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.
+set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.
+isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.
+drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.
 isClose(header)){let{vertex,fragment}=header.shaders,defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&
 defines.push("FLOWTEX_CELLS"),this.graphics.programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;
 let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?
-tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available();if(this.
+tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);if(this.
 camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){
 this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||!this.
 scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.root.
 dataset.frames=String(this.renderer.frames),this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),header.
 slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,
-options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):
-options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,
-camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
-focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
-range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
-focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
-clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;
-return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){
-return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
-let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
-view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
+options}=this,isMade=steps=>this.ask(steps)&&!!this.scene?.make(steps,now);!player.playing||!player.advance(now,isMade)||
+(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.
+setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is not\
+hing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(
+focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.
+abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,
+between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*
+density,1)}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(
+header.shaders.vertex,header.shaders.pick).ready}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;
+return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||
+!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,
+moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
 if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
 "display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count;n+=1){let cell=dom(
 "div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==

@@ -65,13 +65,14 @@ def _script(
             header["differs"] = list(views[1].own_settings)
     told = [headers[0], *(different(header, headers[0]) for header in headers[1:])]
     yield f'flowtexScene({json_text(name)}, {{"headers": {json_text(told)}, "parts": ['
-    written: set[str] = set()
+    written: dict[str, dict[str, Any]] = {}
     for n, scene in enumerate(scenes):
         steps = (part for step in range(scene.steps) for part in scene.step(step).items())
         for part, array in chain(scene.surface().items(), steps):
-            info = part_info(part, array)
-            text = "" if info["digest"] in written else part_text(array)
-            written.add(info["digest"])
+            info, text = part_info(part, array), ""
+            if info["digest"] not in written:
+                written[info["digest"]], text = part_text(array)
+            info |= written[info["digest"]]
             if len(text) > LETTERS_APART:
                 digest = json_text(info["digest"])
                 apart = folder / f"{info['digest']}.js"

@@ -52,9 +52,11 @@ __all__ = [
 ]
 
 #: Size of an average part after packing, over that before, base64 included.
-PACKED_SHARE = 0.62
-#: Bytes of the client, its shaders and the header, about.
-CLIENT_BYTES = 160_000
+PACKED_SHARE = 0.45
+#: The same where the client traces, and of values.
+TRACED_SHARE, VALUES_SHARE = 0.3, 0.75
+#: Bytes of the client, its shaders, the header and the preview, about.
+CLIENT_BYTES = 250_000
 #: Bytes of what reads a store.
 READER_BYTES = 60_000
 #: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
@@ -180,24 +182,25 @@ def write_page(
     return Page(path, path.stat().st_size, estimated, scenes[0].steps)
 
 
-def page_text(
-    views: Sequence[WebView], *, store: str | None = None, finest: int | None = None, **options: Any
-) -> str:
+def page_text(views: Sequence[WebView], *, store: str | None = None, **options: Any) -> str:
     """Return a view, or two, as the text of a page; the options are of :func:`page_pieces`.
 
-    ``store`` is that of :func:`export`, and ``finest`` the finest level of which there are tiles
-    at that address, by default that of the store itself.
+    ``store`` is that of :func:`export`.
     """
     if store is None:
         return "".join(page_pieces(views, page_data(views), **options))
-    scenes = [linked_data(view, finest) for view in views]
+    scenes = [linked_data(view) for view in views]
     return "".join(page_pieces(views, scenes, link=StoreLink.of(store), **options))
 
 
-def page_data(views: Sequence[WebView]) -> list[ClientData]:
-    """Return what a page holds of its views, with as many levels of tiles as there is room for."""
+def page_data(views: Sequence[WebView], *, traces: bool = True) -> list[ClientData]:
+    """Return what a page holds of its views, with as many levels of tiles as there is room for.
+
+    Where the client ``traces``, it holds velocities and not slices.
+    """
     scenes = []
-    for scene in (view.page_data() for view in views):
+    for view in views:
+        scene = replace(view.page_data(), traces=traces)
         pyramid, finest = scene.pyramid, 0
         if pyramid is not None:
             finest, room = pyramid.depth, TILE_BYTES
@@ -211,13 +214,15 @@ def page_data(views: Sequence[WebView]) -> list[ClientData]:
 def _level_bytes(scene: ClientData, pyramid: Pyramid, level: int) -> int:
     """Bytes of the tiles of a level in a page, about."""
     more = np.prod(pyramid.shape(level)) / np.prod(pyramid.shape(pyramid.depth))
-    return int(PACKED_SHARE * more * _arrays_bytes(scene, scene.steps))
+    return int(more * _arrays_bytes(scene, scene.steps))
 
 
 def _arrays_bytes(scene: ClientData, steps: int) -> int:
-    """Bytes of the arrays of a scene without tiles."""
+    """Bytes of the arrays of a scene without tiles, packed."""
     surface = sum(part.nbytes for part in scene.surface().values())
-    return surface + steps * scene.nbytes_of_step
+    share = TRACED_SHARE if scene.traced else PACKED_SHARE
+    values = VALUES_SHARE * scene.nbytes_of_values
+    return int(share * surface + steps * (share * scene.nbytes_of_step + values))
 
 
 def estimate(scenes: Sequence[ClientData], *, linked: bool = False) -> int:
@@ -230,7 +235,7 @@ def estimate(scenes: Sequence[ClientData], *, linked: bool = False) -> int:
         if n and scene.textures is scenes[0].textures:
             break
         steps = len(scene.moment(scene.times[-1])) if linked else scene.steps
-        size += READER_BYTES * linked + int(PACKED_SHARE * _arrays_bytes(scene, steps))
+        size += READER_BYTES * linked + _arrays_bytes(scene, steps)
         if linked:
             continue
         if (pyramid := scene.pyramid) is not None:
@@ -336,16 +341,17 @@ def _parts(scene: ClientData) -> Iterator[tuple[str, AnyArray]]:
 
 def _elements(views: Sequence[Iterable[tuple[str, AnyArray]]]) -> Iterator[str]:
     """Give the parts of all views as elements of the page; equal arrays lie in it once."""
-    written: set[str] = set()
+    written: dict[str, dict[str, Any]] = {}
     for n, parts in enumerate(views):
         names: set[str] = set()
         for name, array in parts:
             if name in names:  # values of all times, which each of them has
                 continue
             names.add(name)
-            info = part_info(name, array)
-            text = "" if info["digest"] in written else part_text(array)
-            written.add(info["digest"])
+            info, text = part_info(name, array), ""
+            if info["digest"] not in written:
+                written[info["digest"]], text = part_text(array)
+            info |= written[info["digest"]]
             yield (
                 f'<script type="text/plain" data-view="{n}" '
                 f'data-part="{html.escape(json.dumps(info))}">{text}</script>\n'

@@ -11,7 +11,7 @@ from flowtex.errors import FieldError
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts
-from flowtex.tiles import TileKey, shared_pyramid
+from flowtex.tiles import shared_pyramid
 from flowtex.web.view import WebView
 
 __all__ = ["StoreLink", "first_parts", "linked_data", "store_header"]
@@ -73,23 +73,20 @@ class StoreLink:
         return cls(text, f"{parts.scheme}://{host}" + (f":{port}" if port else ""))
 
 
-def linked_data(view: WebView, finest: int | None = None) -> ClientData:
+def linked_data(view: WebView) -> ClientData:
     """Return what a page is handed of a view whose tiles lie in a store.
-
-    ``finest`` is the finest level of which there are tiles, by default that of the store itself.
 
     Raises
     ------
     FieldError
-        When the flow is not one of a store, or the store has not the tiles that are to be shown.
+        When the flow is not one of a store, or the store has other paths.
     """
     stored, data = _stored(view), view.page_data()
     if not stored.about.get("complete"):
         warnings.warn(
             "the store has not been built to its end; what is missing is shown coarse", stacklevel=2
         )
-    finest = stored.finest if finest is None else finest
-    return replace(data, pyramid=stored if finest < stored.depth else None, finest=finest)
+    return replace(data, pyramid=stored if stored.depth else None, traces=True)
 
 
 def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
@@ -127,11 +124,11 @@ def _stored(view: WebView) -> StoredPyramid:
     if not isinstance(pyramid, StoredPyramid):
         msg = (
             "store is given, and the flow is not read from one; build it with "
-            "flowtex.pyramid.build(..., levels='all'), and export the store"
+            "flowtex.pyramid.build, and export the store"
         )
         raise FieldError(msg)
-    if not pyramid.made(TileKey(pyramid.depth, 0, 0)):
-        own = pyramid.about
+    own = pyramid.about
+    if (pyramid.parameter, pyramid.lines) != (own["parameter"], own["lines"]):
         msg = (
             f"the store has paths by parameter={own['parameter']!r} along {own['lines']}; expected "
             f"{pyramid.parameter!r} along {pyramid.lines}. Export it with its own, or build another"

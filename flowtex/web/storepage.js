@@ -53,14 +53,21 @@ number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&step
 row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
 let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
 {name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.
-keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let length3=new DataView(
-file).getUint32(0,!0),infos=JSON.parse(new TextDecoder().decode(new Uint8Array(file,4,length3))),start=4+length3;return infos.
-map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,decoded(info,bytes)})}async function partOfText(info,text){
-let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(
-n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")),planes=new Uint8Array(await new Response(
-unpacked).arrayBuffer()),count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,bytes=new Uint8Array(
-planes.length);for(let plane=0;plane<width;plane+=1)for(let n=0;n<count;n+=1)bytes[n*width+plane]=planes[plane*count+n];
-return decoded(info,bytes)}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let[infos,
+first]=infosOfFile(new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);
+return start+=info.bytes,info.stride===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){
+let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(
+4,first))),first]}async function partOfText(info,text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<
+packed.length;n+=1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream(
+"gzip"));return partOfPlanes(info,new Uint8Array(await new Response(unpacked).arrayBuffer()))}function partOfPlanes(info,planes){
+let count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,{stride=1}=info,steps=count/stride;
+if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed as it tells`);let bytes=new Uint8Array(
+planes.length);for(let n=0,from=0;n<width*stride;n+=1){let[plane,channel]=[Math.floor(n/stride),n%stride];for(let k=0;k<
+steps;k+=1)bytes[(k*stride+channel)*width+plane]=planes[from++]}return decoded(info,summed(info,bytes,width))}var UNSIGNED={
+1:Uint8Array,2:Uint16Array,4:Uint32Array};function summed(info,bytes,width){let{differences=0,stride=1,scale:scale3=null}=info,
+numbers=new UNSIGNED[width](bytes.buffer);for(let order=0;order<differences;order+=1)for(let n=stride;n<numbers.length;n+=
+1)numbers[n]+=numbers[n-stride];return scale3===null?bytes.buffer:Float32Array.from(new Int32Array(bytes.buffer),n=>n*2**
+scale3).buffer}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
 a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
 a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
 null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
@@ -244,14 +251,14 @@ entry.program);for(let[name,value]of Object.entries(values)){let uniform=entry.u
 location:location2,type}=uniform,numbers=typeof value=="object"?value:[Number(value)];type===gl.FLOAT?gl.uniform1fv(location2,
 numbers):type===gl.FLOAT_VEC2?gl.uniform2fv(location2,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(location2,numbers):type===
 gl.FLOAT_VEC4?gl.uniform4fv(location2,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location2,!1,numbers):gl.uniform1i(
-location2,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
+location2,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16,this.gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"\
 high-performance"}),this.programs=new Programs(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",
-event=>{event.preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.picker=this.
-smooth=null;for(let user of this.users)user.lost()}),this.canvas.addEventListener("webglcontextrestored",()=>{this.isLost=
-!1,this.findFeatures();for(let user of this.users)user.change()})}findFeatures(){let{gl}=this;if(!gl)return;let extensions=[
-"EXT_color_buffer_float","EXT_color_buffer_half_float"];this.floats=extensions.some(name=>gl.getExtension(name)!==null),
-this.programs.findFeatures()}get context(){if(!this.gl)throw new Error("there is no WebGL2");return this.gl}leave(user){
+event=>{event.preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.tracings.clear(),
+this.picker=this.smooth=null;for(let user of this.users)user.lost()}),this.canvas.addEventListener("webglcontextrestored",
+()=>{this.isLost=!1,this.findFeatures();for(let user of this.users)user.change()})}findFeatures(){let{gl}=this;if(!gl)return;
+let extensions=["EXT_color_buffer_float","EXT_color_buffer_half_float"];this.floats=extensions.some(name=>gl.getExtension(
+name)!==null),this.programs.findFeatures()}get context(){if(!this.gl)throw new Error("there is no WebGL2");return this.gl}leave(user){
 if(this.users.delete(user),this.waiting.delete(user),!this.users.size){cancelAnimationFrame(this.scheduled),this.scheduled=
 0,this.programs.dispose();for(let target of[this.picker,this.smooth])target&&this.freeTarget(target);this.picker=this.smooth=
 null,this.canvas.width=this.canvas.height=16}}request(user){this.waiting.add(user),this.scheduled||=requestAnimationFrame(
@@ -782,9 +789,11 @@ input[role="switch"]::after {
 input[role="switch"]:checked { background: var(--accent); }
 input[role="switch"]:checked::after { transform: translateX(12px); }
 .busy {
-  position: absolute; left: 50%; top: 50%; transform: translate(-50%, -50%); padding: 5px 12px;
+  position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 5px 12px;
   border-radius: 10px; background: var(--glass); color: var(--quiet); pointer-events: none;
+  animation: appear 1ms 600ms backwards; /* what takes but a moment is not told */
 }
+@keyframes appear { from { visibility: hidden } }
 .hint {
   position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 4px 12px;
   color: var(--quiet); pointer-events: none; white-space: nowrap; max-width: calc(100% - 20px);
@@ -823,61 +832,63 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
 ld ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,
 styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;colours;isShown;isOpen=!1;legendLook="";title=dom(
 "div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
-[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""},
-["waiting for data …"]);told=dom("div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{
-class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom("input",{type:"range",...TIME_RANGE});timeText=dom(
-"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;constructor(viewer){
-this.viewer=viewer;let{root:root2,canvas,options}=viewer;this.isShown=options.controls??!0,this.controls=new Controls(viewer),
-this.colours=new ColourControls(viewer),this.handle=this.button("show","Show the bar (h)",()=>this.toggle()),this.handle.
-classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.
-listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.choose(name,!viewer.
-settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.button("levels","Sh\
-ow level",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.
-makeBar(),canvas.className="picture",root2.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root2.attachShadow(
-{mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,told,note}=this,left=dom(
-"div",{class:"left"},[head,viewer.card.element]);shadow.append(canvas,viewer.card.overlay,left,legend.element,controls.element),
-shadow.append(bar,handle,busy,hintBox,told,note),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){
-let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
-listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
-label":"Controls"},[this.playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.
-lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill \
-the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.
-viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.controls.element.prepend(...this.colours.rows),this.
-showLegend(),this.update(),this.arrange())}update(){let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;
-this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.
-entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"Pause (space)":"Pl\
-ay (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute(
-"aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,
-this.slider.disabled=!varies&&settings.motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??
-"").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root:root2,options}=this.
-viewer,title=(header?.differs??[]).filter(name=>name in settings).map(name=>{let label2=header?.table.find(row=>row.name===
-name)?.label??name,value=settings[name];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||
-header?.name||"";this.title.textContent=title,this.title.hidden=!title;let label=options.label??title;root2.setAttribute(
-"aria-label",label?`Flow texture: ${label}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.
-track.hidden)return;let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.
-slices.timeUnit,moment=this.date(header)??`${numberText(now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;
-this.timeText.textContent!==text&&(this.timeText.textContent=text)}date({slices}){return dateText(slices.dates,slices.times,
-this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){
-let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(
-header,settings,parts.get("cmap")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),
-this.legend.point(null);let position=point?.position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;
-if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.
-scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,
-unit2)])),this.legend.point(header,value))}fold(open2=!1){this.isOpen=open2,this.arrange()}toggle(shown=!this.isShown){shown!==
-this.isShown&&(this.isShown=shown,this.arrange(),this.viewer.options.onControls?.(shown))}arrange(){let{header,options,root:root2}=this.
-viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
-!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
-isOpen||!isReady,root2.classList.toggle("flowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-press\
-ed",String(this.isOpen))}wait(missing){this.busy.hidden=!missing.length;let{viewer}=this;!missing.length||viewer.options.
-onNeed||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");
-names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.
-cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){
-this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.note.hidden=!0,
-delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pr\
-e",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root:root2}=this.
-viewer;toggleFullscreen(root2.closest(".flowtex-pair")??root2)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(
-viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).
-click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""});told=dom(
+"div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom(
+"input",{type:"range",...TIME_RANGE});timeText=dom("span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.
+timeText]);hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root:root2,canvas,options}=viewer;this.
+isShown=options.controls??!0,this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.
+button("show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button(
+"play","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.
+slider.value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Lev\
+el of detail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button("\
+settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root2.classList.toggle(
+"flowtex-bare",options.bare??!1);let shadow=root2.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{
+legend,controls,head,bar,handle,busy,hintBox,told,note}=this,left=dom("div",{class:"left"},[head,viewer.card.element]);shadow.
+append(canvas,viewer.card.overlay,left,legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,told,note),
+viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){let button=dom("button",
+{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",
+press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.
+playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,
+this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),
+this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.viewer;header&&(this.note.hidden=!0,
+this.controls.build(header),this.controls.element.prepend(...this.colours.rows),this.showLegend(),this.update(),this.arrange())}update(){
+let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==
+this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
+ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
+playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
+null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,this.slider.disabled=!varies&&settings.
+motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??"").length;this.timeText.style.minWidth=
+`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root:root2,options}=this.viewer,title=(header?.differs??[]).
+filter(name=>name in settings).map(name=>{let label2=header?.table.find(row=>row.name===name)?.label??name,value=settings[name];
+return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";this.title.textContent=
+title,this.title.hidden=!title;let label=options.label??title;root2.setAttribute("aria-label",label?`Flow texture: ${label}`:
+"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;let{first,last,now}=player.
+range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.slices.timeUnit,moment=this.date(
+header)??`${numberText(now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&
+(this.timeText.textContent=text)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({
+show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.
+viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("c\
+map")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.
+position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(
+position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==
+void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open2=!1){
+this.isOpen=open2,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.isShown=shown,this.arrange(),this.
+viewer.options.onControls?.(shown))}arrange(){let{header,options,root:root2}=this.viewer,isReady=header!==null,follows=!!options.
+follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.
+isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root2.classList.toggle("f\
+lowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade){
+let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},tiles=pending?`${wanted-pending} of ${wanted} tiles …`:"",
+traces=isMade?tiles:"tracing paths …",text=missing.length?"waiting for data …":traces;busy.textContent!==text&&(busy.
+textContent=text),busy.hidden=!text,!(!missing.length||viewer.options.onNeed||this.lateTimer)&&(this.lateTimer=viewer.lifetime.
+later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missin\
+g: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.
+later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),
+this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.root.dataset.
+failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=
+!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root:root2}=this.viewer;toggleFullscreen(
+root2.closest(".flowtex-pair")??root2)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),
+name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.
+later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -1044,93 +1055,157 @@ let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((le
 own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+
 place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.
 max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=
-values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
+values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,UNIT,REACH,SPEED]=[0,1,2,
+3],[TANGENTS,SLOPES,VELOCITY]=[0,1,2],UNITS=6;function positionOf(padded,trace,shape){let[rows,columns]=shape,width=padded.
+shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1){let first=3*((j+top+1)*
+width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%3]}return{data,shape:[rows,columns,
+3]}}function normalOf(padded,trace,shape){let[rows,columns]=shape,width=3*padded.shape[1],[top,left]=trace.drawn,data=new Int16Array(
+rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3){let at=width*(j+top+1)+3*(i+left+1),along=step=>[
+0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(along(3),along(width)),size=length2(normal)||
+1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}return{data,shape:[rows,columns,3]}}var Tracing=class{graphics;header;trace;find;textures=[];frames=[];passes;constructor(graphics,header,trace,find,step){
+this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.passes=this.slices(`flow/${step}`)}advance(until){
+if(![this.program("trace"),this.program("layers")].every(({ready})=>ready))return null;let gl=this.graphics.context;try{
+do{let{done,value}=this.passes.next();if(gl.isContextLost())return null;if(done)return value}while(performance.now()<until);
+return null}finally{this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",texture);for(let frame of this.
+frames)this.graphics.free("Framebuffer",frame);this.textures.length=this.frames.length=0}program(fragment){let{fullVertex="",
+[fragment]:text=""}=this.header.shaders,program=this.graphics.programs.get(fullVertex,text);if(program.error)throw new Error(
+`the tracer cannot be built: ${program.error}`);return program}data(name){let part=this.find(name);if(!part)throw new Error(
+`the part "${name}" of the scene is missing`);return part.data}texture(width,height,inner,data){let gl=this.graphics.context,
+texture=this.graphics.counted(gl.createTexture());return this.textures.push(texture),gl.bindTexture(gl.TEXTURE_2D,texture),
+gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.
+texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.texSubImage2D(gl.TEXTURE_2D,0,0,0,width,height,gl.
+RGBA,gl.FLOAT,data),texture}target(width,height){let gl=this.graphics.context,texture=this.texture(width,height,gl.RGBA32UI,
+null),frame=this.graphics.counted(gl.createFramebuffer());return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,
+frame),gl.framebufferTexture2D(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.
+graphics.context;for(let n=0;n<UNITS;n+=1)gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,null);gl.bindFramebuffer(
+gl.FRAMEBUFFER,null)}flow(name){let data=this.data(name),unit2=this.data("unit"),channels=data.length/unit2.length,flow=new Float32Array(
+4*unit2.length),whole=new Float32Array(4*unit2.length);for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=HALVES[data[at+
+2]],size=HALVES[unit2[n]]*this.trace.unit;flow[4*n]=HALVES[data[at]]*speed/size,flow[4*n+1]=HALVES[data[at+1]]*speed/size,
+flow[4*n+2]=speed,flow[4*n+3]=size,whole[4*n]=HALVES[data[at+channels-1]]}return[flow,whole]}cells(){let[rows,columns]=this.
+trace.nodes,[open2,nearest]=["open","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<
+rows*columns;n+=1){cells[4*n]=open2?open2[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest?nearest[2*n+k]:0}return cells}padded(){
+let data=this.data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=
+1)result2[4*n+k]=data[3*n+k];return result2}*slices(name){let{graphics,trace,header}=this,gl=graphics.context,{geometry,
+slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.size,geometry.columns.size],pairs=Math.ceil(width/
+2),[flow,whole]=this.flow(name);gl.activeTexture(gl.TEXTURE0);let inputs=[this.texture(columns,rows,gl.RGBA32F,flow),this.
+texture(columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.padded()),this.texture(columns,
+rows,gl.RGBA32F,whole)],[first,...paths]=[0,1,2,3].map(()=>this.target(columns,rows)),[,texels]=this.target(pairs,height),
+uniforms2={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_nodes:[columns,rows],u_closed:[Number(
+trace.closed[1]),Number(trace.closed[0])],u_first:[trace.first[1],trace.first[0]],u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.
+offset.slice(3,6),u_pace:trace.pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(geometry.planar),u_mostReach:2*
+slices.lags[slices.lags.length-1]},draw=(frame,size,before,last,pass,values)=>{gl.bindFramebuffer(gl.FRAMEBUFFER,frame),
+gl.viewport(0,0,...size);for(let ability of[gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);[...inputs,
+before,last].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(
+null),graphics.programs.use(pass,{...uniforms2,...values}),gl.drawArrays(gl.TRIANGLES,0,3)},data=new Uint16Array(slices.
+count*height*width*4),read=new Uint32Array(pairs*height*4),halves=new Uint16Array(read.buffer),layer=(n,at,last,values)=>{
+draw(texels,[pairs,height],at,last,this.program("layers"),{u_lag:1,...values}),gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,
+gl.UNSIGNED_INT,read);for(let row=0;row<height;row+=1){let texelsOfRow=halves.subarray(8*pairs*row,8*pairs*row+4*width);
+data.set(texelsOfRow,4*width*(n*height+row))}},{lags,sides,count}=slices,[none]=first;layer(0,none,none,{u_kind:TANGENTS,
+u_fourth:UNIT}),count>1+sides*lags.length&&layer(count-1,none,none,{u_kind:VELOCITY,u_fourth:SPEED});for(let side=0;side<
+sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[unused]=paths[0],[last]=first,before=last;for(let[m,lag]of lags.
+entries()){let[at,frame]=m?paths[m%3]:first,[from,earlier]=[lags[m-1]??0,lags[m-2]??0],steps={u_lagEarlier:earlier,u_from:from,
+u_to:lag,u_side:sign},pass=this.program("trace");draw(frame,[columns,rows],m?last:unused,m>1?before:unused,pass,steps);let values={
+u_kind:SLOPES,u_fourth:m===1&&!side?SPEED:NOTHING,u_lag:sign*lag};m&&layer(start+m,at,at,values),[before,last]=[last,at],
+yield}layer(start,none,last,{u_kind:SLOPES,u_fourth:REACH,u_lag:sign*lags[0]})}return{data,shape:[count,height,width,4]}}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
-alar"]},Scene=class{graphics;header;parts;earth;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;constructor(graphics,header,parts){
+alar"]},SOURCES=["padded","unit","open","nearest"],Scene=class{graphics;header;parts;earth;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts)}missing(before,after){
-let{geometry,slices,scalars,paper,pyramid}=this.header,names=["position","mesh",...geometry.planar?[]:["normal"]];pyramid&&
-names.push("places"),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))names.
-push(`slices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),
-scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}scalarParts(before,after,of=this.
-header.scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
-after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
-slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),shape={slices:[
-slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?
-part.shape:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(
-shape)===String(part.shape)}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}" of the\
- scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=
-this.drawn=null);let sliced=kind==="slices"||kind==="extra";!sliced&&kind!=="scalars"&&this.earth.forget(name);for(let user of sliced?
-[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){let resource=this.resources.get(name);this.
-resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),
-this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.earth.
-dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.
-every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.
-object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.get(whole):void 0,object2=shared?.
-object??graphics.counted(make()),resource=shared??{kind,object:object2,count:0,key:whole,users:0};return resource.users+=
-1,this.resources.set(name,resource),shared||(resource.count=fill(object2)||0),whole&&graphics.common.set(whole,resource),
-object2}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:
-gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,
-gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)
-return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(this.
-part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,parts={blocks:this.part("mesh").data,cells:this.parts.get(
-"cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}cornersAt(place){let{triangles,shape}=this.
-header.geometry;return triangles?cornersOf(this.part("triangles").data,place):cornersAt(shape,place)}levels(sight){return{
-levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins=new Int8Array){
-let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop(
-"index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}load(steps){
-for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(
-before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("\
-position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
-fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,
-fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,
-{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.key(["triangles",...names],
-...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape,[...levels],[...joins]),
-index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:null,vertices=(values2,size)=>corners?
-atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("position").data,this.anchor),3),normal=geometry.
-planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(nodal,this.part("position").data,corners):nodal,
-painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(name=>this.part(name).data);return vertices(shares(
-steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.
-stringify([shape,rows,columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.
-FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer(
-"position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&
-this.buffer("normal",key(["normal"]),()=>normals(normal)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),
-2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT],[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),
-3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{
-buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.
-FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
-fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
-extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
-shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
-channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
-n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
-k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
-levels},layer)})}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
-let{data,shape}=this.part(name),[height,width,channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={
-width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
-gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
-0))})}fill(texture,size,layer){let gl=this.graphics.context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;
-this.checkSize(size);let[format,inner]=channels===1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),
-gl.texStorage3D(target,levels+1,inner,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
-gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
-texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;
-for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,
-texels);for(let level=1;level<=levels&&!floats;level+=1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,
-level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){
-let gl=this.graphics.context,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
-if(!(Math.max(width,height)<=most&&layers<=mostLayers))throw new Error(`a texture of ${width} x ${height} texels in ${layers}\
- layers is asked for, and this graphics card has ${most} x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.
-graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(
-gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,
-256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
-gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
-1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
-this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.header,repeat=paper?.repeat??[!1,!1];
-[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,!0]:repeat),paper&&
-this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.
-TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.resources.
-get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,
-after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.
-get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];host;root;tiles=new Map;pyramid=null;chosen={
+let{geometry,slices,scalars,paper,pyramid}=this.header,{trace}=slices,names=["mesh",...trace?.parts??["position",...geometry.
+planar?[]:["normal"]]];pyramid&&names.push("places"),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
+[before,after]))names.push(`${trace?"flow":"slices"}/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.
+push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(
+names)].filter(name=>!this.fits(name))}scalarParts(before,after,of=this.header.scalars){let{name,steps,number}=of;if(name===
+null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){
+let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.
+max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??[],shape={flow:[...nodes,part.shape[2]],unit:nodes,padded:[
+...nodes.map(n=>n+2),3],slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.
+shape,3],mesh:geometry.triangles?part.shape:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.
+split("/")[0]];return!shape||String(shape)===String(part.shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;
+if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(["padded"],name,trace);return this.put("position",
+digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.
+put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),steps.every(step=>this.trace(step,until))}trace(step,until){
+let{graphics,header}=this,{trace,lags,sides}=header.slices;if(!trace)return!0;let name=`slices/${step}`,digest=this.key(
+[`flow/${step}`,...SOURCES],trace,lags,sides),{tracings}=graphics;if(this.parts.get(name)?.digest===digest)return!0;let made=graphics.
+stock.get(digest)?.part??null;if(!made){this.tracing!==digest&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
+get(digest)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=digest,tracing),made=tracing.advance(
+until),!made)return!1;this.stopTracing()}return this.put(name,digest,()=>made),!0}put(name,digest,make){let{graphics,parts}=this;
+if(parts.get(name)?.digest===digest)return;let part=graphics.stock.get(digest)?.part??{...make(),digest};graphics.release(
+parts.get(name)),parts.set(name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.missing(steps[0],steps[steps.
+length-1]).length&&steps.every(step=>this.parts.has(`slices/${step}`))}stopTracing(){this.graphics.tracings.get(this.tracing)?.
+dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.parts.get(name);if(!part)
+throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.
+includes("index")&&(this.meshLevels=this.drawn=null);let sliced=kind==="slices"||kind==="extra";!sliced&&kind!=="scalars"&&
+this.earth.forget(name);for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){
+let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.
+free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.
+keys()])this.drop(name);this.stopTracing(),this.earth.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.
+has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
+let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?
+graphics.common.get(whole):void 0,object2=shared?.object??graphics.counted(make()),resource=shared??{kind,object:object2,
+count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object2)||
+0),whole&&graphics.common.set(whole,resource),object2}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
+let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
+target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
+fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.
+meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,parts={blocks:this.part(
+"mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}cornersAt(place){
+let{triangles,shape}=this.header.geometry;return triangles?cornersOf(this.part("triangles").data,place):cornersAt(shape,
+place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==
+null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.
+joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.
+resources.has(`slices/${step}`))}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.
+graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.
+some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,
+this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(
+this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,
+paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
+key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape,
+[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
+null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("p\
+osition").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(
+nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(
+name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
+shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns,corners?.length]),place=()=>corners?
+vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
+Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
+buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",key(["normal"]),()=>normals(normal)),3,type],
+[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT],
+[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(
+gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),
+gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.
+graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.
+header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,
+key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.
+get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);
+if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(
+place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);
+return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.
+graphics.context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,
+channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.
+fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,
+wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.
+context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
+1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
+layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
+gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
+gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
+height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
+1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
+levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
+MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
+throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
+ x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
+key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
+get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
+texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
+let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
+([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
+{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
+image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
+activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
+SAMPLERS.length)}get triangles(){return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.
+graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),
+gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isWatched=!1;isOver=!1;lastCame=0;failed=new Failures;limits;constructor(host,root2){
 this.host=host,this.root=root2,this.limits=root2.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
@@ -1167,30 +1242,33 @@ let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)retur
 pyramid,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),planes:camera.
 planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.tiles.
 get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,
-header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(steps);let shown=cover(
-choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));return this.chosen={choices,steps,names:String([...shown.
-keys()])},shown}obtainable(names,steps,depth){let needs=[steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.
-failed.has(this.need(name,some))),found=names.map(name=>{let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf(
-[level,row,column]));)[level,row,column]=[level+1,row>>1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});
-return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===
-null||scene?.missing(steps[0],steps[steps.length-1]).length===0}load(name,steps,until){let scene=this.tiles.get(name)?.scene;
-return!scene||scene.isLoaded(steps)?!0:performance.now()>until?(this.host.refine(),!1):(scene.load(steps),!0)}ask(all){let{
-options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.isHere(name,[step])),steps=all.filter(isLacking),
-open2=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps)),isAsked=performance.now()-this.lastCame<LOST_MS&&
-String(open2.sort())===String([...this.missing].sort())&&(!open2.length||String(steps)===String(this.asked.steps));if(!(this.
-isWaiting||!options.onTiles)){if(isAsked)return this.watch();this.isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.
-isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(this.missing.map(keyOf),
-steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||(this.isWatched=!0,this.host.lifetime.later(
-()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.now()-this.lastCame)))}trim(steps){
-let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,used}=tile,slices=[...parts.
-keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.length-STEPS_HELD,0))){let step=stepOf(
-part);if(steps.includes(step))continue;for(let kind of["slices","extra"])this.release(tile,`${kind}/${step}`);let values=[
-...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)this.release(tile,each)}for(let{
-data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>(this.host.options.memory??BUDGET_BYTES)&&used<this.count&&
-this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??
-[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(tile?.parts.
-get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,FEW_STEPS_HELD=4,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
-createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
+header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(steps);for(let name of wanted)
+this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,
+steps,until));return this.wanted=wanted.length,this.pending=wanted.filter(name=>!this.isHere(name,steps)||!this.isLoaded(
+name,steps)).length,this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,steps,depth){let needs=[
+steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.failed.has(this.need(name,some))),found=names.map(
+name=>{let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([level,row,column]));)[level,row,column]=[level+
+1,row>>1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){
+let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){
+let scene=this.tiles.get(name)?.scene;return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.
+tiles.get(name)?.scene;return!scene||this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.
+host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.
+isHere(name,[step])),steps=all.filter(isLacking),open2=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps)),
+isAsked=performance.now()-this.lastCame<LOST_MS&&String(open2.sort())===String([...this.missing].sort())&&(!open2.length||
+String(steps)===String(this.asked.steps));if(!(this.isWaiting||!options.onTiles)){if(isAsked)return this.watch();this.isWaiting=
+!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},
+options.onTiles?.(this.missing.map(keyOf),steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||
+(this.isWatched=!0,this.host.lifetime.later(()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.
+now()-this.lastCame)))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{
+parts,used}=tile,slices=[...parts.keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(
+slices.length-STEPS_HELD,0))){let step=stepOf(part);if(steps.includes(step))continue;for(let kind of["slices","extra","f\
+low"])this.release(tile,`${kind}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));
+for(let each of values)this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>(this.
+host.options.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.
+dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
+part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,FEW_STEPS_HELD=4,FLOWS_HELD=100,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
+b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.createElement("d\
+iv");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root:root2}=this;
 root2.className="flowtex",root2.tabIndex=0,Object.assign(root2.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),
 root2.setAttribute("data-lm-suppress-shortcuts","true"),root2.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(
@@ -1203,8 +1281,8 @@ entries[entries.length-1].isIntersecting,this.isVisible&&this.request()});lifeti
 graphics,{frames}=this.renderer;return{...this.lifetime.stats(),objects,users:users.size,frames}}dispose(){if(!this.lifetime.
 isOver){this.player.playing=!1,this.lifetime.end(),this.tiles?.dispose(),this.tiles=null,this.scene?.dispose(),this.scene=
 null;for(let name of[...this.parts.keys()])this.remove(name);this.graphics.leave(this),this.renderer.dispose(),this.root.
-remove()}}setHeader(header){if(header.format!==3){this.panel.fail(`The scene has format ${header.format}, and this clien\
-t reads format ${3}.`,"Use the client of the flowtex that made the scene.");return}let old=this.header;if(old&&old.generation!==
+remove()}}setHeader(header){if(header.format!==4){this.panel.fail(`The scene has format ${header.format}, and this clien\
+t reads format ${4}.`,"Use the client of the flowtex that made the scene.");return}let old=this.header;if(old&&old.generation!==
 void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));if(this.header=header,this.settings={
 ...header.settings,...header.own},this.player.setHeader(header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(
 header),this.requests.clear(),(!old||!isSamePlace(old.geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=
@@ -1218,12 +1296,13 @@ scene)}setPart(part){let{name,digest}=part,tile=tilePart(name);if(tile)return vo
 name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.
 graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),name==="cmap"&&this.
 tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change()}remove(name){this.
-graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){if(!this.options.onNeed||!this.header)return;let names=[
-...this.parts.keys()].filter(name=>name.startsWith("slices/")),[before,after]=this.player.moment,held=this.options.memory?
-FEW_STEPS_HELD:STEPS_HELD2;for(let name of names.slice(0,Math.max(names.length-held,0))){let step=stepOf(name);if(!(step===
-before||step===after)){for(let kind of["slices","extra"])this.remove(`${kind}/${step}`);if(this.options.memory)for(let other of[
-...this.parts.keys()])isOfStep(other,step,this.header)&&this.remove(other)}}}setSettings(settings){Object.entries(settings).
-every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
+graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){let{header,options}=this;if(!header||!options.onNeed&&
+!header.slices.trace)return;let named=kind=>[...this.parts.keys()].filter(name=>name.startsWith(kind)),flows=options.onNeed&&
+named("flow/").length>FLOWS_HELD?["flow"]:[],held=options.memory?FEW_STEPS_HELD:STEPS_HELD2;for(let name of named("slice\
+s/").slice(0,-held)){let step=stepOf(name);if(this.player.moment.slice(0,2).includes(step))continue;for(let kind of["sli\
+ces","extra",...flows])this.remove(`${kind}/${step}`);let values=options.memory?named("scalars/"):[];for(let other of values)
+isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
+settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
 name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
 this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(
 state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;
@@ -1244,7 +1323,7 @@ update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=
 leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.
 now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
 this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.
-root.dataset.tiles=String(this.tiles?.missing.length??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){
+root.dataset.tiles=String(this.tiles?.pending??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){
 sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
 !this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||
 1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),
@@ -1252,36 +1331,38 @@ sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),shar
 aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;
 return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){
 return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
-header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(){
-let{header,scene,player,shown}=this;if(!header||!scene)return null;let moment=player.moment,count=header.slices.steps,ahead=player.
-playing?[1,2].map(n=>(moment[1]+n)%count):[];this.ask([moment[0],moment[1],...ahead]);let{lacking}=this;return this.root.
-dataset.lacking=String(lacking.length),this.panel.wait(lacking),lacking.length?shown&&!scene.missing(shown[0],shown[1]).
-length?shown:null:this.shown=moment}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(
-reason)}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(step=>this.scene?.missing(step,step).length);
-for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),
-this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.
-graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(
-this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.
-isClose(header)){let{vertex,fragment}=header.shaders,defines=isMoving(header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&
-defines.push("FLOWTEX_CELLS"),this.graphics.programs.get(vertex,fragment,...defines)}isClose(header){if(!this.camera)return!1;
-let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?
-tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available();if(this.
-camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){
-this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||!this.
-scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.root.
-dataset.frames=String(this.renderer.frames),this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),header.
-slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,
-options}=this;!player.playing||!player.advance(now,steps=>this.ask(steps))||(player.varies?options.onTime?.(player.time):
-options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,
-camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
-focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
-range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
-focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
-clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;
-return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){
-return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
-let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
-view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
+header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){
+let{header,scene,player,shown,lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?
+[1,2].map(n=>(moment[1]+n)%header.slices.steps):[];this.ask([moment[0],moment[1],...ahead]);let isMade=!lacking.length&&
+scene.make(moment.slice(0,2),until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,
+isMade),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:
+(lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&
+this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(
+step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??
+-1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.
+lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<
+2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture coul\
+d not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,defines=isMoving(
+header,this.settings)?["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.programs.get(vertex,
+fragment,...defines)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.
+slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){
+let shown=this.available(until);if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.
+program(header);if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);
+return}if(!program.ready||!this.scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,
+this.isBusy,until)&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),programs.get(header.shaders.
+vertex,header.shaders.pick),header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.
+request()}advance(now){let{player,options}=this,isMade=steps=>this.ask(steps)&&!!this.scene?.make(steps,now);!player.playing||
+!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),
+this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)
+throw new Error("there is nothing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(
+geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,
+isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?
+anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.
+max(this.root.clientHeight*density,1)}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||!graphics.
+gl?!1:graphics.programs.get(header.shaders.vertex,header.shaders.pick).ready}point(x,y){return this.find(x,y)?.point??null}ground(x,y){
+let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;
+if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({
+layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
 if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
 "display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count;n+=1){let cell=dom(
 "div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==
@@ -1642,96 +1723,90 @@ signal.removeEventListener("abort",stop)}}async function object(url,signal){for(
 answers";try{let[status,bytes]=await answer(url,signal);if(status===OK)return bytes;if(ABSENT.includes(status))return;if(said=
 `the server answers ${status}`,status<FAULT&&status!==BUSY)throw new StoreError("broken",said)}catch(error){if(signal.throwIfAborted(),
 error instanceof StoreError)throw error}if(trial===PAUSES_MS.length)throw new StoreError("unreachable",said);await paused(
-PAUSES_MS[trial],signal)}}function readable(bytes){let described=JSON.parse(new TextDecoder().decode(bytes));return described?.
-data_type!=="float16"?bytes:new TextEncoder().encode(JSON.stringify({...described,data_type:"uint16",fill_value:0}))}var Objects=class{url;described;shards=new Map;constructor(url,described){
-this.url=url,this.described=described}get=async(key,options)=>key.endsWith("/zarr.json")?this.description(key):this.object(
-key,options?.signal);getRange=async(key,range,options)=>{let bytes=this.shards.get(key)??this.object(key,options?.signal);
-this.shards.set(key,bytes);let all=await bytes;return"suffixLength"in range?all?.subarray(-range.suffixLength):all?.subarray(
-range.offset,range.offset+range.length)};async object(key,signal=new AbortController().signal){let bytes=await object(this.
-url+key,signal);if(!bytes)throw new StoreError("missing",`${key} is not there`);return bytes}description(key){let known=this.
-described.get(key);if(known)return known;let bytes=object(this.url+key,new AbortController().signal).then(there=>there&&
-readable(there));return this.described.set(key,bytes),bytes.catch(()=>this.described.delete(key)),bytes}};function storeError(error){
-if(error instanceof StoreError)return error;let fault=error instanceof NotFoundError&&!error.found?"missing":"broken";return new StoreError(
+PAUSES_MS[trial],signal)}}var Objects=class{url;described;shards=new Map;constructor(url,described){this.url=url,this.described=
+described}get=async(key,options)=>key.endsWith("/zarr.json")?this.description(key):this.object(key,options?.signal);getRange=async(key,range,options)=>{
+let bytes=this.shards.get(key)??this.object(key,options?.signal);this.shards.set(key,bytes);let all=await bytes;return"s\
+uffixLength"in range?all?.subarray(-range.suffixLength):all?.subarray(range.offset,range.offset+range.length)};async object(key,signal=new AbortController().
+signal){let bytes=await object(this.url+key,signal);if(!bytes)throw new StoreError("missing",`${key} is not there`);return bytes}description(key){
+let known=this.described.get(key);if(known)return known;let found=object(this.url+key,new AbortController().signal);return this.
+described.set(key,found),found.catch(()=>this.described.delete(key)),found}};function storeError(error){if(error instanceof
+StoreError)return error;let fault=error instanceof NotFoundError&&!error.found?"missing":"broken";return new StoreError(
 fault,error instanceof Error?error.message:String(error))}var Store=class{url;described=new Map;constructor(url){this.url=
 url.replace(/\/+$/,"")}async attributes(){let objects=new Objects(this.url,this.described);return(await open.v3(root(objects),
 {kind:"group"})).attrs}async array(path){let objects=new Objects(this.url,this.described),array=await open.v3(root(objects).
-resolve(path),{kind:"array"});if(!array.is("number"))throw new StoreError("broken",`${path} has no numbers`);return array}};var MOST_LAYERS=64,MOST_LAGS=32,MOST_NODES=4096,KINDS={position:[Float32Array,3],normal:[Int16Array,3],cells:[Uint8Array,
-1]},TOLD=0,CHANNELS=4,COARSE="A part of the surface is shown coarse:",ABSENT_STEP="A time step cannot be shown:",NO_STORE="\
-The surface is shown coarse:",REASONS={missing:"it is not in the store, or the store is not open to everyone.",broken:"w\
-hat the store has of it is broken.",unreachable:"the store does not answer. It is away, the network is, or pages from el\
-sewhere may not read it (CORS)."},IDENTITY=["format","fingerprint","parameter","lines"],ROUNDING2=1e-6,isCount=(value,most)=>Number.
-isInteger(value)&&Number(value)>0&&Number(value)<=most,areNumbers=(values,count)=>Array.isArray(values)&&values.every(Number.
-isFinite)&&(count??values.length)===values.length,areAlike=(some,others)=>some.length===others.length&&some.every((n,k)=>Math.
-abs(Number(n)-Number(others[k]))<=ROUNDING2*Math.abs(Number(n)));function checkHeader(own,{geometry:whole,slices:all}){let{
-geometry,slices,ranges}=own,{shape,rows,columns}=geometry;if(!(areNumbers(shape,2)&&shape.every(n=>isCount(n,MOST_NODES)&&
-n>1)&&[rows,columns].every(({before,size},axis)=>Number.isInteger(before)&&isCount(size,MOST_NODES)&&before>=0&&before+shape[axis]<=
-size)&&Number.isInteger(geometry.levels)&&geometry.levels>=0&&2**geometry.levels<=Math.max(rows.size,columns.size)&&geometry.
-triangles===whole.triangles&&geometry.planar===whole.planar&&Number.isFinite(geometry.extent)&&areNumbers(geometry.periodic.
-map(Number),2)&&areNumbers(geometry.center,3)&&areNumbers(geometry.frame,9)&&isCount(slices.count,MOST_LAYERS)&&slices.channels===
-all.channels&&areNumbers(slices.lags)&&isCount(slices.lags.length,MOST_LAGS)&&slices.sides===all.sides&&areNumbers(slices.
-extra)&&slices.extra.every(n=>Number.isInteger(n)&&n>=0&&n<slices.count)&&areNumbers([slices.unit,slices.cell,slices.critical])&&
-Object.values(ranges??{}).every(range=>areNumbers(range,2))))throw new Error("what is told of a tile does not fit the pa\
-ge")}function checkSurface(parts,header,tileCells){let{shape,planar}=header.geometry,missing=["position","mesh",...planar?
-[]:["normal"]].filter(name=>!parts.has(name));if(missing.length)throw new Error(`a tile has no ${missing.join(", ")}`);for(let[
-name,{data,shape:own}]of parts){let[rows,columns]=shape.map(n=>name==="cells"?n-1:n),blocks=shape.map(n=>Math.ceil((n-1)/
-tileCells)),kind=KINDS[name];if(!(kind?data instanceof kind[0]&&data.length===rows*columns*kind[1]:data instanceof Float32Array&&
+resolve(path),{kind:"array"});if(!array.is("number"))throw new StoreError("broken",`${path} has no numbers`);return array}};var MOST_LAYERS=64,MOST_LAGS=32,MOST_NODES=4096,MOST_BYTES=2**28,TRACED_FROM=["padded","unit","open","nearest","normal"],
+COARSE="A part of the surface is shown coarse:",ABSENT_STEP="A time step cannot be shown:",NO_STORE="The surface is show\
+n coarse:",REASONS={missing:"it is not in the store, or the store is not open to everyone.",broken:"what the store has o\
+f it is broken.",unreachable:"the store does not answer. It is away, the network is, or pages from elsewhere may not rea\
+d it (CORS)."},IDENTITY=["format","fingerprint","parameter","lines"],isCount=(value,most)=>Number.isInteger(value)&&Number(
+value)>0&&Number(value)<=most,areNumbers=(values,count)=>Array.isArray(values)&&values.every(Number.isFinite)&&(count??values.
+length)===values.length,areWhole=(values,count)=>areNumbers(values,count)&&values.every(Number.isInteger);function checkHeader(own,{
+geometry:whole,slices:all}){let{geometry,slices,ranges}=own,{shape,rows,columns}=geometry,{trace}=slices;if(!(areNumbers(
+shape,2)&&shape.every(n=>isCount(n,MOST_NODES)&&n>1)&&[rows,columns].every(({before,size},axis)=>Number.isInteger(before)&&
+isCount(size,MOST_NODES)&&before>=0&&before+shape[axis]<=size)&&Number.isInteger(geometry.levels)&&geometry.levels>=0&&2**
+geometry.levels<=Math.max(rows.size,columns.size)&&geometry.triangles===whole.triangles&&geometry.planar===whole.planar&&
+Number.isFinite(geometry.extent)&&areNumbers(geometry.periodic.map(Number),2)&&areNumbers(geometry.center,3)&&areNumbers(
+geometry.frame,9)&&isCount(slices.count,MOST_LAYERS)&&[2,4].includes(slices.channels)&&areNumbers(slices.lags)&&isCount(
+slices.lags.length,MOST_LAGS)&&slices.sides===all.sides&&areNumbers(slices.extra)&&slices.extra.every(n=>Number.isInteger(
+n)&&n>=0&&n<slices.count)&&areNumbers([slices.unit,slices.cell,slices.critical])&&(!trace||trace.parts.every(part=>TRACED_FROM.
+includes(part))&&areNumbers(trace.nodes,2)&&trace.nodes.every((n,axis)=>isCount(n,MOST_NODES)&&trace.drawn[axis]+shape[axis]<=
+n)&&areWhole([...trace.first,...trace.drawn],4)&&trace.drawn.every(n=>n>=0)&&areNumbers(trace.closed.map(Number),2)&&areNumbers(
+[...trace.offset,...trace.middle,trace.unit,trace.pace],11))&&Object.values(ranges??{}).every(range=>areNumbers(range,2))))
+throw new Error("what is told of a tile does not fit the page")}function sizesOf({geometry,slices}){let{shape,planar}=geometry,
+{trace,count,channels,extra}=slices,size=(numbers,...more)=>[...numbers,...more].reduce((a,b)=>a*b,1),texels=[geometry.rows.
+size,geometry.columns.size],nodes=trace?.nodes??[],sizes={cells:[Uint8Array,[size(shape.map(n=>n-1))]],normal:[Int16Array,
+[size(shape,3)]],scalars:[Float32Array,[size(shape)]]};trace?(sizes.unit=[Uint16Array,[size(nodes)]],sizes.padded=[Float32Array,
+[size(nodes.map(n=>n+2),3)]],sizes.open=[Uint8Array,[size(nodes)]],sizes.nearest=[Int16Array,[size(nodes,2)]],sizes.flow=
+[Uint16Array,[size(nodes,3),size(nodes,4)]]):(sizes.position=[Float32Array,[size(shape,3)]],sizes.slices=[Uint16Array,[size(
+texels,count,channels)]],sizes.extra=[Uint16Array,[size(texels,extra.length)]]);let needed=trace?["mesh",...trace.parts]:
+["mesh","position",...planar?[]:["normal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){let{sizes}=sizesOf(
+header),blocks=header.geometry.shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){let kind=sizes[name.
+split("/")[0]];if(!(kind?data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof Float32Array&&
 own.length===3&&own[0]===blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]&&own[2]%2===1))throw new Error(
-`the part "${name}" of a tile has another size than is told`)}}async function chunkOf(array,at,least,signal){let{data,shape}=await array.
-getChunk(at,{signal}),last=shape.slice(shape.length-least.length),count=shape.reduce((product2,n)=>product2*n,1);if(!(last.
-every((n,k)=>n>=least[k])&&data.length===count))throw new Error(`a chunk of ${array.path} has the shape ${shape}`);return{
-data,shape:last}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){let told=header.
-store;if(!told)throw new Error("the page does not tell where its store is");this.header=header,this.told=told,this.url=new URL(
-told.url,base),this.store=new Store(this.url.href)}open(){return this.opening?this.opening:(this.opening=this.compare().
-catch(error=>{let{fault,message}=storeError(error);if(fault==="other")throw error;fault==="unreachable"&&(this.opening=null);
-let text=`${fault==="missing"?NO_STORE:COARSE} ${REASONS[fault]}`;throw new StoreError(fault,text,message)}),this.opening)}async compare(){
-let{url}=this.told;if(!/^https?:/.test(this.url.protocol)){let text2=`This page looks for its store at ${url} beside its\
-elf, which a browser does not read where the page is a file: open it from a web server.`;throw new StoreError("other",text2)}
-let own=(await this.store.attributes()).flowtex;if(IDENTITY.every(name=>own?.[name]===this.told[name]))return;let text=`\
-The store at ${url} holds another flow than this page, or one with other paths or of another version: export the page ag\
-ain.`;throw new StoreError("other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(COARSE,
-signal,async whole=>{let known=has("header")?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):
-{header:known,parts:[]},late=steps.filter(step=>!has(`slices/${step}`)),traces=late.map(step=>this.traces(key,step,whole)),
-rest=async()=>{let{header,parts:parts2}=await surface;if(this.headers.set(name,header),!header)return parts2;let place={
-key,header,signal:whole},slices=late.map(async(step,n)=>this.slices(place,step,await traces[n]));return[parts2,...await Promise.
-all([...slices,this.values(place,steps,has)])].flat()},[parts]=await Promise.all([rest(),...traces]);return parts.map(part=>({
+`the part "${name}" of a tile has another size than is told`)}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){
+let told=header.store;if(!told)throw new Error("the page does not tell where its store is");this.header=header,this.told=
+told,this.url=new URL(told.url,base),this.store=new Store(this.url.href)}open(){return this.opening?this.opening:(this.opening=
+this.compare().catch(error=>{let{fault,message}=storeError(error);if(fault==="other")throw error;fault==="unreachable"&&
+(this.opening=null);let text=`${fault==="missing"?NO_STORE:COARSE} ${REASONS[fault]}`;throw new StoreError(fault,text,message)}),
+this.opening)}async compare(){let{url}=this.told;if(!/^https?:/.test(this.url.protocol)){let text2=`This page looks for \
+its store at ${url} beside itself, which a browser does not read where the page is a file: open it from a web server.`;throw new StoreError(
+"other",text2)}let own=(await this.store.attributes()).flowtex;if(IDENTITY.every(name=>own?.[name]===this.told[name]))return;
+let text=`The store at ${url} holds another flow than this page, or one with other paths or of another version: export t\
+he page again.`;throw new StoreError("other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(
+COARSE,signal,async whole=>{let late=steps.filter(step=>!has(`slices/${step}`)&&!has(`flow/${step}`)),known=has("header")&&
+!late.length?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):{header:known,parts:[]},flows=late.
+map(step=>this.flow(key,step,whole)),rest=async()=>{let{header,parts:parts2}=await surface;if(this.headers.set(name,header),
+!header)return parts2;let[values,...slices]=await Promise.all([this.values(key,header,steps,has,whole),...flows]);if(checkParts(
+slices.flat(),header,this.header.mesh.tileCells),!slices.every(each=>each.length))throw new Error(`tile ${name} has no f\
+low`);return[...parts2,...slices.flat(),...values]},[parts]=await Promise.all([rest(),...flows]);return parts.map(part=>({
 ...part,name:`tile/${name}/${part.name}`}))})}async root(step,signal,lacking){let{header}=this,key=[this.told.depth,0,0];
-return this.loaded(ABSENT_STEP,signal,async whole=>{let place={key,header,signal:whole},names=lacking(),parts=[];names.some(
-name=>/^(slices|extra)\//.test(name))&&parts.push(...await this.slices(place,step,await this.traces(key,step,whole)));let has=part=>!lacking().
-includes(part);return[...parts,...await this.values(place,[step],has)]})}async loaded(what,signal,load){let controller=new AbortController,
+return this.loaded(ABSENT_STEP,signal,async whole=>{let parts=[];lacking().some(name=>/^(flow|slices|extra)\//.test(name))&&
+(parts.push(...await this.flow(key,step,whole)),checkParts(parts,header,header.mesh.tileCells));let has=part=>!lacking().
+includes(part);return[...parts,...await this.values(key,header,[step],has,whole)]})}async loaded(what,signal,load){let controller=new AbortController,
 stop=()=>{},stopped=new Promise((_,reject)=>{stop=()=>reject(signal.reason),signal.addEventListener("abort",stop,{once:!0})});
 try{return await Promise.race([this.open().then(()=>load(controller.signal)),stopped])}catch(error){signal.throwIfAborted();
 let{fault,message}=storeError(error);throw fault==="other"?error:new StoreError(fault,`${what} ${REASONS[fault]}`,message)}finally{
-controller.abort(),signal.removeEventListener("abort",stop)}}async surface([level,row,column],signal){let array=await this.
-store.array(`${level}/surface`),{data}=await chunkOf(array,[row,column,0],[1],signal),parts=new Map;for(let part of partsOfFile(
-new Uint8Array(data).buffer)){let[tile,name]=tilePart(part.name)??["",""];tile===nameOf([level,row,column])&&parts.set(name,
-{...part,name})}let header=this.tileHeader(parts.get("header"));parts.delete("header"),header&&checkSurface(parts,header,
-this.header.mesh.tileCells);let text=new TextEncoder().encode(JSON.stringify(header)),digest=this.digest([level,row,column],
-"header"),told={name:"header",data:text,shape:[text.length],digest};return{header,parts:[told,...parts.values()]}}tileHeader(part){
-let own=JSON.parse(new TextDecoder().decode(part?.data));if(own===null)return null;let{steps,times:times2,timeUnit,dates,
-pace}=this.header.slices;return checkHeader(own,this.header),{...own,slices:{...own.slices,steps,times:times2,timeUnit,dates,
-pace}}}async traces([level,row,column],step,signal){let{steps,fingerprint,parameter,lines}=this.told,array=await this.store.
-array(`${level}/traces`),at=[steps[step],row,column],{data}=await chunkOf(array,[...at,TOLD,0,0,0],[1,1,CHANNELS],signal),
-bytes=new Uint8Array(data.buffer,data.byteOffset,data.byteLength),text=new TextDecoder().decode(bytes.subarray(0,Math.max(
-bytes.indexOf(0),0)));if(!text)throw new StoreError("missing",`tile ${level}/${row}/${column} is empty`);let told=JSON.parse(
-text),which=[level,row,column,steps[step],`${fingerprint} ${parameter} ${lines}`];if(String([told.tile,told.step,told.of])!==
-String(which))throw new Error(`in place of tile ${level}/${row}/${column} there is another one`);return{array,at,told}}async slices({
-key,header,signal},step,{array,at,told}){let{count,channels,extra,unit:unit2,cell,lags}=header.slices,[height,width]=[header.
-geometry.rows.size,header.geometry.columns.size],measures=[told.unit,told.cell,...told.lags??[]];if(told.count!==count||
-String(told.size)!==String([height,width])||!areAlike([unit2,cell,...lags],measures))throw new Error(`the traces of tile\
- ${nameOf(key)} do not fit its surface`);let texels=height*width,slopes=new Uint32Array(count*texels*channels/2),fourth=new Uint16Array(
-extra.length*texels);for(let layer=0;layer<count;layer+=1){signal.throwIfAborted();let place=[...at,TOLD+1+layer,0,0,0],
-{data,shape}=await chunkOf(array,place,[height,width,CHANNELS],signal),pairs=new Uint32Array(data.buffer,data.byteOffset,
-data.length/2),also=extra.indexOf(layer),to=layer*texels*channels/2;for(let j=0;j<height;j+=1){let row=j*shape[1];for(let i=row;i<
-row+width;i+=1)slopes[to++]=pairs[2*i],channels===CHANNELS&&(slopes[to++]=pairs[2*i+1]),also>=0&&(fourth[also*texels+j*width+
-i-row]=data[CHANNELS*i+3])}}let part=(name,values,shape)=>({name:`${name}/${step}`,data:values,shape,digest:this.digest(
-key,`${name}/${step}`)});return[part("extra",fourth,[extra.length,height,width]),part("slices",new Uint16Array(slopes.buffer),
-[count,height,width,channels])]}async values(place,steps,has){let parts=new Map;for(;;){let{name,steps:count,number}=this.
-header.scalars,names=(count>1?steps:[0]).map(step=>number?`scalars/${step}/${number}`:`scalars/${step}`),lacking=name===
-null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.length)return[...parts.values()];let found=await Promise.
-all(lacking.map(each=>this.valuesOf(place,each,count>1?stepOf(each):null,number)));for(let part of found)parts.set(part.
-name,part)}}async valuesOf({key,header,signal},name,step,number){let[level,row,column]=key,[rows,columns]=header.geometry.
-shape,array=await this.store.array(`${level}/values`),at=[step===null?0:this.told.steps[step],row,column,number,0,0],{data,
-shape}=await chunkOf(array,at,[rows,columns],signal),values=new Float32Array(rows*columns);for(let j=0;j<rows;j+=1)values.
-set(data.subarray(j*shape[1],j*shape[1]+columns),j*columns);return{name,data:values,shape:[rows,columns],digest:this.digest(
-key,name)}}digest(key,name){let[kind,step,...rest]=name.split("/"),source=step===void 0?[]:[this.told.steps[Number(step)]];
-return[this.told.fingerprint,nameOf(key),kind,...source,...rest].join(" ")}};openPage(header=>new Stream(header,location.href));
+controller.abort(),signal.removeEventListener("abort",stop)}}async file(kind,key,at,signal){let array=await this.store.array(
+`${key[0]}/${kind}`),chunk=async n=>{let{data}=await array.getChunk([...at,n],{signal});if(!(data instanceof Uint8Array))
+throw new Error(`${array.path} has no bytes`);return data},first=await chunk(0),[infos,start]=infosOfFile(first),size=infos.
+reduce((sum,{bytes})=>sum+bytes,start);if(!isCount(size,MOST_BYTES))throw new Error(`a file of ${array.path} tells anoth\
+er size`);let file=new Uint8Array(Math.ceil(size/first.length)*first.length);file.set(first);for(let n=1;n*first.length<
+size;n+=1)file.set(await chunk(n),n*first.length);let parts=new Map;for(let part of partsOfFile(file.buffer)){let[tile,name]=tilePart(
+part.name)??["",part.name];if(tile&&tile!==nameOf(key))throw new Error(`in place of tile ${nameOf(key)} is ${tile}`);parts.
+set(name,{...part,name})}if(new TextDecoder().decode(parts.get("of")?.data)!==this.told.fingerprint)throw new Error(`til\
+e ${nameOf(key)} is that of another flow`);return parts.delete("of"),parts}async surface(key,signal){let parts=await this.
+file("surface",key,[key[1],key[2]],signal),header=this.tileHeader(parts.get("header"));if(parts.delete("header"),header){
+let missing=sizesOf(header).needed.filter(name=>!parts.has(name));if(missing.length)throw new Error(`a tile has no ${missing.
+join(", ")}`);checkParts([...parts.values()],header,this.header.mesh.tileCells)}let text=new TextEncoder().encode(JSON.stringify(
+header)),told={name:"header",data:text,shape:[text.length],digest:`${this.told.fingerprint} ${nameOf(key)} header`};return{
+header,parts:[told,...parts.values()]}}tileHeader(part){let own=JSON.parse(new TextDecoder().decode(part?.data));if(own===
+null)return null;let{steps,times:times2,timeUnit,dates,pace}=this.header.slices;return checkHeader(own,this.header),{...own,
+slices:{...own.slices,steps,times:times2,timeUnit,dates,pace}}}async flow(key,step,signal){let source=this.told.steps[step];
+return[...(await this.file("flow",key,[source,key[1],key[2]],signal)).values()].map(part=>{let[kind,own]=part.name.split(
+"/");if(Number(own)!==source)throw new Error(`in place of step ${source} is ${part.name}`);return{...part,name:`${kind}/${step}`}})}async values(key,place,steps,has,signal){
+let parts=new Map;for(;;){let{name,steps:count,number}=this.header.scalars,names=(count>1?steps:[0]).map(step=>number?`s\
+calars/${step}/${number}`:`scalars/${step}`),lacking=name===null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.
+length)return[...parts.values()];let found=await Promise.all(lacking.map(async each=>{let source=count>1?this.told.steps[stepOf(
+each)]:0,part=(await this.file("values",key,[source,key[1],key[2],number],signal)).get(`scalars/${source}/${number}`);if(!part)
+throw new Error(`tile ${nameOf(key)} has no values of step ${source}`);return{...part,name:each}}));checkParts(found,place,
+this.header.mesh.tileCells);for(let part of found)parts.set(part.name,part)}}};openPage(header=>new Stream(header,location.href));

@@ -28,7 +28,7 @@ def tile_loader(whole: ClientData, pyramid: Pyramid, **options: Any) -> TileLoad
     def prepare(textures: TextureSet) -> Prepared:
         return whole.colours, whole.tile(textures, partial(steps_of, textures.geometry.field))
 
-    return TileLoader(pyramid, prepare=prepare, **options)
+    return TileLoader(pyramid, prepare=prepare, traces=whole.traced, **options)
 
 
 def packed_tile(whole: ClientData, tile: Tile, steps: Sequence[int]) -> Parts:
@@ -57,6 +57,10 @@ def all_tiles(whole: ClientData) -> Iterator[Parts]:
         level = (
             [child for key in level for child in pyramid.children(key)] if level[0].level else []
         )
+    if whole.traced:
+        for key in track(keys, len(keys), "Packing tiles"):
+            yield tile_parts(key, _untraced(whole, pyramid, key), *steps)
+        return
     sources = [whole.source(step) for step in steps]
     loader = tile_loader(whole, pyramid)
     for n in track(range(0, len(keys), TOGETHER), -(-len(keys) // TOGETHER), "Packing tiles"):
@@ -71,3 +75,11 @@ def all_tiles(whole: ClientData) -> Iterator[Parts]:
             if tile is not None:
                 yield packed_tile(whole, tile, steps)
     loader.close()
+
+
+def _untraced(whole: ClientData, pyramid: Pyramid, key: TileKey) -> ClientData | None:
+    """Return what is handed over of a tile that the client traces."""
+    textures = pyramid.textures(key)
+    if textures is None:
+        return None
+    return whole.tile(textures, partial(steps_of, textures.geometry.field))

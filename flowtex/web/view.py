@@ -78,7 +78,7 @@ class WebView:
     def _data(self, scene: Scene, pyramid: Pyramid | None = None) -> ClientData:
         textures = scene.textures
         colours = colours_of(self.scene, textures.geometry.field, self._background)
-        return ClientData(textures, colours, self._times, pyramid)
+        return ClientData(textures, colours, self._times, pyramid, traces=True)
 
     def recoloured(self, data: ClientData) -> ClientData:
         """Return what the client has been handed with the colours of this moment."""

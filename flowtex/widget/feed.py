@@ -233,6 +233,8 @@ class Feed:
         with self._lock:
             if order != self._order or self._closed:
                 return
+            if scene.traced != self.scene.traced:
+                self._sent.clear()  # a client that traces makes some of the arrays itself
             self.scene = scene
             self._tiles.show(scene)
             self._generation += 1
@@ -252,7 +254,7 @@ class Feed:
             self._tiles.recolour(scene)
             self._announce(self.header)
             if self._live:
-                kept = ("slices/", "extra/")
+                kept = ("flow/", "slices/", "extra/")
                 colours = {n: part for n, part in parts.items() if not n.startswith(kept)}
                 self._deliver(colours, again=False)
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,7 @@ def web_view(field: flowtex.FlowField, *, steps: int | None = None, **options: A
 
 def staged(field: flowtex.FlowField, **options: Any) -> tuple[WebView, ClientData]:
     view = web_view(field, **options)
-    return view, view.data()
+    return view, replace(view.data(), traces=False)
 
 
 @pytest.mark.parametrize("make", [plane, ball, lambda: plane(3)])
@@ -72,7 +73,10 @@ def test_arrays_are_those_of_the_texture_set(make: Any, noise: str) -> None:
         assert not others.any()
         speed = geometry.field.speed[min(step, len(geometry.field.speed) - 1)]
         np.testing.assert_allclose(parts[f"scalars/{step}"], speed, rtol=1e-6)
-        assert sum(part.nbytes for part in parts.values()) == scene.nbytes_of_step
+        assert (
+            sum(part.nbytes for part in parts.values())
+            == scene.nbytes_of_step + scene.nbytes_of_values
+        )
     surface = scene.surface()
     np.testing.assert_array_equal(surface["position"], geometry.position)
     if not geometry.planar:
@@ -113,7 +117,9 @@ def test_triangles_are_handed_over() -> None:
     np.testing.assert_allclose(surface["normal"] / 32767, points[None], atol=0.02)
     assert step["slices/0"].shape[1:3] == (height, width)
     assert step["scalars/0"].shape == (1, len(points))
-    assert sum(part.nbytes for part in step.values()) == scene.nbytes_of_step
+    assert (
+        sum(part.nbytes for part in step.values()) == scene.nbytes_of_step + scene.nbytes_of_values
+    )
     text = json.dumps([part_info(name, part) for name, part in surface.items()])
     assert '"uint32"' in text
 

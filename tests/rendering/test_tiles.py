@@ -37,7 +37,7 @@ def varying() -> FlowField:
 
 
 def sphere() -> FlowField:
-    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 301), np.linspace(-np.pi / 2, np.pi / 2, 151))
+    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 265), np.linspace(-np.pi / 2, np.pi / 2, 101))
     points = np.stack([np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b)], axis=-1)
     return FlowField.from_arrays(points, np.cross([0.5, 0.2, 1.0], points))
 

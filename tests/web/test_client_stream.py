@@ -22,6 +22,7 @@ from waiting import PATIENCE_S, wait_until
 
 from flowtex import FlowField
 from flowtex.pyramid import build
+from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.web.export import export
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def stores(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", ROOT_NODES)
         for name, make in FLOWS.items():
-            build(make(), folder / f"{name}.zarr", levels="all", progress=False)
+            build(make(), folder / f"{name}.zarr", progress=False)
     return folder
 
 
@@ -153,7 +154,7 @@ def shown(browser: Browser) -> Iterator[Shown]:
     assert shown.errors == []
 
 
-def tiles_of(server: RangeServer, array: str = "traces") -> list[str]:
+def tiles_of(server: RangeServer, array: str = "flow") -> list[str]:
     """Tiles that were asked for, each as its level, row and column, in order."""
     found = []
     for path in server.paths:
@@ -269,7 +270,7 @@ def test_time_steps_come_when_they_are_shown(
     assert not [path for path in server.paths if path.startswith("series.zarr/2/")]
     shown.seek("0")
     first = shown.pixels()
-    root = [path for path in server.paths if path.startswith("series.zarr/2/traces/c/")]
+    root = [path for path in server.paths if path.startswith("series.zarr/2/flow/c/")]
     assert sorted(path.split("/")[4] for path in root) == ["0", "1"]
     export(str(server.folder / "series.zarr"), tmp_path / "whole.html", **LOOK)
     assert np.abs(held(browser, tmp_path / "whole.html", "0") - first).max() <= 3
@@ -283,9 +284,9 @@ def broken(data: bytes) -> bytes:
 
 #: Those of a tile that differ in the page; client/tests/store.test.ts has all of them.
 FAULTS: dict[str, tuple[str, Callable[[bytes], Answer], str]] = {
-    "missing": ("traces", lambda data: 404, "is not in the store"),
+    "missing": ("flow", lambda data: 404, "is not in the store"),
     "surface": ("surface", broken, "is broken"),
-    "undescribed": ("traces/zarr.json", lambda data: 404, "is not in the store"),
+    "undescribed": ("flow/zarr.json", lambda data: 404, "is not in the store"),
 }
 
 
@@ -319,14 +320,14 @@ def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
 def test_a_coarser_level_stands_in_for_a_tile_that_is_missing(
     shown: Shown, server: RangeServer
 ) -> None:
-    server.fault = lambda path: 404 if path.startswith("flat.zarr/0/traces/c/0/0/1/") else None
+    server.fault = lambda path: 404 if path.startswith("flat.zarr/0/flow/c/0/0/1/") else None
     shown.open(linked(server, "flat", **{**NEAR, "zoom": 16, "focus": (3.8, 1.0)}).as_uri())
     shown.told()
     shown.wait()
     assert set(tiles_of(server)) == {"0/0/1", "1/0/0"}
 
 
-@pytest.mark.parametrize("lacking", ["traces/c/3/", "values/c/3/"])
+@pytest.mark.parametrize("lacking", ["flow/c/3/", "values/c/3/"])
 def test_a_tile_that_one_step_or_one_scalar_lacks_is_there_for_others(
     shown: Shown, server: RangeServer, lacking: str
 ) -> None:
@@ -337,7 +338,7 @@ def test_a_tile_that_one_step_or_one_scalar_lacks_is_there_for_others(
     assert "is not in the store" in shown.told()
     shown.wait()
     assert not [path for path in server.paths if path.startswith(f"{place}values/c/0/")]
-    if lacking.startswith("traces"):
+    if lacking.startswith("flow"):
         shown.seek("0")
     else:
         shown.choose("Colour by", "depth")
@@ -380,7 +381,7 @@ def test_a_tile_that_was_away_is_asked_for_again_in_a_view_at_rest(
     is_told = threading.Event()
 
     def answer(path: str) -> Answer:
-        if not path.startswith("flat.zarr/0/traces/c/"):
+        if not path.startswith("flat.zarr/0/flow/c/"):
             return None
         tried.append(path)
         if path == tried[0]:
@@ -414,21 +415,21 @@ def test_what_is_not_looked_at_any_more_is_given_up(shown: Shown, server: RangeS
     is_over = threading.Event()
 
     def answer(path: str) -> Answer:
-        if path.startswith("flat.zarr/0/traces/c/"):
+        if path.startswith("flat.zarr/0/flow/c/"):
             assert is_over.wait(PATIENCE_S)
         return None
 
     server.fault = answer
     gone: list[str] = []
     shown.page.on("requestfailed", lambda request: gone.append(request.url))
-    with shown.page.expect_request("**/0/traces/c/**"):
+    with shown.page.expect_request("**/0/flow/c/**"):
         shown.open(page.as_uri())
     shown.page.mouse.move(150, 80)
     for _ in range(4):
         shown.page.mouse.wheel(0, 800)
     shown.wait()
     is_over.set()
-    assert [url for url in gone if "/traces/c/" in url]
+    assert [url for url in gone if "/flow/c/" in url]
     assert shown.page.locator(".flowtex .told").is_hidden()
 
 
@@ -462,9 +463,9 @@ def test_garbage_in_a_header_leaves_the_view_as_it_is(
     for row in range(surface.shape[0]):
         for column in range(surface.shape[1]):
             text = surface[row, column]
-            start = int(text[:4].view("<u4")[0]) + 4
-            told = json.loads(bytes(text[4:start]))
-            size = told[0]["bytes"]
+            told, start = file_infos(bytes(text))
+            start += told[0]["bytes"]  # behind what tells which field it is
+            size = told[1]["bytes"]
             own = json.loads(bytes(text[start : start + size]))
             kind = ("geometry", "slices")[rng.integers(2)]
             name = rng.choice(list(own[kind]))

@@ -15,7 +15,7 @@ from matrix import ASIDE, COLOUR, GROUND, ROOT, SIZE, straight
 from pages import opened_page
 from PIL import Image
 from triangle_meshes import random_plane, sphere, surface_of
-from webgl_page import ClientPage, packed, state
+from webgl_page import ClientPage, packed, state, tile_maker
 
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes
@@ -28,15 +28,12 @@ from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene
 from flowtex.settings import Settings
-from flowtex.tiles import TileKey
 from flowtex.web.export import export
-from flowtex.web.tiles import packed_tile, tile_loader
 from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-    from flowtex.rendering.webgl.protocol import Parts
 
 pytestmark = pytest.mark.browser
 
@@ -169,16 +166,7 @@ def test_a_large_surface_is_shown_in_tiles(
     view = web_views(field, Options.split(background=GROUND, samples=11, **look))[0]
     data = view.data()
     assert data.pyramid is not None and data.pyramid.depth > 1
-    loader = tile_loader(data, data.pyramid)
-
-    def tile(key: Any, steps: Any) -> Parts:
-        loader.request([TileKey(*key)], steps)
-        loader.wait()
-        made = loader.get(TileKey(*key), steps)
-        assert made is not None
-        return packed_tile(data, made, steps)
-
-    client.tile = tile
+    client.tile = tile_maker(data)
     near: dict[str, Any] = {"parallel": True, "parallel_scale": 0.1}
     camera = Camera((2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0, 0, 1), **near)
     header = data.header(view.scene.settings, camera=state(camera))

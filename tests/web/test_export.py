@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import base64
-import gzip
 import html.parser
 import io
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from packed import unpacked
 from pages import COMPLETE, acted, opened_page
 from PIL import Image
 from waiting import wait_until
@@ -85,10 +85,7 @@ class Reader(html.parser.HTMLParser):
                 continue
             info = json.loads(given["data-part"] or "")
             if text:
-                kind = np.dtype(info["dtype"])
-                planes = np.frombuffer(gzip.decompress(base64.b64decode(text)), np.uint8)
-                data = np.ascontiguousarray(planes.reshape(kind.itemsize, -1).T).view(kind)
-                by_digest[info["digest"]] = data.reshape(info["shape"])
+                by_digest[info["digest"]] = unpacked(info, text)
             result[info["name"]] = by_digest[info["digest"]]
         return result
 
@@ -106,7 +103,7 @@ def test_a_page_holds_the_scene_and_nothing_from_outside(tmp_path: Path) -> None
     assert "http" not in read.policy
     assert read.tags.count("noscript") == 1
     view = web_views(gyre(4), Options.split(scalars=WICKED))[0]
-    scene = view.page_data()
+    scene = replace(view.page_data(), traces=True)
     header = read.header()
     header["camera"], expected = None, {**scene.header(view.scene.settings), "camera": None}
     assert header == json.loads(json.dumps(expected))

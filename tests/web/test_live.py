@@ -26,9 +26,11 @@ PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>gyre</titl
 
 
 def test_a_pixel_is_explained_without_a_server(page: Page, tmp_path: Path) -> None:
-    views = web_views(gyre(), Options.split(samples=5, grain=8.0, spacing=1.0, scalars=False))
+    views = web_views(
+        gyre(281, 141), Options.split(samples=5, grain=8.0, spacing=1.0, scalars=False)
+    )
     write_scene(tmp_path, "gyre", views)
-    # The slices are large enough to lie apart.
+    # Some parts are large enough to lie apart.
     assert len(list(tmp_path.glob("*.js"))) > 1
     (tmp_path / "live.js").write_bytes(asset("live.js").read_bytes())
     (tmp_path / "page.html").write_text(PAGE, encoding="utf-8")

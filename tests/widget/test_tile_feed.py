@@ -123,7 +123,7 @@ def test_what_was_dropped_is_sent_again_and_what_is_on_its_way_is_not(
     assert client.order.count("tile/1/0/1/header") == sent + 1
 
 
-def test_tiles_in_other_colours_are_not_traced_again(
+def test_tiles_in_other_colours_are_the_same(
     make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     client = make(swirl(), cmap="magma")
@@ -142,7 +142,7 @@ def test_tiles_in_other_colours_are_not_traced_again(
     depth = swirl().scalars["depth"][0, :65, 64:129]
     np.testing.assert_allclose(client.arrays[f"{tile}/scalars/0/1"], depth, rtol=1e-6)
     assert client.arrays["scalars/0/1"].shape == before["scalars/0"].shape
-    same = (client.arrays[f"{tile}/slices/0"], before[f"{tile}/slices/0"])
+    same = (client.arrays[f"{tile}/flow/0"], before[f"{tile}/flow/0"])
     np.testing.assert_array_equal(*same)
     assert (client.arrays[f"{tile}/mesh"] != before[f"{tile}/mesh"]).any()
     assert client.errors == []

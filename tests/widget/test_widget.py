@@ -169,18 +169,18 @@ def test_a_client_that_is_ready_gets_what_it_needs(
     widget.time = 1.5
     heard = Heard(widget, monkeypatch)
     heard.say(kind="ready")
-    heard.wait(lambda: {"slices/1", "slices/2"} <= set(heard.arrays))
-    assert "slices/0" not in heard.arrays
-    assert {"position", "cmap", "scalars/1", "extra/1"} <= set(heard.arrays)
+    heard.wait(lambda: {"flow/1", "flow/2"} <= set(heard.arrays))
+    assert "flow/0" not in heard.arrays
+    assert {"padded", "unit", "cmap", "scalars/1"} <= set(heard.arrays)
     scene = widget._views.feeds[0].scene
-    np.testing.assert_array_equal(heard.arrays["slices/1"], scene.step(1)["slices/1"])
-    np.testing.assert_array_equal(heard.arrays["position"], scene.surface()["position"])
+    np.testing.assert_array_equal(heard.arrays["flow/1"], scene.step(1)["flow/1"])
+    np.testing.assert_array_equal(heard.arrays["padded"], scene.surface()["padded"])
     heard.say(kind="need", step=3)
-    heard.wait(lambda: "slices/3" in heard.arrays)
+    heard.wait(lambda: "flow/3" in heard.arrays)
     heard.say(kind="need", step=7)
     heard.say(kind="need", step="x")
     heard.say(kind="what")
-    assert "slices/0" not in heard.arrays
+    assert "flow/0" not in heard.arrays
 
 
 def test_a_large_field_comes_coarse_first(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -190,8 +190,8 @@ def test_a_large_field_comes_coarse_first(make: Make, monkeypatch: pytest.Monkey
     assert widget._header["geometry"]["shape"] == [20, 20]
     heard = Heard(widget, monkeypatch)
     heard.say(kind="ready")
-    heard.wait(lambda: heard.arrays.get("position", np.zeros(1)).shape == (60, 60, 3))
-    heard.wait(lambda: names_of(heard.messages[-1])[-1] == "slices/0")
+    heard.wait(lambda: heard.arrays.get("padded", np.zeros(1)).shape == (62, 62, 3))
+    heard.wait(lambda: names_of(heard.messages[-1])[-1] == "padded")
     assert widget._header["geometry"]["shape"] == [60, 60]
     # Each array comes under the header that it belongs to.
     assert all(message["generation"] == message["header"] for message in heard.messages)
@@ -450,20 +450,19 @@ def test_it_is_written_as_a_page_from_where_it_is(make: Make, tmp_path: Any) -> 
 def test_many_views_of_one_mesh_share_what_is_made_of_it(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    first, other = make(gyre(nodes=60)), make(gyre(nodes=60), contrast=2.0)  # made twice
+    first, other = make(gyre(nodes=100)), make(gyre(nodes=100), contrast=2.0)  # made twice
     assert first.field is other.field
     first_scene, other_scene = (w._views.feeds[0].scene for w in (first, other))
     assert first_scene.textures is other_scene.textures
-    assert first_scene.step(0)["slices/0"] is other_scene.step(0)["slices/0"]
-    different = make(gyre(nodes=61))
+    different = make(gyre(nodes=101))
     assert different.field is not first.field
-    assert make(gyre(nodes=60), noise="spots", resolution=32).scene.store is first.scene.store
+    assert make(gyre(nodes=100), noise="spots", resolution=32).scene.store is first.scene.store
     # What has gone to a page is offered to the next view, and sent to whoever lacks it.
     heard = Heard(other, monkeypatch)
     heard.say(kind="ready")
-    heard.wait(lambda: "slices/0" in heard.arrays)
+    heard.wait(lambda: "flow/0" in heard.arrays)
     offers = [m for m in heard.messages if m["kind"] == "offer"]
-    assert "slices/0" in names_of(offers[0])
+    assert "flow/0" in names_of(offers[0])
 
 
 def test_what_is_shown_is_sent_before_anybody_asks(
@@ -472,7 +471,7 @@ def test_what_is_shown_is_sent_before_anybody_asks(
     came = threading.Event()
 
     def send(self: FlowWidget, content: dict[str, Any], buffers: Any = None) -> None:
-        if any(name == "slices/0" for name in names_of(content)):
+        if any(name == "flow/0" for name in names_of(content)):
             came.set()
 
     monkeypatch.setattr(FlowWidget, "send", send)

@@ -128,12 +128,14 @@ class BrowserView {
     const { viewer, lastCamera, lastTime } = this;
     const { settings, camera, time, playing } = this.props;
     if (!viewer) return;
-    if (name === "source") void this.show();
-    else if (name === "settings") viewer.setSettings(settings);
-    else if (name === "camera" && camera && !isEqual(camera, lastCamera)) viewer.setCamera(camera);
-    else if (name === "time" && time !== lastTime && !viewer.playing) viewer.setTime(time);
-    else if (name === "playing" && playing) viewer.play();
-    else if (name === "playing") viewer.pause();
+    const takers: Record<keyof Props, () => void> = {
+      source: () => void this.show(),
+      settings: () => viewer.setSettings(settings),
+      camera: () => camera && !isEqual(camera, lastCamera) && viewer.setCamera(camera),
+      time: () => time !== lastTime && !viewer.playing && viewer.setTime(time),
+      playing: () => (playing ? viewer.play() : viewer.pause()),
+    };
+    takers[name]();
   }
 
   dispose(): void {

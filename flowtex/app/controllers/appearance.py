@@ -231,11 +231,15 @@ class Appearance(Controller):
         if not name_among(choice, self._comparisons()):
             self.state.set(compare=self.compared)
         elif choice != self.compared:
-            self.compared = choice
             if choice != "nothing":
                 self.context.comparison_started.emit()
+            try:
+                self.area.compare(comparison(choice, self._first_time) or None)
+            except Exception:
+                self.state.set(compare=self.compared)
+                raise
+            self.compared = choice
             self.beside.end()
-            self.area.compare(comparison(choice, self._first_time) or None)
             if choice == ANOTHER_FILE:
                 self.beside.begin()
             self.state.set(bar_beside=self._bar_beside())

@@ -1,6 +1,6 @@
 """Drawing in the browser instead of on the server, with the client of the notebook widget.
 
-The page asks for two kinds of files of parts: the surface of a scene, and the slices of one of its
+The page asks for two kinds of files of parts: the surface of a scene, and the flow at one of its
 times; :mod:`flowtex.rendering.webgl.protocol` says what is in them. Camera, time and settings
 travel as state, both ways.
 """
@@ -241,7 +241,7 @@ class BrowserRendering(Controller):
         scene = self.area.scene
         textures, background = scene.textures, rgb(self.viewport.background)
         colours = colours_of(scene, textures.geometry.field, background)
-        return ClientData(textures, colours, pyramid=scene.pyramid)
+        return ClientData(textures, colours, pyramid=scene.pyramid, traces=True)
 
     def close(self) -> None:
         """End what goes on."""

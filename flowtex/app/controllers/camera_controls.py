@@ -65,6 +65,7 @@ class CameraControls(Controller):
         self.state.set(
             picture="waiting", sharp=0, figures="", scale=self._scale(), views=self.views
         )
+        context.frame_due.connect(lambda: self.state.send(picture="moving"))
         context.frame_drawn.connect(self.show_figures)
         context.frame_drawn_in_browser.connect(self.show_browser_figures)
         context.camera_changed.connect(lambda: self.state.send(scale=self._scale()))

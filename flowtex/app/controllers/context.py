@@ -31,8 +31,9 @@ class Context:
         All of them, in the order in which they were made.
     field_changed
         Signal after another flow is shown.
-    frame_drawn
-        Signal with the stream's figures after each picture.
+    frame_drawn, frame_due
+        Signals of the stream: with its figures after each picture, and when a sharp picture has
+        become out of date.
     camera_changed
         Signal after a move of the camera for which the browser draws, and no frame comes.
     frame_drawn_in_browser
@@ -53,7 +54,7 @@ class Context:
         self.routes = Routes.of(state.server)
         self.controllers: list[Controller] = []
         self.field_changed = Signal()
-        self.frame_drawn = area.stream.frame_drawn
+        self.frame_drawn, self.frame_due = area.stream.frame_drawn, area.stream.frame_due
         self.camera_changed = Signal()
         self.frame_drawn_in_browser = Signal()
         self.time_changed = area.player.time_changed

@@ -20,7 +20,8 @@ from aiohttp import web
 from flowtex.app.server.connections import LimitedServer
 from flowtex.app.server.security import LOCAL, guard, is_same
 from flowtex.app.server.site import serve_until_ended
-from flowtex.pyramid.served import METADATA, Piece, ServedStore
+from flowtex.pyramid.places import DOCUMENT
+from flowtex.pyramid.served import Piece, ServedStore
 
 __all__ = ["run_store", "store_application"]
 
@@ -108,7 +109,7 @@ def _answer(name: str, piece: Piece, *, part: bool) -> web.Response:
 
 
 def _headers(name: str) -> dict[str, str]:
-    metadata = name.endswith(METADATA)
+    metadata = name.endswith(DOCUMENT)
     return {
         "Accept-Ranges": "bytes",
         "Content-Type": "application/json" if metadata else "application/octet-stream",
@@ -127,16 +128,10 @@ async def run_store(
     open_browser: bool,
 ) -> None:
     """Serve a page and its store until the task is cancelled."""
-    # Who goes away does not wait for a tile any more.
     server = LimitedServer(store_application(served, page, token, hosts), handler_cancellation=True)
-
-    async def stop() -> None:
-        served.close()
-        await server.stop()
-
     await serve_until_ended(
         lambda: server.start(where),
-        stop,
+        server.stop,
         (*where, f"{token}/"),
         announce=announce,
         open_browser=open_browser,

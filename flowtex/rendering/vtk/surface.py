@@ -17,6 +17,7 @@ import numpy as np
 import pyvista as pv
 
 from flowtex._util.array_types import Floats
+from flowtex.earth import EARTH_RADIUS
 from flowtex.field import FlowField
 from flowtex.rendering.mesh_levels import MeshLevels, Region, join
 from flowtex.rendering.tile_choice import (
@@ -91,6 +92,7 @@ class FlowSurface:
         self._tiles: dict[TileKey, _TileActor] = {}
         self._loader = None if pyramid is None else self._loader_of(pyramid)
         self.full_height: int | None = None
+        self._culling = "none"
         self._notify: Callable[[], None] | None = None
         self._told: set[TileKey] = set()
         self._observed = [
@@ -194,6 +196,7 @@ class FlowSurface:
             self._show([])
             return
         self._base.look()
+        self._cull()
         view = self._tile_view(renderer)
         shown = self._choose(view)
         layers: dict[TileKey | None, FlowLayer] = {None: self._base}
@@ -206,6 +209,31 @@ class FlowSurface:
             layer.set_moment(*self._moment)
             layer.look()
         self._set_triangles(layers, shown, view)
+
+    def _cull(self) -> None:
+        """Leave out the far side of a whole globe, which is hidden but would be shaded as well.
+
+        Whoever has chosen which faces are drawn keeps the choice.
+        """
+        prop, eye, surface = self._actor.prop, self.view.eye, self._base.textures.geometry.whole
+        culling = "none"
+        if (
+            self._loader is None
+            and surface.on_globe
+            and prop.opacity == 1
+            and prop.style == "Surface"
+            and self._actor.mapper.GetClippingPlanes() is None
+            and self._actor.GetMatrix().Determinant() > 0
+            and (eye[3] == 0 or np.linalg.norm(eye[:3]) > EARTH_RADIUS)
+            and surface.poles is not None
+            and surface.poles.both
+            and surface.cells.all()
+        ):
+            row = len(surface.points) // 2
+            up = np.cross(*surface.tangents[:, row, 0]) @ surface.points[row, 0]
+            culling = "back" if up > 0 else "front"
+        if prop.culling in ("none", self._culling):
+            prop.culling = self._culling = culling
 
     def _after_frame(self) -> None:
         for layer in (self._base, *(drawn.layer for drawn in self._tiles.values())):

@@ -9,6 +9,7 @@ Positions and scalars keep single precision.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from dataclasses import field as data_field
@@ -28,9 +29,10 @@ from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.triangle_blocks import mesh_levels_of
 from flowtex.rendering.uniforms import client_constants, variants
+from flowtex.rendering.webgl import velocity
 from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
-from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts
+from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts, plain_list
 from flowtex.settings import TABLE, Settings
 from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet, TriangleGeometry
 from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
@@ -47,6 +49,13 @@ SHADERS = {
     "groundVertex": "webgl2/ground_vertex.glsl",
     "groundFragment": "webgl2/ground_fragment.glsl",
 }
+#: Those of a client that traces.
+TRACE_SHADERS = {
+    "fullVertex": "webgl2/full_vertex.glsl",
+    "trace": "webgl2/trace.glsl",
+    "layers": "webgl2/layers.glsl",
+}
+_COMMENTS = re.compile(r"[ \t]*//[^\n]*|^[ \t]+|\n(?=\s*(?://[^\n]*)?\n)", re.MULTILINE)
 #: Width over height of the picture that a first camera is made for; clients widen it for others.
 FIRST_ASPECT = 1.5
 #: Greatest value of a component of a normal in sixteen bits.
@@ -128,7 +137,8 @@ class ClientData:
 
     ``chosen`` are the numbers of the destination times that are handed over, increasing; all are
     where it is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and
-    ``finest`` is the finest level of those that are handed over.
+    ``finest`` is the finest level of those that are handed over. Where the client ``traces``, it is
+    handed the velocity in place of slices, if it can trace them.
     """
 
     textures: TextureSet
@@ -136,6 +146,12 @@ class ClientData:
     chosen: tuple[int, ...] = ()
     pyramid: Pyramid | None = None
     finest: int = 0
+    traces: bool = False
+
+    @cached_property
+    def traced(self) -> bool:
+        """Whether the client traces the slices."""
+        return self.traces and velocity.can_trace(self.textures)
 
     @cached_property
     def packing(self) -> Packing:
@@ -198,7 +214,7 @@ class ClientData:
             "format": FORMAT,
             "name": textures.geometry.field.name,
             "variant": variant,
-            "shaders": dict(_shaders(tuple(variant))),
+            "shaders": dict(_shaders(tuple(variant), traces=self.traces)),
             "geometry": self._geometry(),
             "slices": self._slices(),
             "lengthUnit": self.field.length_unit,
@@ -222,8 +238,8 @@ class ClientData:
                 "diverging": list(filter(is_diverging, CMAPS)),
                 "bar": bool(colours.bar),
             },
-            "colour": _numbers(colours.plain),
-            "background": _numbers(colours.background),
+            "colour": plain_list(colours.plain),
+            "background": plain_list(colours.background),
             "lighting": bool(colours.lighting),
             "opacity": float(colours.opacity),
             "paper": None if textures.paper is None else _paper(textures.paper),
@@ -248,13 +264,16 @@ class ClientData:
             parts["triangles"] = geometry.triangles.astype("<u4")
         elif not geometry.cells.all():
             parts["cells"] = geometry.cells.astype(np.uint8)
-        if not geometry.planar:
+        if not (geometry.planar or (self.traced and self.textures.grid.is_smooth)):
             parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
         if self.pyramid is not None:
             places = [self.pyramid.places(level) for level in range(self.pyramid.depth + 1)]
             parts["places"] = np.concatenate([p.reshape(-1, 5) for p in places]).astype("<f4")
         parts["mesh"] = self._mesh
-        parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
+        if self.traced:
+            parts |= velocity.surface_parts(self.textures)
+        else:
+            parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
         if self.textures.paper is not None:
             parts["step"] = half(self.textures.paper.step)
             parts["noise"] = half(self.textures.paper.noise)
@@ -275,6 +294,9 @@ class ClientData:
             msg = f"time step {step} does not exist: expected 0 to {self.steps - 1}"
             raise IndexError(msg)
         parts = self.values(step)
+        if self.traced:
+            parts[f"flow/{step}"] = velocity.velocity_part(self.textures, self.source(step))
+            return parts
         packed = self.packing.step(self.source(step))
         parts[f"extra/{step}"] = packed.extra
         parts[f"slices/{step}"] = packed.slopes
@@ -295,7 +317,7 @@ class ClientData:
 
     def tile(self, textures: TextureSet, values: Callable[[str], Floats]) -> ClientData:
         """Return what is handed over of a tile; ``values`` gives those of a scalar at its nodes."""
-        return ClientData(textures, self.tile_colours(values), self.chosen)
+        return ClientData(textures, self.tile_colours(values), self.chosen, traces=self.traces)
 
     def tile_colours(self, values: Callable[[str], Floats]) -> Colours:
         """Return the colours of a tile; ``values`` gives those of a scalar at its nodes."""
@@ -322,12 +344,18 @@ class ClientData:
 
     @property
     def nbytes_of_step(self) -> int:
-        """Bytes of the arrays of one destination time, known before anything is traced."""
+        """Bytes of the flow of one destination time, known before anything is traced."""
         geometry = self.textures.geometry
         texels = int(np.prod(geometry.size))
-        nodes = int(np.prod(geometry.shape))
+        if self.traced:
+            return velocity.NODE_BYTES * geometry.field.valid.size
         numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
-        return 2 * texels * numbers + 4 * nodes * len(self._values)
+        return 2 * texels * numbers
+
+    @property
+    def nbytes_of_values(self) -> int:
+        """Bytes of the values of one time that colours may have."""
+        return 4 * int(np.prod(self.textures.geometry.shape)) * len(self._values)
 
     @property
     def _values(self) -> dict[int, Floats]:
@@ -374,8 +402,8 @@ class ClientData:
             "periodic": [bool(p) for p in geometry.periodic],
             "planar": geometry.planar,
             "extent": float(geometry.extent),
-            "center": _numbers(geometry.center),
-            "frame": _numbers(geometry.frame),
+            "center": plain_list(geometry.center),
+            "frame": plain_list(geometry.frame),
         }
 
     def _speed(self) -> dict[str, Any]:
@@ -395,25 +423,26 @@ class ClientData:
             **earth,
             "coastlines": colours.coastlines,
             "graticule": colours.graticule,
-            "land": None if colours.land is None else _numbers(colours.land),
+            "land": None if colours.land is None else plain_list(colours.land),
         }
 
     def _slices(self) -> dict[str, Any]:
         textures = self.textures
         return {
             "count": int(textures.count),
-            "channels": self.packing.channels,
+            "channels": 4 if self.traced else self.packing.channels,
             "extra": self.packing.extra,
-            "lags": _numbers(textures.lags),
+            "lags": plain_list(textures.lags),
             "sides": int(textures.sides),
             "unit": float(textures.unit),
             "pace": float(textures.typical_speed if self.steps > 1 else textures.pace),
             "cell": float(textures.cell),
             "critical": float(textures.critical_cell),
             "steps": int(self.steps),
-            "times": _numbers(self.times),
+            "times": plain_list(self.times),
             "timeUnit": textures.geometry.field.time_unit,
             "dates": dates_of(self.field, self.times),
+            **({"trace": velocity.trace_header(textures)} if self.traced else {}),
         }
 
 
@@ -460,17 +489,20 @@ def _paper(paper: PaperTextures) -> dict[str, Any]:
         "size": [int(width), int(height)],
         "grain": float(paper.grain),
         "corrected": bool(paper.corrected),
-        "deviations": _numbers(paper.deviations),
+        "deviations": plain_list(paper.deviations),
         "repeat": [bool(r) for r in paper.repeat],
         "picture": bool(paper.picture),
-        "alongI": _numbers(paper.along_i),
-        "alongJ": _numbers(paper.along_j),
+        "alongI": plain_list(paper.along_i),
+        "alongJ": plain_list(paper.along_j),
     }
 
 
 @cache
-def _shaders(variant: tuple[str, ...]) -> dict[str, str]:
-    return {key: shader_text(name, variant) for key, name in SHADERS.items()}
+def _shaders(variant: tuple[str, ...], *, traces: bool) -> dict[str, str]:
+    names = SHADERS | TRACE_SHADERS if traces else SHADERS
+    texts = {key: shader_text(name, variant) for key, name in names.items()}
+    # Comments are a third of them.
+    return {key: _COMMENTS.sub("", text) for key, text in texts.items()}
 
 
 def _table() -> list[dict[str, Any]]:
@@ -486,8 +518,3 @@ def _table() -> list[dict[str, Any]]:
         }
         for row in TABLE.values()
     ]
-
-
-def _numbers(values: Any) -> list[float]:
-    """Return an array as a flat list of Python's own numbers."""
-    return [float(v) for v in np.asarray(values).ravel()]

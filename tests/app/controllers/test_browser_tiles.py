@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
-import struct
 from typing import Any
 
 import numpy as np
@@ -16,6 +14,7 @@ from aiohttp import web
 
 import flowtex
 from flowtex.app import FlowApp
+from flowtex.rendering.webgl.protocol import file_infos
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -25,8 +24,7 @@ def parts_of(answer: web.StreamResponse) -> dict[str, list[int]]:
     assert isinstance(answer, web.Response)
     body = answer.body
     assert isinstance(body, bytes)
-    (length,) = struct.unpack("<I", body[:4])
-    return {info["name"]: info["shape"] for info in json.loads(body[4 : 4 + length])}
+    return {info["name"]: info["shape"] for info in file_infos(body)[0]}
 
 
 def test_a_tile_is_made_when_it_is_asked_for(
@@ -47,8 +45,8 @@ def test_a_tile_is_made_when_it_is_asked_for(
         return parts_of(await app.controllers.browser._routes.answer(stem + name))
 
     found = asyncio.run(ask("0.0.1.0"))
-    assert found["tile/0/0/1/position"] == [200, 44, 3]
-    assert {"tile/0/0/1/header", "tile/0/0/1/slices/0", "tile/0/0/1/scalars/0"} <= set(found)
+    assert found["tile/0/0/1/scalars/0"] == [200, 44]
+    assert {"header", "padded", "unit", "flow/0"} <= {name.split("/", 4)[4] for name in found}
     for name in ("", "0.0", "0.0.1.7", "0.0.x.0"):
         with pytest.raises(web.HTTPNotFound):
             asyncio.run(ask(name))

@@ -28,7 +28,7 @@ from flowtex.app.server.store_site import store_application
 from flowtex.pyramid import build
 from flowtex.pyramid.served import ServedStore
 
-TILE = "0/traces/c/0/1/0/0/0/0/0"
+TILE = "0/flow/c/0/1/0/0"
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,6 @@ def visit(store: Path, token: str, ask: Callable[[Client, str], Awaitable[None]]
         server = TestServer(store_application(served, "<p>A page", token))
         async with TestClient(server) as client:
             await ask(client, f"/{token}/store/{served.run}")
-        served.close()
 
     asyncio.run(run())
 
@@ -80,7 +79,7 @@ def test_only_the_whole_address_opens(store: Path) -> None:
         for method in ("PUT", "POST", "DELETE", "PATCH", "OPTIONS"):
             assert (await client.request(method, f"{at}/zarr.json")).status == 405
         told = json.loads(await text_of(await client.get(f"{at}/zarr.json")))
-        assert told["attributes"]["flowtex"]["traced"] == [0, 1, 2]
+        assert told["attributes"]["flowtex"]["depth"] == 2
 
     visit(store, "word", ask)
 
@@ -123,7 +122,7 @@ def test_nothing_else_is_found(store: Path) -> None:
         for name in (
             "..%2fzarr.json",
             "%2e%2e/%2e%2e/etc/passwd",
-            "0/traces/c/0/99/0/0/0/0/0",
+            "0/flow/c/0/99/0/0",
             "x",
         ):
             assert (await client.get(f"{at}/{name}")).status == 404
@@ -138,7 +137,7 @@ def test_faults_are_told_to_the_log_and_not_to_others(
         msg = "the disk is /secret"
         raise OSError(msg)
 
-    monkeypatch.setattr("flowtex.pyramid.served.trace_tile", fail)
+    monkeypatch.setattr(ServedStore, "_read", fail)
 
     async def ask(client: Client, at: str) -> None:
         for _ in range(3):

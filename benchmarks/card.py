@@ -1,0 +1,300 @@
+"""Frames a second on a graphics card: ``python benchmarks/card.py``.
+
+Draws by OpenGL what the client in the browser draws, by its own shaders and the parts that it is
+sent, in a view that the surface fills. Prints frames a second, as a share of :data:`GOAL` as well,
+and nanoseconds a pixel and sample. On Linux the context is made by EGL, of the device
+``GLCONTEXT_DEVICE_INDEX``, without a window. ``--picture FILE`` writes the last picture.
+
+To draw takes NumPy and moderngl alone; to make the parts takes flowtex, but neither VTK nor a
+browser. ``--write FOLDER`` writes them on one machine, and ``--read FOLDER`` draws them on another.
+Slices are made by NumPy before: the client's trace pass is not measured.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import struct
+import sys
+import time
+import zlib
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Rows and columns of nodes of the double gyre; "c" stands for a grid whose lines are crooked.
+MESHES = ("70x120", "70x120c", "500x1000", "500x1000c", "2000x4000")
+SAMPLES, SIZE = (25, 49), (1920, 1080)
+#: Frames a second, and the zoom at which the surface fills the picture.
+GOAL, ZOOM = 1000, 1.5
+#: Seconds of a series of frames, at least; the fastest of three counts.
+SERIES_S = 0.5
+#: Processor time is that of the driver as well; the last are nanoseconds a pixel and sample.
+HEADINGS = "nodes | samples | layers | triangles | ms | processor ms | frames/s | of goal | ns"
+
+#: What client/src/programs.ts has before a shader's text, and texture units of the samplers.
+PREAMBLE = "#version 300 es\nprecision highp float;\nprecision highp int;\n"
+UNITS = {"u_slices": 0, "u_cmap": 4}
+#: Attributes of the nodes with the count of their numbers, and what stands for no value there.
+ATTRIBUTES = {"flowtexPosition": 3, "flowtexCoordinate": 2, "flowtexScalar": 2}
+NO_VALUE = -1e9
+
+
+class Drawing(NamedTuple):
+    """What a picture is drawn from: ``about`` is plain for JSON, with the shaders and uniforms.
+
+    The surface and its tiles are layers, whose arrays have names such as ``"0/slices"``.
+    """
+
+    about: dict[str, Any]
+    arrays: dict[str, NDArray[Any]]
+
+    def write(self, path: Path) -> None:
+        """Write a file that :meth:`read` takes."""
+        about = np.array(json.dumps(self.about, default=float))
+        np.savez_compressed(path, about=about, **self.arrays)
+
+    @classmethod
+    def read(cls, path: Path) -> Drawing:
+        """Return what was written to a file."""
+        with np.load(path) as file:
+            arrays = dict(file)
+        return cls(json.loads(str(arrays.pop("about"))), arrays)
+
+
+def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") -> Drawing:
+    """Return what the client draws of a WebView: flat, steady, coloured, without perspective."""
+    from flowtex.rendering.mesh_levels import MeshLevels, Region, join
+    from flowtex.rendering.tile_choice import finer_part
+    from flowtex.rendering.uniforms import ViewState, uniforms
+    from flowtex.tiles import TILE_BLOCKS
+
+    whole, settings = replace(view.data(), traces=False), view.scene.settings
+    header, pyramid = whole.header(settings), whole.pyramid
+    geometry, half = whole.textures.geometry, camera.parallel_scale
+    focus, pixel = np.asarray(camera.focal_point), 2 * half / size[1]
+    state = ViewState(focus=focus, eye=camera.eye, pixel=pixel)
+    matrix = camera.matrix(size[0] / size[1], geometry.center)
+    matrix[:, :3] = matrix[:, :3] @ geometry.frame.T
+    matrix[2] *= np.array([1, 1, 1, 0]) / (0.51 * geometry.extent)  # depth from the middle on
+    look = {f"u_{name}": header[name] for name in ("colour", "opacity")}
+    look |= {"u_lit": header["lighting"], "u_ground": header["background"]}
+    look |= {"u_mapped": True, "u_matrix": matrix.T.ravel().tolist()}
+    look["u_toEye"] = (geometry.frame @ -camera.axes[2]).tolist()
+    drawn, regions = [], []
+    for key, data, parts, finer in _shown(whole, settings, camera, size):
+        mesh, record = MeshLevels.of(data.textures), parts["mesh"]
+        mesh.error, mesh.colour_error = np.split(np.moveaxis(record[..., :-5], -1, 0), 2)
+        levels = mesh.levels(None, half, size[1])
+        for child in finer:
+            levels[finer_part(pyramid, child, key)] = -1
+        step, *place = key or (pyramid.depth if pyramid else 0, 0, 0)
+        regions.append(Region(step, *(TILE_BLOCKS * at << step for at in place), levels))
+        values = {**uniforms(data.textures, settings, state), **look, "extra": data.packing.extra}
+        drawn.append((mesh, levels, values, _arrays(data, parts)))
+    joins = join(regions, pyramid.blocks if pyramid else levels.shape, geometry.periodic)
+    layers, arrays = [], {"cmap": whole.surface()["cmap"]}
+    for (mesh, levels, values, own), borders in zip(drawn, joins, strict=True):
+        own["index"] = mesh.triangles(levels, borders).astype("u4")
+        if own["index"].size:
+            arrays |= {f"{len(layers)}/{part}": array for part, array in own.items()}
+            layers.append(values)
+    # Where there are tiles, hardly anything of the root is seen, and all have one variant.
+    near = any(values["near"] for _, _, values, _ in drawn[1:] or drawn)
+    variant = {"FLOWTEX_MOVING": layers[0]["moving"], "FLOWTEX_CELLS": near}
+    defines = "".join(f"#define {define}\n" for define, is_on in variant.items() if is_on)
+    shaders = [defines + header["shaders"][kind] for kind in ("vertex", "fragment")]
+    about = {"name": name, "size": size, "samples": settings.samples, "layers": layers}
+    about |= {"shaders": shaders, "background": header["background"]}
+    return Drawing(about, arrays)
+
+
+def _shown(whole: Any, settings: Any, camera: Any, size: tuple[int, int]) -> Iterator[Any]:
+    """Give the key, data and parts of the root and of tiles, and the tiles that cover some."""
+    from flowtex.rendering import tile_choice as choice
+    from flowtex.web.tiles import packed_tile, tile_loader
+
+    shown: dict[Any, Any] = {None: []}
+    if whole.pyramid is not None:
+        (right, up, _), half, focus = camera.axes, camera.parallel_scale, camera.focal_point
+        reaches = (right, half * size[0] / size[1]), (up, half)
+        sides = [(by * axis, reach) for axis, reach in reaches for by in (1, -1)]
+        planes = np.array([[*side, reach - side @ focus] for side, reach in sides])
+        sight = choice.TileView(None, half, size[1], planes, choice.cell_pixels(settings))
+        shown = choice.cover(choice.choose_tiles(whole.pyramid, sight), lambda key: True)
+        loader, steps = tile_loader(whole, whole.pyramid), [whole.source(0)]
+    yield None, whole, {**whole.surface(), **whole.step(0)}, shown.pop(None)
+    for key, finer in shown.items():  # one by one: all of them may be more than a loader keeps
+        loader.request([key], steps)
+        loader.wait()
+        tile = loader.get(key, steps)
+        if tile.prepared is not None:  # something of it is drawn
+            parts = {n.split("/", 4)[4]: p for n, p in packed_tile(whole, tile, [0]).items()}
+            yield key, tile.prepared[1], parts, finer
+
+
+def _arrays(data: Any, parts: Any) -> dict[str, NDArray[Any]]:
+    """Return the nodes and slices of what the client is sent."""
+    nodes, colours = parts["position"].reshape(-1, 3), data.colours
+    (values,) = (part for name, part in parts.items() if name.startswith("scalars/"))
+    share = (values - colours.low) / ((colours.high - colours.low) or 1.0)
+    share = np.where(np.isfinite(share), share, NO_VALUE).astype(np.float32)
+    return {
+        "flowtexPosition": nodes,
+        "flowtexCoordinate": data.textures.geometry.coordinate.reshape(-1, 2),
+        "flowtexScalar": np.stack([share.ravel()] * 2, axis=-1),
+        "slices": parts["slices/0"],
+        "extra": parts["extra/0"],
+    }
+
+
+def drawings(meshes: list[str], samples: list[int]) -> Iterator[Drawing]:
+    """Make what is drawn of each mesh with each number of samples, coloured by speed."""
+    from scenes import gyre_field
+
+    from flowtex.camera import Camera
+    from flowtex.options import Options
+    from flowtex.web.view import web_views
+
+    for mesh in meshes:
+        rows, columns = (int(n) for n in mesh.removesuffix("c").split("x"))
+        flow = gyre_field(columns, rows, crooked=mesh.endswith("c"))
+        camera = Camera.fit(flow.surface, SIZE[0] / SIZE[1], zoom=ZOOM)
+        name = f"{columns} x {rows}" + ", crooked" * mesh.endswith("c")
+        for count in samples:
+            yield drawing_of(web_views(flow, Options.split(samples=count))[0], camera, SIZE, name)
+
+
+def opened_card() -> Any:
+    """Return a context of OpenGL without a window."""
+    import moderngl
+
+    by = {"backend": "egl"} if sys.platform == "linux" else {}
+    context = moderngl.create_context(standalone=True, **by)
+    context.enable_only(moderngl.DEPTH_TEST)
+    context.gc_mode, context.depth_func = "auto", "<"
+    return context
+
+
+class Picture:
+    """A picture whose arrays are on the card."""
+
+    def __init__(self, context: Any, drawing: Drawing) -> None:
+        self._context, (self._about, self._arrays) = context, drawing
+        vertex, fragment = (PREAMBLE + text for text in self._about["shaders"])
+        self._program = context.program(vertex_shader=vertex, fragment_shader=fragment)
+        self._target = context.simple_framebuffer(tuple(self._about["size"]))
+        self._cmap = context.texture((256, 1), 4, self._arrays["cmap"].tobytes())
+        self._layers = [self._layer(n, own) for n, own in enumerate(self._about["layers"])]
+        self._written: dict[str, bytes] = {}
+
+    def _layer(self, n: int, uniforms: dict[str, Any]) -> tuple[Any, Any, list[tuple[Any, bytes]]]:
+        """Return the triangles, the slices and the uniforms of a layer."""
+        context, program = self._context, self._program
+        own = {k: self._arrays[f"{n}/{k}"] for k in (*ATTRIBUTES, "index", "slices", "extra")}
+        nodes = [(context.buffer(own[k].tobytes()), f"{m}f4", k) for k, m in ATTRIBUTES.items()]
+        triangles = context.vertex_array(program, nodes, context.buffer(own["index"].tobytes()))
+        count, height, width, channels = own["slices"].shape
+        texels = np.zeros((count, height, width, 4), np.float16)
+        texels[..., :channels] = own["slices"]
+        texels[uniforms["extra"], ..., 3] = own["extra"]
+        slices = context.texture_array((width, height, count), 4, texels.tobytes(), dtype="f2")
+        slices.repeat_x = slices.repeat_y = False
+        slices.build_mipmaps(0, int(uniforms["u_deepest"]))
+        values = []
+        for name in {*uniforms, *UNITS} & set(program):
+            uniform, given = program[name], np.ravel((uniforms | UNITS)[name])
+            # An array may have more places than are used.
+            numbers = np.zeros(uniform.array_length * uniform.dimension, "if"["f" in uniform.fmt])
+            numbers[: len(given)] = given
+            values.append((uniform, numbers.tobytes()))
+        return triangles, slices, values
+
+    def draw(self) -> None:
+        """Draw a frame."""
+        self._target.use()
+        self._context.clear(*self._about["background"], 1.0)
+        self._cmap.use(UNITS["u_cmap"])
+        for triangles, slices, values in self._layers:
+            slices.use(UNITS["u_slices"])
+            for uniform, data in values:
+                if self._written.get(uniform.name) != data:  # of the layer before
+                    uniform.write(data)
+                    self._written[uniform.name] = data
+            triangles.render()
+
+    def pixels(self) -> NDArray[Any]:
+        """Draw a frame and return it, (H, W, 3)."""
+        self.draw()
+        read = np.frombuffer(self._target.read(components=3), np.uint8)
+        return read.reshape(self._about["size"][1], -1, 3)[::-1]
+
+    def row(self) -> tuple[Any, ...]:
+        """Measure frames, and return a row of the table."""
+
+        def series(count: int) -> NDArray[Any]:
+            self._context.finish()
+            start = time.perf_counter(), time.process_time()
+            for _ in range(count):
+                self.draw()
+            self._context.finish()
+            return np.subtract((time.perf_counter(), time.process_time()), start)
+
+        count, spent = 1, np.minimum(series(1), series(1))  # the first is slow by itself
+        while spent[0] < SERIES_S:
+            count *= min(max(math.ceil(1.2 * SERIES_S / spent[0]), 2), 10)
+            spent = series(count)
+        seconds, work = np.min([spent, series(count), series(count)], axis=0) / count
+        triangles = sum(len(a) for n, a in self._arrays.items() if n.endswith("/index"))
+        about, rate = self._about, 1 / seconds
+        each = 1e9 * seconds / (math.prod(about["size"]) * about["samples"])
+        times = f"{1e3 * seconds:.2f}", f"{1e3 * work:.2f}", f"{rate:.3g}", f"{rate / GOAL:.2g}"
+        whole = about["name"], about["samples"], len(about["layers"]), triangles
+        return *whole, *times, f"{each:.3g}"
+
+
+def png(picture: NDArray[Any]) -> bytes:
+    """Return a picture (H, W, 3) as a file."""
+    height, width, _ = picture.shape
+    rows = np.insert(picture.reshape(height, -1), 0, 0, axis=1)  # each begins with its filter, none
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    chunks = b"IHDR" + header, b"IDAT" + zlib.compress(rows.tobytes()), b"IEND"
+    sizes = (struct.pack(">I", len(chunk) - 4) for chunk in chunks)
+    sums = (struct.pack(">I", zlib.crc32(chunk)) for chunk in chunks)
+    return b"\x89PNG\r\n\x1a\n" + b"".join(sum(zip(sizes, chunks, sums, strict=True), ()))
+
+
+def main() -> None:
+    """Measure, or write what is measured elsewhere."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--meshes", nargs="*", default=MESHES)
+    parser.add_argument("--samples", nargs="*", type=int, default=SAMPLES)
+    for name in ("write", "read", "picture"):
+        parser.add_argument(f"--{name}", type=Path)
+    given = parser.parse_args()
+    made = drawings(given.meshes, given.samples)
+    if given.write:
+        given.write.mkdir(parents=True, exist_ok=True)
+        for n, drawing in enumerate(made):
+            drawing.write(given.write / f"{n:02}.npz")
+        return
+    if given.read:
+        made = (Drawing.read(path) for path in sorted(given.read.glob("*.npz")))
+    context = opened_card()
+    sys.stdout.write("{GL_RENDERER}, OpenGL {GL_VERSION}\n\n".format(**context.info))
+    sys.stdout.write(f"| {HEADINGS} |\n|{' --- |' * (HEADINGS.count('|') + 1)}\n")
+    for drawing in made:
+        picture = Picture(context, drawing)
+        sys.stdout.write(f"| {' | '.join(map(str, picture.row()))} |\n")
+        sys.stdout.flush()
+        if given.picture:
+            given.picture.write_bytes(png(picture.pixels()))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,172 @@
+// Paths in index space through a velocity at nodes, as flowtex/trace follows them: bilinear between
+// the nodes, along the direction of the flow, ended where the surface or the flow does.
+//
+// Wrappers supply
+//   vec4 flowtexNode(ivec2 node)
+// which is the rate along i and j in cells in a length, times the speed; the speed; and the length of a
+// unit of lag;
+//   bool flowtexOpen(ivec2 cell)
+// which tells whether a cell is not blanked.
+
+// Where a path has come: displacement in cells, the lag at which it has ended, and the rate in cells in a
+// unit of lag with which it goes on straight.
+struct FlowtexPath
+{
+  vec2 moved;
+  float reach;
+  vec2 ahead;
+};
+
+FlowtexPath flowtexPathOf(ivec2 node, bool earlier);
+
+// The cell of a position, and where in the cell it is.
+ivec2 flowtexCellOf(vec2 at, out vec2 inside)
+{
+  vec2 cells = u_nodes - 1.0;
+  vec2 turns = floor(at / cells);
+  at = mix(clamp(at, vec2(0.0), cells), clamp(at - turns * cells, vec2(0.0), cells), u_closed);
+  vec2 cell = min(floor(at), cells - 1.0);
+  inside = at - cell;
+  return ivec2(cell);
+}
+
+// Rate in cells in a length; none where the flow has stopped.
+vec2 flowtexRate(vec2 at)
+{
+  vec2 inside;
+  ivec2 cell = flowtexCellOf(at, inside);
+  vec3 low = mix(flowtexNode(cell).xyz, flowtexNode(cell + ivec2(1, 0)).xyz, inside.x);
+  vec3 high = mix(flowtexNode(cell + ivec2(0, 1)).xyz, flowtexNode(cell + ivec2(1, 1)).xyz, inside.x);
+  vec3 flow = mix(low, high, inside.y);
+  return flow.z > 0.0 ? flow.xy / flow.z : vec2(0.0);
+}
+
+bool flowtexAlive(vec2 at)
+{
+  vec2 inside;
+  vec2 beyond = max(-at, at - (u_nodes - 1.0)) * (1.0 - u_closed);
+  return max(beyond.x, beyond.y) <= FLOWTEX_BORDER_CELLS && flowtexOpen(flowtexCellOf(at, inside));
+}
+
+// Follows a path from ``start`` on, from a lag to another one in units of ``unit``, by the midpoint rule.
+void flowtexFollow(inout FlowtexPath path, vec2 start, float unit, float side, float from, float to)
+{
+  if (path.reach < FLOWTEX_ENDLESS)
+  {
+    path.moved += path.ahead * (to - from);
+    return;
+  }
+  float lag = from;
+  int steps = 0;
+  do
+  {
+    vec2 at = start + path.moved;
+    vec2 rate = side * unit * flowtexRate(at);
+    float speed = max(abs(rate.x), abs(rate.y));
+    if (speed < FLOWTEX_RESTING_CELLS)
+    {
+      path.reach = lag;
+      path.ahead = vec2(0.0);
+      return;
+    }
+    float h = min(FLOWTEX_STEP_CELLS / speed, to - lag);
+    vec2 next = h * side * unit * flowtexRate(at + 0.5 * h * rate);
+    if (++steps >= FLOWTEX_MOST_STEPS || !flowtexAlive(at + next))
+    {
+      float low = 0.0;
+      float high = 1.0;
+      for (int n = 0; n < FLOWTEX_BISECTIONS; ++n)
+      {
+        float middle = 0.5 * (low + high);
+        if (flowtexAlive(at + middle * next))
+          low = middle;
+        else
+          high = middle;
+      }
+      path.reach = lag + low * h;
+      path.ahead = next / h;
+      path.moved += next + path.ahead * (to - lag - h);
+      return;
+    }
+    path.moved += next;
+    lag += h;
+  }
+  while (lag < to * (1.0 - FLOWTEX_LAG_ROUNDING));
+}
+
+// Paths around a position, at two lags: mean displacements in a unit of lag, the reach, and the unit.
+struct FlowtexNear
+{
+  vec2 slope;
+  vec2 earlier;
+  float reach;
+  float unit;
+};
+
+FlowtexNear flowtexNearOf(vec2 at, float lag, float earlier)
+{
+  vec2 inside;
+  ivec2 cell = flowtexCellOf(at, inside);
+  FlowtexNear near = FlowtexNear(vec2(0.0), vec2(0.0), 0.0, 0.0);
+  for (int n = 0; n < 4; ++n)
+  {
+    ivec2 corner = ivec2(n & 1, n >> 1);
+    vec2 share = mix(1.0 - inside, inside, vec2(corner));
+    float weight = share.x * share.y;
+    FlowtexPath path = flowtexPathOf(cell + corner, false);
+    near.slope += weight / lag * path.moved;
+    near.earlier += weight / earlier * flowtexPathOf(cell + corner, true).moved;
+    // A path ends only between nodes whose paths all end.
+    near.reach += weight * min(path.reach, FLOWTEX_MANY_LAGS * lag);
+    near.unit += weight * flowtexNode(cell + corner).w;
+  }
+  return near;
+}
+
+// Continues a path by those that begin where it has come, which have been followed up to ``from``.
+void flowtexCompose(inout FlowtexPath path, vec2 start, float unit, float earlier, float from, float to)
+{
+  if (path.reach < FLOWTEX_ENDLESS)
+  {
+    path.moved += path.ahead * (to - from);
+    return;
+  }
+  float lag = from;
+  int pieces = 0;
+  do
+  {
+    FlowtexNear near = flowtexNearOf(start + path.moved, from, earlier);
+    float scale = unit / near.unit; // of a lag, to the units there
+    float piece = min((to - lag) * scale, from);
+    vec2 bend = (near.slope - near.earlier) / (from - earlier);
+    vec2 first = near.slope - bend * from;
+    vec2 next = piece * (first + bend * piece);
+    float ends = near.reach;
+    if (++pieces > FLOWTEX_PIECES)
+      ends = 0.0;
+    if (!flowtexAlive(start + path.moved + next))
+    {
+      float low = 0.0;
+      float high = piece;
+      for (int n = 0; n < FLOWTEX_BISECTIONS; ++n)
+      {
+        float middle = 0.5 * (low + high);
+        if (flowtexAlive(start + path.moved + middle * (first + bend * middle)))
+          low = middle;
+        else
+          high = middle;
+      }
+      ends = min(ends, low);
+    }
+    if (ends < piece)
+    {
+      path.reach = lag + ends / scale;
+      path.ahead = (first + 2.0 * bend * ends) * scale;
+      path.moved += ends * (first + bend * ends) + path.ahead * (to - path.reach);
+      return;
+    }
+    path.moved += next;
+    lag += piece / scale;
+  }
+  while (lag < to * (1.0 - FLOWTEX_LAG_ROUNDING));
+}

@@ -1,0 +1,117 @@
+// Texels of a layer of the slices, two in a fragment, in half precision: flowtex/textures/texture_set.py
+// has what they are.
+
+//#include common/constants.glsl
+//#include webgl2/nodes.glsl
+
+uniform highp sampler2D u_padded;   // positions of the nodes with a line of ghosts around them
+uniform highp usampler2D u_before;  // paths at the lag of the layer
+uniform highp usampler2D u_last;    // and at the last lag
+uniform highp sampler2D u_speed;    // whole speed of the flow
+uniform vec2 u_first;               // node that the first texel would hold
+uniform vec3 u_offsetI;             // change of a position with a period
+uniform vec3 u_offsetJ;
+uniform float u_kind;    // 0 tangents, 1 slopes, 2 velocity in cells
+uniform float u_fourth;  // 0 nothing, 1 unit, 2 reach, 3 speed
+uniform float u_lag;     // with the sign of the side
+uniform float u_mostReach;
+uniform float u_pace;
+uniform float u_unit;    // that of the texels
+uniform float u_cell;    // cells of the last layer, in units
+uniform float u_planar;
+out uvec4 flowtexOut;
+
+vec3 flowtexPadded(ivec2 node)
+{
+  return texelFetch(u_padded, node + 1, 0).xyz;
+}
+
+vec4 flowtexCubic(float t)
+{
+  return vec4(((-0.5 * t + 1.0) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1.0,
+              ((-1.5 * t + 2.0) * t + 0.5) * t, (0.5 * t - 0.5) * t * t);
+}
+
+void flowtexTangents(ivec2 node, out vec3 alongI, out vec3 alongJ)
+{
+  alongI = 0.5 * (flowtexPadded(node + ivec2(1, 0)) - flowtexPadded(node - ivec2(1, 0)));
+  alongJ = 0.5 * (flowtexPadded(node + ivec2(0, 1)) - flowtexPadded(node - ivec2(0, 1)));
+}
+
+// Position between the nodes, straight on beyond the border.
+vec3 flowtexPosition(vec2 at)
+{
+  vec2 cells = u_nodes - 1.0;
+  vec2 turns = floor(at / cells) * u_closed;
+  at -= turns * cells;
+  vec2 inside = clamp(at, vec2(0.0), cells);
+  vec2 beyond = (at - inside) * (1.0 - u_closed);
+  vec2 cell = min(floor(inside), cells - 1.0);
+  vec2 f = inside - cell;
+  vec4 wi = flowtexCubic(f.x);
+  vec4 wj = flowtexCubic(f.y);
+  vec3 result = vec3(0.0);
+  for (int b = 0; b < 4; ++b)
+  {
+    ivec2 node = ivec2(cell) + ivec2(-1, b - 1);
+    vec3 row = wi[0] * flowtexPadded(node) + wi[1] * flowtexPadded(node + ivec2(1, 0))
+      + wi[2] * flowtexPadded(node + ivec2(2, 0)) + wi[3] * flowtexPadded(node + ivec2(3, 0));
+    result += wj[b] * row;
+  }
+  if (beyond != vec2(0.0))
+  {
+    vec3 alongI;
+    vec3 alongJ;
+    flowtexTangents(ivec2(inside + 0.5), alongI, alongJ);
+    result += beyond.x * alongI + beyond.y * alongJ;
+  }
+  return result + turns.x * u_offsetI + turns.y * u_offsetJ;
+}
+
+vec4 flowtexTexel(vec2 texel)
+{
+  vec2 at = texel + u_first;
+  vec2 cells = u_nodes - 1.0;
+  ivec2 node = ivec2(mix(clamp(at, vec2(0.0), cells), at - floor(at / cells) * cells, u_closed) + 0.5);
+  node += ivec2(round(texelFetch(u_cells, node, 0).yz));
+  vec4 flow = flowtexNode(node);
+  float unit = flow.w * u_pace;
+  vec2 rate = flow.z > 0.0 ? flow.w * flow.xy / flow.z : vec2(0.0);
+  vec4 result = vec4(0.0);
+  float reach = uintBitsToFloat(texelFetch(u_last, node, 0).z);
+  uvec4 path = texelFetch(u_before, node, 0);
+  if (u_kind < 0.5)
+  {
+    vec3 alongI;
+    vec3 alongJ;
+    flowtexTangents(node, alongI, alongJ);
+    result.xyz = (rate.x * alongI + rate.y * alongJ) / unit;
+  }
+  else if (u_kind < 1.5)
+  {
+    vec2 moved = uintBitsToFloat(path.xy);
+    result.xyz = (flowtexPosition(vec2(node) + moved) - flowtexPadded(node)) / (u_lag * unit);
+  }
+  else
+    result.xy = rate * u_cell;
+  if (u_planar > 0.5)
+    result.z = 0.0;
+  if (u_fourth > 2.5)
+    result.w = texelFetch(u_speed, node, 0).x;
+  else if (u_fourth > 1.5)
+    // Where nothing moves, the neighbours alone decide.
+    result.w = rate == vec2(0.0) ? u_mostReach : min(reach, u_mostReach);
+  else if (u_fourth > 0.5)
+    result.w = unit / u_unit;
+  return clamp(result, -FLOWTEX_HALF_MAX, FLOWTEX_HALF_MAX);
+}
+
+void main()
+{
+  vec2 texel = floor(gl_FragCoord.xy);
+  texel.x *= 2.0;
+  vec4 one = flowtexTexel(texel);
+  vec4 two = flowtexTexel(texel + vec2(1.0, 0.0));
+  flowtexOut = uvec4(packHalf2x16(one.xy), packHalf2x16(one.zw), packHalf2x16(two.xy),
+                     packHalf2x16(two.zw));
+}
