@@ -113,7 +113,7 @@ def traffic(requests: Iterable[Request]) -> dict[str, Any]:
 def _kind_of(path: str) -> str:
     if "/source.zarr/" in path:
         return "source"
-    if "/traces/" in path:
+    if any(f"/{kind}/" in path for kind in ("flow", "surface", "values")):
         return "tiles"
     return "nodes" if "/c/" in path else "metadata"
 
@@ -134,22 +134,22 @@ def source() -> Any:
     return xr.open_zarr(store_at(SOURCE), consolidated=False)
 
 
-def build(place: str, levels: str, scheduler: str) -> dict[str, Any]:
+def build(place: str, scheduler: str) -> dict[str, Any]:
     """Build the pyramid, as whoever calls does."""
     built = flowtex.pyramid.build(
-        source(), place, levels=levels, scheduler=scheduler, progress=sys.stderr.isatty()
+        source(), place, scheduler=scheduler, progress=sys.stderr.isatty()
     )
     return asdict(built) | {"peak": peak_memory(), "cpu_seconds": time.process_time()}
 
 
 def most_tiles(place: str) -> int:
-    """Return how many shards of traces a store has once it is built."""
+    """Return how many files of the flow a store has once it is built."""
     import zarr
 
     from flowtex.pyramid.places import store_at
 
     members = zarr.open_group(store_at(place), mode="r").members(max_depth=None)
-    return sum(int(np.prod(array.shape[:3])) for name, array in members if name.endswith("/traces"))
+    return sum(int(np.prod(array.shape[:3])) for name, array in members if name.endswith("/flow"))
 
 
 def measured_build(
@@ -168,7 +168,7 @@ def measured_build(
             before = dict(watched.seconds)
             storage.requests()
             start = time.perf_counter()
-            future = pool.submit(build, place, chosen.levels, cluster.address)
+            future = pool.submit(build, place, cluster.address)
             requests, killed_at = _followed(
                 future, storage, cluster, watched, place, disturbed=disturbed
             )
@@ -238,7 +238,7 @@ def _followed(
         watched.look()
         new = storage.requests()
         requests += new
-        tiles += len({r.path for r in new if r.method != "GET" and "/traces/c/" in r.path})
+        tiles += len({r.path for r in new if r.method != "GET" and "/flow/c/" in r.path})
         if disturbed and killed is None and tiles:
             half = half or most_tiles(place) // 2
             if tiles >= half:
@@ -249,16 +249,16 @@ def _followed(
     return requests + storage.requests(), killed
 
 
-def made_again(place: str, levels: str) -> bool:
+def made_again(place: str) -> bool:
     """Take some tiles away, build what is missing, and return whether they are what they were."""
     import obstore
     from obstore.store import from_url
 
-    tiles = [name for name in contents(place) if "/traces/c/" in f"/{name}"]
+    tiles = [name for name in contents(place) if "/flow/c/" in f"/{name}"]
     some = list(np.random.default_rng(16).choice(tiles, min(MADE_AGAIN, len(tiles)), replace=False))
     before = digests(place, some)
     obstore.delete(from_url(place), some)
-    made = flowtex.pyramid.build(source(), place, levels=levels, progress=False).made
+    made = flowtex.pyramid.build(source(), place, progress=False).made
     return made == len(some) and digests(place, some) == before
 
 
@@ -341,7 +341,6 @@ def measured(chosen: Any, folder: Path, say: Callable[[str], None]) -> dict[str,
     os.environ.update(storage.environment)
     result: dict[str, Any] = {
         "size": [columns, rows],
-        "levels": chosen.levels,
         "memory": chosen.memory,
         "machine": machine(),
         "version": flowtex.__version__,
@@ -358,12 +357,12 @@ def measured(chosen: Any, folder: Path, say: Callable[[str], None]) -> dict[str,
         result["build"] = measured_build(storage, folder / "one", STORE, chosen, disturbed=True)
         sizes = contents(STORE)
         result["store"] = {"objects": len(sizes), "bytes": sum(sizes.values())}
-        tiles = [size for name, size in sizes.items() if "/traces/c/" in f"/{name}"]
+        tiles = [size for name, size in sizes.items() if "/flow/c/" in f"/{name}"]
         result["store"] |= {"tile_bytes": float(np.mean(tiles)), "largest": max(sizes.values())}
         say(f"build: {result['build']}\nstore: {result['store']}")
         if chosen.verify == "some":
             with alone() as pool:
-                result["same"] = pool.submit(made_again, STORE, chosen.levels).result()
+                result["same"] = pool.submit(made_again, STORE).result()
             result["compared"] = min(MADE_AGAIN, len(tiles))
             say(f"{result['compared']} tiles made again, the same: {result['same']}")
         else:
@@ -386,7 +385,6 @@ def main() -> None:
     """Measure, keep the figures, and print them."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--size", default="16384x8192", help="nodes along both axes")
-    parser.add_argument("--levels", default="all", choices=("coarse", "all"))
     parser.add_argument("--memory", default="2500MB", help="memory of a worker")
     parser.add_argument("--verify", default="some", choices=("some", "all"), help="objects")
     parser.add_argument("--no-browser", dest="browser", action="store_false")

@@ -5,8 +5,11 @@ from __future__ import annotations
 import asyncio
 import os
 import re
+import signal
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -19,6 +22,24 @@ from wslink.chunking import UnChunker, generate_chunks
 
 #: Bytes of one chunk of a message.
 CHUNK = 4_000_000
+
+
+@contextmanager
+def signals_of_a_terminal() -> Iterator[None]:
+    """Have signals do what they do by default, here and in processes that are started.
+
+    Where the suite runs in the background of a shell, or by ``nohup``, some are ignored.
+    """
+    numbers = [getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name)]
+    before = {number: signal.getsignal(number) for number in numbers}
+    try:
+        for number in numbers:
+            by_default = signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
+            signal.signal(number, by_default)
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 @dataclass
@@ -50,13 +71,14 @@ class Served:
 
 def start(*words: str) -> Served:
     """Start ``flowtex`` with a page, and wait for its address."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "flowtex.cli", *words, "--no-browser", "--port", "0"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        env={**os.environ, "COLUMNS": "60"},
-    )
+    with signals_of_a_terminal():
+        process = subprocess.Popen(
+            [sys.executable, "-m", "flowtex.cli", *words, "--no-browser", "--port", "0"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env={**os.environ, "COLUMNS": "60"},
+        )
     assert process.stdout is not None
     said = ""
     for line in process.stdout:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from flowtex.field import FlowField
 
 __all__ = [
+    "begin_opengl",
     "check_colours",
     "check_image",
     "check_lines",
@@ -125,11 +126,17 @@ def check_colours(field: FlowField, options: dict[str, Any]) -> None:
         raise UsageError(msg) from error
 
 
+def begin_opengl() -> None:
+    """Begin to try OpenGL, beside what is read and imported before it is needed."""
+    from flowtex import diagnostics
+
+    diagnostics.begin_trial()
+
+
 def require_opengl() -> None:
     """Refuse to go on where nothing can draw."""
     from flowtex import diagnostics
 
-    diagnostics.prefer_headless()
     diagnostics.require_opengl()
 
 

@@ -80,9 +80,7 @@ def _store_table(place: Path) -> Table:
     rows, columns = about["nodes"]
     table.add_row("pyramid", f"{columns} × {rows} nodes, {about['depth'] + 1} levels")
     table.add_row("times", str(len(about["times"])))
-    traced = ", ".join(map(str, about["traced"])) or "none"
-    table.add_row("tiles", f"{traced} of levels 0 to {about['depth']}, by {about['parameter']}")
-    table.add_row("lines", about["lines"])
+    table.add_row("lines", f"{about['lines']} by {about['parameter']}")
     table.add_row("scalars", ", ".join(about["scalars"]) or "none")
     table.add_row("built", "all of it" if about.get("complete") else "not to its end; build again")
     return table

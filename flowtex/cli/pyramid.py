@@ -37,10 +37,6 @@ def pyramid(
         bool,
         Parameter(negative=(), help="Remove the pyramid that is in the store, and build it anew."),
     ] = False,
-    levels: Annotated[
-        Literal["coarse", "all"],
-        Parameter(help="Which tiles are traced: coarse leaves the finest until they are seen."),
-    ] = "coarse",
     lines: Annotated[
         Literal["auto", "pathlines", "streamlines"],
         Parameter(help="What the texture is drawn along, in a flow that varies."),
@@ -73,7 +69,6 @@ def pyramid(
     built = build(
         source,
         output,
-        levels=levels,
         lines=lines,
         scheduler=scheduler,
         memory=memory,

@@ -1,4 +1,4 @@
-"""``flowtex serve``: a pyramid on a page that streams it, with what is missing made on the way."""
+"""``flowtex serve``: a pyramid on a page that streams it."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def serve(
     look: Annotated[LookFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
-    """Serve a pyramid as a page that streams it; tiles that it has not are made on the way."""
+    """Serve a pyramid as a page that streams it."""
     options = {**(look or LookFlags()).arguments(), **settings_from(settings)}
     require_app()
     if token is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,}", token):
@@ -104,7 +104,7 @@ def serve(
 
 
 def _page(field: FlowField, title: str | None, options: dict[str, object], store: str) -> str:
-    """Return the page, which finds the store at an address, with all of its levels."""
+    """Return the page, which finds the store at an address."""
     from flowtex.options import Options
     from flowtex.web.export import page_text
     from flowtex.web.view import web_views
@@ -113,7 +113,7 @@ def _page(field: FlowField, title: str | None, options: dict[str, object], store
     views = web_views(field, arguments)
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        return page_text(views, store=store, finest=0, camera=camera, title=title)
+        return page_text(views, store=store, camera=camera, title=title)
     finally:
         for view in views:
             view.close()

@@ -10,7 +10,14 @@ from cyclopts import Parameter
 
 from flowtex import examples
 from flowtex._util.progress import waiting
-from flowtex.cli.checks import check_colours, check_image, check_lines, require_app, require_opengl
+from flowtex.cli.checks import (
+    begin_opengl,
+    check_colours,
+    check_image,
+    check_lines,
+    require_app,
+    require_opengl,
+)
 from flowtex.cli.console import announcer, describe
 from flowtex.cli.load import load_field, notices
 from flowtex.cli.options import (
@@ -60,10 +67,12 @@ def demo(
         msg = f"there is no example {example!r}; there are {', '.join(NAMES)}"
         raise UsageError(msg)
     options = settings_from(settings)
-    require_opengl()
+    begin_opengl()
     require_app()
     from flowtex.app import Library
     from flowtex.field.source import FlowSource
+
+    require_opengl()
 
     def opener(name: str) -> Any:
         return lambda: FlowSource(getattr(examples, f"{name}_field")())

@@ -13,6 +13,7 @@ from cyclopts import Parameter
 
 from flowtex._util.whole_file import whole_file
 from flowtex.cli.checks import (
+    begin_opengl,
     check_colours,
     check_image,
     check_lines,
@@ -61,12 +62,13 @@ def render(
     options, size = {**frame.arguments(), **settings_from(settings), "clock": clock}, frame.pixels()
     check_picture_file(output)
     check_image(options)
-    require_opengl()
+    begin_opengl()
     time_shown = None
     if options.get("lines") == "pathlines" and flow is not None:
         # Pathlines of a moment go through the times around it.
         flow, time_shown = replace(flow, time=None), flow.time
     field = load_field(files, flow)
+    require_opengl()
     check_colours(field, options)
     moment = check_time(field, time_shown)
     from PIL import Image
@@ -116,8 +118,9 @@ def movie(
     check_movie_file(output, size, fps, quality)
     check_image(options)
     check_lines(flow, options)
-    require_opengl()
+    begin_opengl()
     field = load_field(files, flow)
+    require_opengl()
     check_colours(field, options)
     from flowtex import movie as write_movie
 

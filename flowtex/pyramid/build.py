@@ -18,15 +18,13 @@ from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.pyramid.checks import check_about, is_scalar_name, sealed
 from flowtex.pyramid.layout import (
-    HALOS,
+    FLOW,
     MOST_HELD,
-    TRACES,
     VALUES,
     Part,
     about_source,
     attributes_of,
     create_level,
-    has_halos,
     parts_of,
     tiles_of,
 )
@@ -100,7 +98,6 @@ def build(
     source: Any,
     store: str | Path,
     *,
-    levels: str = "coarse",
     parameter: str = "arclength",
     lines: str = "auto",
     scheduler: Any = None,
@@ -118,9 +115,6 @@ def build(
     store
         A local folder such as ``"flow.zarr"``, or a URL such as ``"s3://bucket/flow.zarr"``;
         endpoint and credentials come from the environment.
-    levels
-        Which tiles are traced: ``"coarse"`` leaves those of the finest level to be traced when they
-        are looked at, ``"all"`` is for places where nothing can be computed.
     parameter, lines
         As in :class:`~flowtex.Settings`.
     scheduler
@@ -144,8 +138,8 @@ def build(
     Raises
     ------
     FieldError
-        When the source makes no field, is one of triangles or without a sign, has a scalar whose
-        name is none of an array, or ``levels`` is none of its words.
+        When the source makes no field, is one of triangles or without a sign, or has a scalar whose
+        name is not a valid name of a Zarr array.
     PyramidError
         When the place holds other data, the pyramid of another field or of an earlier state of this
         one, or is being built already; or when tasks have failed, and a second call makes what is
@@ -176,9 +170,6 @@ def build(
     >>> flowtex.pyramid.build(field, "gyre.zarr", progress=False).made  # all is there
     0
     """
-    if levels not in ("coarse", "all"):
-        msg = f"levels is {levels!r}; expected 'coarse' or 'all'"
-        raise FieldError(msg)
     if lines not in ("auto", "pathlines", "streamlines"):
         msg = f"lines is {lines!r}; expected 'auto', 'pathlines' or 'streamlines'"
         raise FieldError(msg)
@@ -186,7 +177,7 @@ def build(
     with plain_faults():
         check_room(place, _names(store_at(place, read_only=False)))
     given = source_of(source, **options)
-    about = about_source(given, parameter, given.chosen_lines(lines), levels)
+    about = about_source(given, parameter, given.chosen_lines(lines))
     wrong = [name for name in about["scalars"] if not is_scalar_name(name)]
     if wrong:
         msg = f"scalar {wrong[0]!r} cannot be stored; expected a name without '/', so rename it"
@@ -203,9 +194,8 @@ def build(
             parts = _missing_parts(run, level, level_shape(given.shape, level))
             run.work(workers, make_part, parts, f"Level {level} of {depth}", PART_BYTES)
         run.tell(levels_done=True)
-        tiles = [task for level in reversed(about["traced"]) for task in _tiles(run, level)]
+        tiles = [task for level in range(depth, -1, -1) for task in _tiles(run, level)]
         run.work(workers, make_tile, tiles, "Tiles", TILE_BYTES)
-        run.work(workers, make_tile, _uneven(run), "Tiles with wide halos", TILE_BYTES, new=False)
         run.tell(complete=True)
     return Built(place, depth, run.made, run.kept)
 
@@ -256,14 +246,13 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
     for level in range(about["depth"] + 1):
         parts = parts_of(level, levels.shape(level), len(about["times"]))
         units += [(part,) for part in parts]
-    for level in about["traced"]:
-        (rows, columns), _ = tiles_of(level, levels.shape(level), about)
+        rows, columns = tiles_of(level, levels.shape(level), about)
         keys = (TileKey(level, row, column) for row in range(rows) for column in range(columns))
         units += [(TileTask(key, tuple(range(len(about["times"])))),) for key in keys]
-    results = Threads().run(look, units, TILE_BYTES)
-    for error in track(results, len(units), "Verifying", show=progress):
-        if error is not None:
-            raise error
+    with closing(Threads().run(look, units, TILE_BYTES)) as results:
+        for error in track(results, len(units), "Verifying", show=progress):
+            if error is not None:
+                raise error
     return sorted(found)
 
 
@@ -287,8 +276,7 @@ def _prepared(
                 "with fresh=True to replace it, or give another place"
             )
             raise PyramidError(msg)
-        traced = sorted({*there["traced"], *about["traced"]})
-        about = {**there, "traced": traced, "complete": False}
+        about = {**there, "complete": False}
     arrays = _describe(store, about)
     return zarr.open_group(store, mode="r+"), arrays, about, there is None
 
@@ -392,20 +380,20 @@ class _Run:
         """
         if new:
             self.made += sum(len(t.steps) if isinstance(t, TileTask) else 1 for t in tasks)
-        results = workers.run(
-            function, [(self.place, self.name, task) for task in tasks], need, *given
-        )
+        named = [(self.place, self.name, task) for task in tasks]
         first, failed, in_a_row = None, 0, 0
-        for error in track(results, len(tasks), text, show=self.progress):
-            self.lease.check()
-            if isinstance(error, ChangedError):
-                raise error
-            if error is None:
-                in_a_row = 0
-                continue
-            first, failed, in_a_row = first or error, failed + 1, in_a_row + 1
-            if in_a_row == MOST_FAILURES:
-                break
+        # An error holds what it came through: the workers would end whenever that is collected.
+        with closing(workers.run(function, named, need, *given)) as results:
+            for error in track(results, len(tasks), text, show=self.progress):
+                self.lease.check()
+                if isinstance(error, ChangedError):
+                    raise error
+                if error is None:
+                    in_a_row = 0
+                    continue
+                first, failed, in_a_row = first or error, failed + 1, in_a_row + 1
+                if in_a_row == MOST_FAILURES:
+                    break
         if first is not None:
             what = f"{failed} of {len(tasks)}" if in_a_row < MOST_FAILURES else f"{failed} in a row"
             msg = (
@@ -424,11 +412,9 @@ def _look_through(run: _Run, workers: Threads) -> None:
 def _begun(run: _Run, name: str) -> Iterator[Part | TileTask]:
     """Give the parts, or the tiles at a step, of which an array has an object."""
     axes, (top, _, kind) = run.arrays[name], name.partition("/")
-    if kind in (TRACES, VALUES, HALOS):
-        # Halos of several steps are one object.
-        each = MOST_HELD if kind == HALOS else 1
+    if kind in (FLOW, VALUES):
         for step, row, column, *_ in run.there(name):
-            yield TileTask(TileKey(int(top), row, column), (step * each,))
+            yield TileTask(TileKey(int(top), row, column), (step,))
     elif {"j", "i"} <= {*axes}:
         for numbers in run.there(name):
             step, row, column = (numbers if axes[0] == "time" else (0, *numbers))[:3]
@@ -495,40 +481,13 @@ def _missing_parts(run: _Run, level: int, shape: tuple[int, int]) -> list[Part]:
 
 def _tiles(run: _Run, level: int) -> Iterator[TileTask]:
     """Give the tiles of a level that are missing, a few steps at a time."""
-    name = f"{level}/{TRACES}"
-    there = run.there(name)
-    steps, rows, columns = run.group[name].shape[:3]
-    told = None
-    if has_halos(run.about, level):
-        halos = run.group[f"{level}/{HALOS}"]
-        # There may be millions of them, of which none is asked for where there is none.
-        told = np.asarray(halos) if run.there(f"{level}/{HALOS}") else np.zeros(halos.shape)
+    there = run.there(f"{level}/{FLOW}")
+    steps, rows, columns, _ = run.group[f"{level}/{FLOW}"].shape
     for row in range(rows):
         for column in range(columns):
             for first in range(0, steps, MOST_HELD):
                 every = range(first, min(first + MOST_HELD, steps))
-                missing = [
-                    t
-                    for t in every
-                    if (t, row, column, 0, 0, 0, 0) not in there
-                    or (told is not None and not told[t, row, column].all())
-                ]
+                missing = [t for t in every if (t, row, column, 0) not in there]
                 run.kept += len(every) - len(missing)
                 if missing:
                     yield TileTask(TileKey(level, row, column), tuple(missing))
-
-
-def _uneven(run: _Run) -> list[TileTask]:
-    """Return the tiles of which some steps were made with another halo than the tile needs."""
-    tasks = []
-    for level in run.about["traced"]:
-        if not has_halos(run.about, level):
-            continue
-        halos = np.asarray(run.group[f"{level}/{HALOS}"])
-        widest = halos[..., 0].max(axis=0)
-        for row, column in np.argwhere((halos[..., 1] != widest).any(axis=0)).tolist():
-            other = np.flatnonzero(halos[:, row, column, 1] != widest[row, column])
-            for some in np.split(other, np.flatnonzero(np.diff(other // MOST_HELD)) + 1):
-                key, spare = TileKey(level, row, column), int(widest[row, column])
-                tasks.append(TileTask(key, tuple(some.tolist()), spare))
-    return tasks

@@ -17,24 +17,17 @@ import numpy as np
 from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import digest
 from flowtex.pyramid.places import FORMAT, DamageError, PyramidError
-from flowtex.textures import TextureSet
-from flowtex.tiles import TileKey
 from flowtex.tiles.pyramid import Nodes, level_shape
 
 __all__ = [
     "check_about",
-    "check_header",
-    "identity_of",
     "is_scalar_name",
-    "nodes_hash",
     "part_digest",
     "sealed",
 ]
 
 #: Nodes along an axis, steps, levels, characters of a text, and scalars, at most.
 MOST_NODES, MOST_STEPS, MOST_LEVELS, MOST_LETTERS, MOST_SCALARS = 10**7, 10**6, 40, 10_000, 1000
-#: Layers of a tile, and texels along its sides, at most; a root may be long and narrow.
-MOST_LAYERS, MOST_TEXELS = 64, 200_000
 #: Nodes of the coarsest level, which is read whole, at most.
 MOST_ROOT_NODES = 1_000_000
 
@@ -125,22 +118,12 @@ _ABOUT: dict[str, Check] = {
     "tile_cells": _whole(1, 4096),
     "parameter": _either("arclength", "time"),
     "lines": _either("pathlines", "streamlines"),
-    "traced": _list(_whole(0, MOST_LEVELS), 0, MOST_LEVELS + 1),
     "components": _either(2, 3),
     "height": _number,
     "scalars": lambda v: _by_name(_whole(1, MOST_STEPS))(v) and all(map(is_scalar_name, v)),
     "units": _by_name(_text),
     "long_names": _by_name(_text),
     "ranges": _or_none(_by_name(_ENDS)),
-}
-_TILE: dict[str, Check] = {
-    "spare": _whole(0, 1000),
-    "count": _whole(1, MOST_LAYERS - 1),
-    "size": _list(_whole(1, MOST_TEXELS), 2),
-    "lags": _rising(_list(_number, 1, MOST_LAYERS)),
-    "sides": _either(1, 2),
-    "nodes": _text,
-    **dict.fromkeys(("unit", "pace", "cell", "critical_cell"), _number),
 }
 
 
@@ -170,20 +153,6 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
     return result
 
 
-def identity_of(about: Mapping[str, Any], key: TileKey, step: int) -> dict[str, Any]:
-    """Return what a tile tells of where it belongs, so that no other is taken for it."""
-    of = " ".join(about[name] for name in ("fingerprint", "parameter", "lines"))
-    return {"tile": list(key), "step": step, "of": of}
-
-
-def nodes_hash(textures: TextureSet, step: int) -> str:
-    """Return a hash of the nodes of a tile, so that no others are drawn with its traces."""
-    field, drawn = textures.geometry.field, textures.grid.drawn
-    values = [steps[step] for _, steps in sorted(field.scalars.items()) if step < len(steps)]
-    nodal = (field.points, field.valid, field.velocity[step], *values)
-    return digest(*(np.asarray(some)[drawn] for some in nodal)).hex()
-
-
 def part_digest(nodes: Nodes, about: Mapping[str, Any], step: int) -> bytes:
     """Return a hash of a part of a level, of its values as they are written."""
     scalars = {k: v for k, v in sorted(nodes.scalars.items()) if step < about["scalars"][k]}
@@ -194,19 +163,3 @@ def part_digest(nodes: Nodes, about: Mapping[str, Any], step: int) -> bytes:
         if nodes.has_position is not None:
             arrays.append(nodes.has_position)
     return digest(*arrays, words=scalars)
-
-
-def check_header(header: Any, identity: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a tile tells of itself, checked; a ``ValueError`` says what is wrong."""
-    if not isinstance(header, dict) or not _flag(header.get("empty")):
-        msg = "it is none"
-        raise ValueError(msg)
-    if any(header.get(name) != value for name, value in identity.items()):
-        msg = f"it is that of {header.get('tile')!r:.40} at step {header.get('step')!r:.20}"
-        raise ValueError(msg)
-    checks = {} if header["empty"] else _TILE
-    wrong = [name for name, check in checks.items() if not check(header.get(name))]
-    if wrong:
-        msg = f"what it tells of itself is damaged ({', '.join(wrong)})"
-        raise ValueError(msg)
-    return header

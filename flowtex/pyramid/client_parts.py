@@ -1,58 +1,120 @@
-"""What a browser needs to draw a tile beside its traces: the surface, and values to colour it."""
+"""What a browser is handed of a tile: files of its surface, of its flow, and of its values.
+
+The flow is the velocity, from which the client traces, where it can. Where it cannot, around a
+pole and along pathlines, it is slices, with a halo that does for the first, middle and last step.
+"""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from flowtex._util.array_types import Floats, Floats32
 from flowtex.field import FlowField
-from flowtex.pyramid.layout import SURFACE, VALUES, to_write
-from flowtex.rendering.webgl import ClientData, Colours, single, tile_parts
-from flowtex.rendering.webgl.protocol import parts_file
+from flowtex.field.steps import typical_steps
+from flowtex.pyramid.layout import FILE_BYTES, FILE_CHUNK, FLOW, SURFACE, VALUES
+from flowtex.pyramid.places import PyramidError
+from flowtex.rendering.webgl import ClientData, Colours, can_trace, single, tile_parts
+from flowtex.rendering.webgl.protocol import Parts, parts_file
 from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, widened
+from flowtex.trace import SliceStore
 
-__all__ = ["write_surface", "write_values"]
+__all__ = ["write_tile"]
 
 #: What of the slices is the same in all tiles, and told by the page.
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
+#: Error of a value as a share of the range that most of them have.
+VALUE_SHARE = 2.0**-17
 
 
-def write_surface(here: Any, pyramid: Pyramid, key: TileKey, textures: TextureSet | None) -> None:
-    """Write what a tile is at all times into the group of its level; a page holds the root's."""
-    if key.level < pyramid.depth:
-        room = here[SURFACE].shape[-1]
-        file = np.frombuffer(_surface(pyramid, key, textures), np.uint8)
-        here[SURFACE][key.row, key.column] = np.pad(file, (0, room - len(file)))
+def write_tile(here: Any, pyramid: Pyramid, key: TileKey, steps: Sequence[int], of: str) -> None:
+    """Write what a browser is handed of a tile at some times into the group of its level.
+
+    ``of`` tells of which field it is. That of the first step has the surface as well.
+    """
+    textures = _textures(pyramid, key)
+    data, at = None, key[1:]
+    if textures is not None:
+        data = ClientData(textures, _colours(pyramid, textures.geometry.field), traces=True)
+    if 0 in steps and key.level < pyramid.depth:  # a page has the surface of the root
+        _write(here[SURFACE], at, of, _surface(pyramid, key, data))
+    prefix = f"tile/{key.level}/{key.row}/{key.column}"
+    for step in steps:
+        parts: Parts = {}
+        if data is not None:
+            for number, values in enumerate(_values(pyramid, data, step)):
+                if values is not None:
+                    file = {f"{prefix}/scalars/{step}/{number}": values}
+                    _write(here[VALUES], (step, *at, number), of, file)
+            named = data.step(step).items()
+            parts = {f"{prefix}/{k}": v for k, v in named if not k.startswith("scalars/")}
+            data.textures.forget()
+        # The last one: by it a tile is known to be whole.
+        _write(here[FLOW], (step, *at), of, parts)
 
 
-def write_values(here: Any, key: TileKey, textures: TextureSet, step: int) -> None:
-    """Write values at the nodes of a tile at a time step into the group of its level."""
-    field, (rows, columns) = textures.geometry.field, textures.geometry.drawn
-    for number, name in enumerate(_names(field)):
-        values = _steps_of(field, name)
-        if step < len(values):
-            nodal = single(values[step][rows, columns])
-            at = (step, key.row, key.column, number)
-            to_write(here, VALUES)[(*at, *(slice(0, n) for n in nodal.shape))] = nodal
+def _textures(pyramid: Pyramid, key: TileKey) -> TextureSet | None:
+    """Return the textures of a tile, of which those that a browser traces are not traced here."""
+    if key.level == pyramid.depth:
+        store = SliceStore(pyramid.root, parameter=pyramid.parameter, lines=pyramid.lines)
+        return pyramid.root_textures(store)
+    textures = pyramid.textures(key)
+    if textures is None or can_trace(textures):
+        return textures
+    return pyramid.tile(key, typical_steps(len(pyramid.root.times)))
 
 
-def _surface(pyramid: Pyramid, key: TileKey, textures: TextureSet | None) -> bytes:
-    """Return the parts of a tile that are the same at all times, as a file."""
-    if textures is None:
-        return parts_file(tile_parts(key, None))
-    data = ClientData(textures, _colours(pyramid, textures.geometry.field))
-    parts, header = tile_parts(key, data), data.tile_header
-    told = {
-        "geometry": header["geometry"],
-        "slices": {k: v for k, v in header["slices"].items() if k not in OF_ALL_TILES},
-        # By these the errors of the colours are measured.
-        "ranges": {choice["name"]: [choice["low"], choice["high"]] for choice in _choices(pyramid)},
-    }
-    name = next(iter(parts))
-    return parts_file({**parts, name: np.frombuffer(json.dumps(told).encode(), np.uint8)})
+def _write(array: Any, at: Sequence[int], of: str, parts: Parts) -> None:
+    """Write a file of parts, as whole chunks."""
+    told = np.frombuffer(of.encode(), np.uint8)
+    file = np.frombuffer(parts_file({"of": told, **parts}, planes=True), np.uint8)
+    size = -(-len(file) // FILE_CHUNK) * FILE_CHUNK
+    if size > FILE_BYTES:
+        msg = (
+            f"{array.path} of tile {tuple(at)} takes {size:,} bytes, and a store has room for "
+            f"{FILE_BYTES:,}; build with lines='streamlines', or of fewer nodes"
+        )
+        raise PyramidError(msg)
+    array[(*at, slice(0, size))] = np.pad(file, (0, size - len(file)))
+
+
+def _surface(pyramid: Pyramid, key: TileKey, data: ClientData | None) -> Parts:
+    """Return the parts of a tile that are the same at all times."""
+    parts = tile_parts(key, data)
+    if data is not None:
+        header = data.tile_header
+        told = {
+            "geometry": header["geometry"],
+            "slices": {k: v for k, v in header["slices"].items() if k not in OF_ALL_TILES},
+            # By these the errors of the colours are measured.
+            "ranges": {
+                choice["name"]: [choice["low"], choice["high"]] for choice in _choices(pyramid)
+            },
+        }
+        parts[next(iter(parts))] = np.frombuffer(json.dumps(told).encode(), np.uint8)
+    return parts
+
+
+def _values(pyramid: Pyramid, data: ClientData, step: int) -> list[Floats32 | None]:
+    """Return the values that a tile is coloured by, rounded to what no colour shows, at a time."""
+    result: list[Floats32 | None] = []
+    rows, columns = data.textures.grid.drawn
+    for name in _names(data.field):
+        steps = _steps_of(data.field, name)
+        if step >= len(steps):
+            result.append(None)
+            continue
+        values: Floats = np.asarray(steps[step])[rows, columns]
+        low, high = pyramid.ranges.get((name, True), (0.0, 0.0))
+        if 0 < (unit := 2 * VALUE_SHARE * (high - low)) < np.inf:
+            unit = 2.0 ** np.floor(np.log2(unit))
+            values = np.rint(values / unit) * unit
+        result.append(single(values))
+    return result
 
 
 def _colours(pyramid: Pyramid, field: FlowField) -> Colours:

@@ -8,36 +8,34 @@
         x, y or points     nodes: two axes of a rectilinear grid, or (j, i, component)
         valid              (j, i), and has_position where some are unknown
         scalars/NAME       (time, j, i)
-        traces             (time, tile row, tile column, layer, H, W, 4), half floats
-        values             (time, tile row, tile column, scalar, Y, X), single precision
         surface            (tile row, tile column, byte), below the root
-        halos              (time, tile row, tile column, 2) of a series; see tasks.py
+        flow               (time, tile row, tile column, byte)
+        values             (time, tile row, tile column, scalar, byte)
         digests            (time, part row, part column, byte), of the values of each part
     samples                of the values at level 0; see samples.py
 
-The root is one tile, traced whole. Velocities and scalars are float32, positions float64. Values
-and surface are there where traces are, for browsers: with them and the traces a page draws a tile
-without knowing the nodes of its level. The first scalar is the speed.
+Velocities and scalars are float32, positions float64; of velocities the first 13 bits are kept.
+Whoever draws makes tiles of a region of a level, with the halo that their paths need, and traces
+them; the root is one tile. A browser is handed what it makes them of, in files of parts: the
+surface of a tile, with all that is the same at all times, the flow of one time, and the values of
+one scalar, so that it takes what it shows with one request each. The flow is the velocity where the
+browser can trace it, and slices where it cannot; see client_parts.py. Scalar 0 is the speed.
 
-Arrays over nodes lie in chunks of a tile, several in a shard. A shard of traces is one tile at one
-destination time, and each layer a chunk. Layer 0 tells about the tile: a JSON text, whose bytes are
-followed by zeros. The layers of :class:`~flowtex.textures.TextureSet` follow. A chunk of values is
-one scalar of a tile at one time, and an object of its own, so that a browser takes what it shows
-with one request. A surface is a file of parts as clients are handed them, followed by zeros. All is
-packed by gzip, which browsers undo themselves, and has check sums. A part is a shard of the arrays
-over nodes; a hash of all digests of level 0 tells which field it is.
+Arrays over nodes lie in chunks of a tile, several in a shard, packed by Blosc. A file is a shard,
+followed by zeros, of which most are left out, packed by gzip, which browsers undo themselves. All
+has check sums. A part is a shard of the arrays over nodes; a hash of all digests of level 0 tells
+which field it is.
 """
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from datetime import datetime
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats32
+from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.extras import import_extra
 from flowtex._version import __version__
 from flowtex.earth import Projection
@@ -45,29 +43,26 @@ from flowtex.field import FlowField
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.places import FORMAT
 from flowtex.pyramid.source import Source
-from flowtex.textures.geometry import TILE_LEVELS, Padding, paddings
 from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS
 from flowtex.tiles.pyramid import root_level
 
 __all__ = [
     "DIGESTS",
-    "HALOS",
+    "FLOW",
     "MOST_HELD",
     "SURFACE",
     "TILE_CELLS",
-    "TRACES",
     "VALUES",
+    "VELOCITY_BITS",
     "Part",
     "about_source",
     "attributes_of",
     "create_array",
     "create_level",
     "empty_field",
-    "has_halos",
     "parts_along",
     "parts_of",
-    "read_header",
-    "shard_texels",
+    "rounded",
     "tiles_of",
     "to_write",
     "value_names",
@@ -76,19 +71,16 @@ __all__ = [
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.
 SHARD_CHUNKS = (2, 4)
-#: Layers that a shard of traces has room for; those that a tile has not take no room.
-MOST_LAYERS = 64
+#: Bytes that a file of parts may have, and those of a chunk of it.
+FILE_BYTES, FILE_CHUNK = 1 << 28, 1 << 20
 #: Time steps of a series up to which a reader holds all of them.
 MOST_HELD = 8
 #: How hard is tried to pack; more takes longer and gains little.
-GZIP_LEVEL = 1
-TRACES, HALOS, VALUES, SURFACE = "traces", "halos", "values", "surface"
+GZIP_LEVEL, ZSTD_LEVEL = 1, 3
+#: Bits of velocities: their error is 2^-14 of themselves at most.
+VELOCITY_BITS = 13
+FLOW, VALUES, SURFACE = "flow", "values", "surface"
 DIGESTS, DIGEST_BYTES = "digests", 16
-#: Bytes of a surface for each node: its place, whether a cell is drawn, and a normal where it is
-#: curved; and for what is told of it.
-PLACE_BYTES, NORMAL_BYTES, TOLD_BYTES = 13, 6, 16_384
-#: Texels along a side in which what is told of a tile has room, however small that is.
-LEAST_TEXELS = 32
 CONVENTION = {
     "schema_url": (
         "https://raw.githubusercontent.com/zarr-conventions/multiscales/refs/tags/v1/schema.json"
@@ -131,18 +123,12 @@ def parts_along(shape: tuple[int, int]) -> tuple[int, int]:
     return rows, columns
 
 
-def tiles_of(
-    level: int, shape: tuple[int, int], about: Mapping[str, Any]
-) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Return how many tiles a level has, and texels the largest of them, along both axes."""
+def tiles_of(level: int, shape: tuple[int, int], about: Mapping[str, Any]) -> tuple[int, int]:
+    """Return how many tiles a level with so many nodes (J, I) has along both axes."""
     if level == about["depth"]:
-        _, *both = paddings(shape, (about["periodic"][0], about["periodic"][1]))
-        size = [max(padding.size, LEAST_TEXELS) for padding in both]
-        return (1, 1), (size[0], size[1])
+        return 1, 1
     rows, columns = (-(-(n - 1) // TILE_CELLS) for n in shape)
-    nodes = TILE_CELLS + 1
-    largest = Padding.of(nodes, TILE_LEVELS, periodic=False, drawn=slice(0, nodes)).size
-    return (rows, columns), (largest, largest)
+    return rows, columns
 
 
 def value_names(about: Mapping[str, Any]) -> tuple[str, ...]:
@@ -150,7 +136,7 @@ def value_names(about: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(("speed", *about["scalars"])))
 
 
-def about_source(source: Source, parameter: str, lines: str, levels: str) -> dict[str, Any]:
+def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
     """Return what is told of a field and its pyramid, as it is kept in the store."""
     field, projection = source.field, source.field.projection
     depth = root_level(source.shape)
@@ -173,7 +159,6 @@ def about_source(source: Source, parameter: str, lines: str, levels: str) -> dic
         "tile_cells": TILE_CELLS,
         "parameter": parameter,
         "lines": lines,
-        "traced": sorted({*range(0 if levels == "all" else 1, depth), depth}),
         "components": 2 if source.flat else 3,
         "height": float(corner[0, 0, 2]),
         "axes": source.rectilinear,
@@ -219,6 +204,7 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
             (*ones, *shard, *last),
             kind,
             names,
+            nodal=True,
         )
 
     nodal(here, "velocity", steps, (components,), "float32")
@@ -237,57 +223,26 @@ def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[
         (1, 1, 1, DIGEST_BYTES),
         None,
         "uint8",
-        ["time", "row", "column", "byte"],
+        ["time", "part_row", "part_column", "digest_byte"],
     )
     for name, count in about["scalars"].items():
         nodal(here.require_group("scalars"), name, count, (), "float32")
-    if level in about["traced"]:
-        tiles, size = tiles_of(level, shape, about)
+    tiles = dict(zip(("row", "column"), tiles_of(level, shape, about), strict=True))
+    at_times = {"time": steps, **tiles}
+    files = {FLOW: at_times, VALUES: {**at_times, "scalar": len(value_names(about))}}
+    if level < about["depth"]:  # a page holds that of the root
+        files[SURFACE] = tiles
+    for name, axes in files.items():
+        ones = (1,) * len(axes)
         create_array(
             here,
-            TRACES,
-            (steps, *tiles, MOST_LAYERS, *size, 4),
-            (1, 1, 1, 1, *size, 4),
-            (1, 1, 1, MOST_LAYERS, *size, 4),
-            "float16",
-            ["time", "row", "column", "layer", "y", "x", "channel"],
+            name,
+            (*axes.values(), FILE_BYTES),
+            (*ones, FILE_CHUNK),
+            (*ones, FILE_BYTES),
+            "uint8",
+            [*axes, "byte"],
         )
-        if has_halos(about, level):
-            # A task makes so many steps, and a chunk is written by one task.
-            several, names = (MOST_HELD, 1, 1, 2), ["time", "row", "column", "halo"]
-            create_array(here, HALOS, (steps, *tiles, 2), several, None, "uint8", names)
-        _create_client_arrays(here, level, shape, tiles, about)
-
-
-def _create_client_arrays(
-    here: Any,
-    level: int,
-    shape: tuple[int, int],
-    tiles: tuple[int, int],
-    about: Mapping[str, Any],
-) -> None:
-    """Describe the arrays of a level that a browser needs beside the traces."""
-    is_root = level == about["depth"]
-    nodes = shape if is_root else (TILE_CELLS + 1, TILE_CELLS + 1)
-    create_array(
-        here,
-        VALUES,
-        (len(about["times"]), *tiles, len(value_names(about)), *nodes),
-        (1, 1, 1, 1, *nodes),
-        None,
-        "float32",
-        ["time", "row", "column", "scalar", "j", "i"],
-    )
-    if not is_root:
-        each = PLACE_BYTES + (NORMAL_BYTES if about["components"] == 3 else 0)
-        room = nodes[0] * nodes[1] * each + TOLD_BYTES
-        names = ["row", "column", "byte"]
-        create_array(here, SURFACE, (*tiles, room), (1, 1, room), None, "uint8", names)
-
-
-def has_halos(about: Mapping[str, Any], level: int) -> bool:
-    """Whether tiles of a level are told the halos of their steps."""
-    return len(about["times"]) > 1 and level in about["traced"] and level < about["depth"]
 
 
 def create_array(
@@ -298,19 +253,34 @@ def create_array(
     shards: tuple[int, ...] | None,
     kind: str,
     names: list[str],
+    *,
+    nodal: bool = False,
 ) -> None:
-    """Describe an array."""
+    """Describe an array; of ``nodal`` ones bits of equal significance lie side by side."""
     codecs = import_extra("zarr.codecs", "store")
+    packer = codecs.GzipCodec(level=GZIP_LEVEL)
+    if nodal:
+        packer = codecs.BloscCodec(cname="zstd", clevel=ZSTD_LEVEL, shuffle="bitshuffle")
+    last = len(shape) - 1
+    by_component = nodal and names[last] == "component"
     where.create_array(
         name,
         shape=shape,
         chunks=chunks,
         shards=shards,
         dtype=kind,
-        compressors=[codecs.GzipCodec(level=GZIP_LEVEL), codecs.Crc32cCodec()],
+        filters=[codecs.TransposeCodec(order=(last, *range(last)))] if by_component else [],
+        compressors=[packer, codecs.Crc32cCodec()],
         fill_value=0,
         dimension_names=names,
     )
+
+
+def rounded(velocity: Floats) -> Floats32:
+    """Return velocities as they are written."""
+    share, exponent = np.frexp(velocity)
+    whole = np.rint(np.ldexp(share, VELOCITY_BITS))
+    return np.asarray(np.ldexp(whole, exponent - VELOCITY_BITS), np.float32)
 
 
 def to_write(group: Any, name: str) -> Any:
@@ -345,28 +315,6 @@ def empty_field(about: Mapping[str, Any]) -> FlowField:
             projection[0], (projection[1][0], projection[1][1]), half_height=projection[2]
         ),
     )
-
-
-def shard_texels(
-    about: Mapping[str, Any], layers: Floats32 | None, shape: tuple[int, ...]
-) -> AnyArray:
-    """Return a shard of traces: what is told of a tile, and its layers (L, H, W, 4)."""
-    shard = np.zeros(shape, np.float16)
-    text = json.dumps(about).encode()
-    shard[0].reshape(-1).view(np.uint8)[: len(text)] = np.frombuffer(text, np.uint8)
-    if layers is not None:
-        count, height, width = layers.shape[:3]
-        shard[1 : 1 + count, :height, :width] = layers
-        # Zeros have one sign, so that the bits of a tile do not depend on who computed it.
-        shard[1 : 1 + count] += 0
-    return shard
-
-
-def read_header(texels: AnyArray) -> dict[str, Any] | None:
-    """Return what is told of a tile by its layer 0; nothing where there is no tile."""
-    text = np.ascontiguousarray(texels).reshape(-1).view(np.uint8).tobytes().rstrip(b"\0")
-    about: dict[str, Any] | None = json.loads(text) if text else None
-    return about
 
 
 def _date_words(start: Any) -> list[Any] | None:

@@ -1,4 +1,4 @@
-"""What is read from a store: nodes of its levels, and tiles that were made of them."""
+"""What is read from a store: nodes of its levels, and whether files of tiles are whole."""
 
 from __future__ import annotations
 
@@ -11,32 +11,30 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.blocks import even_runs
 from flowtex._util.extras import import_extra
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
 from flowtex.field.steps import LazySteps
-from flowtex.pyramid.checks import check_about, check_header, identity_of, part_digest
+from flowtex.pyramid.checks import check_about, part_digest
 from flowtex.pyramid.layout import (
     DIGESTS,
-    HALOS,
-    MOST_HELD,
+    FILE_CHUNK,
+    FLOW,
     SURFACE,
-    TRACES,
     VALUES,
     Part,
     create_level,
-    has_halos,
-    read_header,
     value_names,
 )
 from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at
 from flowtex.pyramid.samples import SAMPLES, create_samples
+from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.tiles import TileKey
 from flowtex.tiles.pyramid import Nodes, level_shape
 
-__all__ = ["Levels", "StoredTile"]
+__all__ = ["Levels"]
 
 #: What of an array's metadata decides on the meaning of its bytes.
 FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_value", "codecs")
@@ -60,16 +58,6 @@ class _Piece(NamedTuple):
     #: What an error calls it.
     name: str
     lines: tuple[Indices, Indices] | None = None
-
-
-class StoredTile:
-    """A tile at one destination time: what is told of it, and its layers (L, H, W, 4)."""
-
-    def __init__(self, about: dict[str, Any], texels: AnyArray) -> None:
-        self.about = about
-        height, width = about.get("size", (0, 0))
-        count = about.get("count", 0)
-        self.layers: Floats32 = texels[1 : 1 + count, :height, :width].astype(np.float32)
 
 
 class Levels:
@@ -185,19 +173,35 @@ class Levels:
 
     def check_tile(self, key: TileKey, step: int) -> None:
         """Raise a DamageError where some of a tile is missing or corrupt."""
-        name, (level, *at) = f"of tile {tuple(key)} at step {step}", key
-        pieces = []
-        if not self.tile(key, step).about["empty"]:
+        where, (level, *at) = f"of tile {tuple(key)} at step {step}", key
+        parts = self._check_file(FLOW, level, (step, *at), f"{FLOW} {where}")
+        if parts > 1:  # something is drawn
             counts = self.about["scalars"]
             for number, scalar in enumerate(value_names(self.about)):
                 if step < counts.get(scalar, step + 1):
-                    where = (step, *at, number)
-                    pieces.append(_Piece(f"{level}/{VALUES}", where, f"{scalar} {name}"))
+                    self._check_file(VALUES, level, (step, *at, number), f"{scalar} {where}")
         if step == 0 and level < self.about["depth"]:
-            pieces.append(_Piece(f"{level}/{SURFACE}", tuple(at), f"surface {name}"))
-        if has_halos(self.about, level):
-            pieces.append(_Piece(f"{level}/{HALOS}", (step, *at), f"halos {name}"))
-        self._read(*pieces)
+            self._check_file(SURFACE, level, tuple(at), f"{SURFACE} {where}")
+
+    def _check_file(self, kind: str, level: int, at: tuple[int, ...], name: str) -> int:
+        """Return how many parts a file has; a DamageError tells that it is missing or corrupt."""
+        array = f"{level}/{kind}"
+        (file,) = self._read(_Piece(array, (*at, slice(FILE_CHUNK)), name))
+        try:
+            infos, start = file_infos(file.tobytes())
+            size = start + sum(info["bytes"] for info in infos)
+            of = file[start : start + infos[0]["bytes"]].tobytes().decode()
+            names = [info["name"] for info in infos[1:]]
+        except (ValueError, LookupError, TypeError) as error:
+            raise self._error(name, error) from None
+        tile = [level, *at[1:3]] if kind != SURFACE else [level, *at]
+        prefix = "tile/" + "/".join(map(str, tile)) + "/"
+        if of != self.about["fingerprint"] or not all(one.startswith(prefix) for one in names):
+            msg = f"{name} of {self.place} is that of another one; build it again"
+            raise DamageError(msg)
+        for first in range(FILE_CHUNK, size, FILE_CHUNK):
+            self._read(_Piece(array, (*at, slice(first, first + FILE_CHUNK)), name))
+        return len(infos)
 
     def positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         """Return where nodes are, (J, I, 3), and which of them are valid, (J, I)."""
@@ -259,40 +263,6 @@ class Levels:
         """Return the velocity of some lines of a level at a time step, (J, I, C)."""
         (values,) = self._read(self._nodal(level, "velocity", rows, columns, step))
         return values
-
-    def tile(self, key: TileKey, step: int) -> StoredTile:
-        """Return a tile at a destination time.
-
-        Raises
-        ------
-        PyramidError
-            When it is not there, or broken.
-        """
-        array = f"{key.level}/{TRACES}"
-        name = f"tile {tuple(key)} at step {step}"
-        (texels,) = self._read(_Piece(array, (step, key.row, key.column), name))
-        try:
-            header = read_header(texels[0])
-            if header is None:
-                msg = f"{name} is missing in {self.place}; build it again"
-                raise DamageError(msg)
-            about = check_header(header, identity_of(self.about, key, step))
-        except PyramidError:
-            raise
-        except Exception as error:
-            raise self._error(name, error) from None
-        return StoredTile(about, texels)
-
-    def spare(self, key: TileKey) -> int:
-        """Return the ``spare`` that a tile of a series was made with; 0 where that is not known."""
-        if not has_halos(self.about, key.level):
-            return 0
-        array, at = f"{key.level}/{HALOS}", (slice(MOST_HELD), key.row, key.column, 1)
-        try:
-            (told,) = self._read(_Piece(array, at, array))
-        except PyramidError:  # no step of it was made
-            return 0
-        return int(told[np.argmax(told > 0)])
 
     def _places(self) -> list[str]:
         return ["x", "y"] if self.about["axes"] else ["points"]
@@ -374,7 +344,9 @@ def _size(part: _Piece, expected: dict[str, Any]) -> int:
     if part.lines is not None:
         shape = (*map(len, part.lines), *shape[len(chosen) + 2 :])
     elif isinstance(chosen, tuple):
-        shape = shape[len(chosen) :]
+        pairs = zip(chosen, shape, strict=False)
+        spans = (len(range(n)[some]) for some, n in pairs if isinstance(some, slice))
+        shape = (*spans, *shape[len(chosen) :])
     return int(math.prod(shape)) * NUMBER_BYTES
 
 

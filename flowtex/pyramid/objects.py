@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from zarr import AsyncArray
-from zarr.codecs import GzipCodec, ShardingCodec
+from zarr.codecs import BloscCodec, GzipCodec, ShardingCodec
 from zarr.storage import WrapperStore
 
 from flowtex._util.cache import ByteCache
@@ -28,9 +28,11 @@ __all__ = ["Objects", "bounded"]
 MOST_READS = 16
 #: Memory of what is kept of them, packed as it came.
 CACHE_BYTES = 200_000_000
-#: Traces of a tile are read once: whoever draws keeps them.
-_TRACES = re.compile(r"^\d+/traces/c/")
+#: Files for a browser are read once, to check them.
+_FILES = re.compile(r"^\d+/(flow|values|surface)/c/")
 _CHUNK = re.compile(r"/c(/\d+)+$")
+#: Parameters of the Blosc codec.
+BLOSC_NAMES = ("typesize", "cname", "clevel", "shuffle", "blocksize")
 #: The window of zlib for data with the header and the check sum of gzip.
 _GZIP_WINDOW = 31
 
@@ -55,7 +57,7 @@ class Objects(WrapperStore[Any]):
 
     async def get(self, key: str, prototype: Any, byte_range: Any = None) -> Any:
         """Return an object or a part of it, ``None`` for a missing one that is no chunk."""
-        if _TRACES.match(key):
+        if _FILES.match(key):
             return await self._read(key, prototype, byte_range)
         name = (key, repr(byte_range))
         gate = self._gates.setdefault(name, asyncio.Lock())
@@ -102,12 +104,26 @@ class _BoundedGzip(GzipCodec):
         return await asyncio.to_thread(self._decode_sync, chunk_bytes, chunk_spec)
 
 
+class _BoundedBlosc(BloscCodec):
+    """Blosc of chunks that tell that they unpack to as many bytes as they have."""
+
+    async def _decode_single(self, chunk_bytes: Any, chunk_spec: Any) -> Any:
+        size = math.prod(chunk_spec.shape) * chunk_spec.dtype.to_native_dtype().itemsize
+        # Blosc writes the size into bytes 4 to 8 of a chunk, and unpacks to no more.
+        if int.from_bytes(chunk_bytes.to_bytes()[4:8], "little") != size:
+            msg = f"a chunk does not unpack to the {size:,} bytes that its array declares"
+            raise ValueError(msg)
+        return await super()._decode_single(chunk_bytes, chunk_spec)
+
+
 def bounded(array: Any) -> Any:
     """Return an array of Zarr's whose chunks take no more memory than the array declares."""
 
     def of(codec: Any) -> Any:
         if isinstance(codec, ShardingCodec):
             return replace(codec, codecs=tuple(map(of, codec.codecs)))
+        if isinstance(codec, BloscCodec):
+            return _BoundedBlosc(**{name: getattr(codec, name) for name in BLOSC_NAMES})
         return _BoundedGzip(level=codec.level) if isinstance(codec, GzipCodec) else codec
 
     metadata = replace(array.metadata, codecs=tuple(map(of, array.metadata.codecs)))

@@ -39,7 +39,7 @@ __all__ = [
 ]
 
 #: Written into every store; a reader refuses what it does not know.
-FORMAT = "flowtex-pyramid-3"
+FORMAT = "flowtex-pyramid-4"
 #: The object of a store that tells who builds it.
 LEASE = "building.json"
 DOCUMENT = "zarr.json"

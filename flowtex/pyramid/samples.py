@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats
+from flowtex.field.steps import typical_steps
 from flowtex.pyramid.layout import (
     SHARD_CHUNKS,
     TILE_CELLS,
@@ -81,9 +82,8 @@ def _quantities(about: Mapping[str, Any]) -> list[str]:
 
 
 def _steps(about: Mapping[str, Any]) -> list[int]:
-    """Return the steps that ranges are taken from, as those of ``FlowField.typical``."""
-    last = len(about["times"]) - 1
-    return sorted({0, last // 2, last})
+    """Return the steps that ranges are taken from."""
+    return typical_steps(len(about["times"]))
 
 
 def _every(about: Mapping[str, Any]) -> int:

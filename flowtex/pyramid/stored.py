@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import threading
-import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.field import FlowField
 from flowtex.field.field import WHOLE_SHAPE
-from flowtex.pyramid.checks import nodes_hash
-from flowtex.pyramid.layout import empty_field
-from flowtex.pyramid.levels import Levels, StoredTile
+from flowtex.pyramid.layout import VELOCITY_BITS, empty_field
+from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import PyramidError
 from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, have_pyramid
 from flowtex.tiles.pyramid import Nodes, averaged
-from flowtex.trace import SliceStore
 
 __all__ = ["StoredPyramid", "open_store", "root_of"]
 
@@ -84,8 +80,7 @@ def root_of(levels: Levels) -> FlowField:
 class StoredPyramid(Pyramid):
     """The levels of a pyramid in a store, whose ``field`` is the coarsest of them.
 
-    Tiles are read where they were made with the same parameter and along the same lines; others
-    are traced in what the store has of their surroundings.
+    Tiles are traced in what the store has of their surroundings.
     """
 
     def __init__(
@@ -114,14 +109,6 @@ class StoredPyramid(Pyramid):
         """What is told of the field and its pyramid."""
         return self._stored.about
 
-    @property
-    def finest(self) -> int:
-        """The level down to which the tiles of all levels are in the store."""
-        level = self.depth
-        while level - 1 in self.about["traced"]:
-            level -= 1
-        return level
-
     @cached_property
     def root(self) -> FlowField:
         """The field at the coarsest level."""
@@ -133,49 +120,12 @@ class StoredPyramid(Pyramid):
         rows, columns = (np.array(some) for some in self._stored.about["periods"])
         return rows, columns
 
-    def made(self, key: TileKey) -> bool:
-        """Whether tiles like this one are in the store, and not traced when they are asked for."""
-        about = self._stored.about
-        same = (self.parameter, self.lines) == (about["parameter"], about["lines"])
-        return same and key.level in about["traced"]
-
     def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
-        """Return the textures of a tile; errors are those of :meth:`Levels.tile`."""
-        if not self.made(key):
-            traced = super().tile(key, steps)
-            if traced is not None:
-                self.check_nodes(key, traced, steps)
-            return traced
-        read = {step: self._stored.tile(key, step) for step in steps}
-        about = read[steps[0]].about
-        if about["empty"]:
-            return None
-        if any(tile.about.get("spare") != about["spare"] for tile in read.values()):
-            msg = f"{self._stored.place} was not built to its end; run flowtex.pyramid.build again"
-            raise PyramidError(msg)
-        textures = self.textures(key, about["spare"])
-        if textures is None or not _fits(textures, about):
-            msg = f"tile {tuple(key)} of {self._stored.place} does not fit its level; build it anew"
-            raise PyramidError(msg)
-        for step, tile in read.items():
-            _check_nodes(textures, tile, step)
-        return self._read(textures, key, read)
-
-    def root_textures(self, store: SliceStore) -> TextureSet:
-        """Return the textures of the root; it is traced where the store has not what is asked."""
-        textures, key = super().root_textures(store), TileKey(self.depth, 0, 0)
-        if not self.made(key):
-            return textures
-        try:
-            tile = self._stored.tile(key, 0)
-            if _fits(textures, tile.about):
-                _check_nodes(textures, tile, 0)
-        except PyramidError as error:
-            warnings.warn(f"the whole surface is traced anew, for {error}", stacklevel=2)
-            return textures
-        if not _fits(textures, tile.about):
-            return textures
-        return self._read(textures, key, {0: tile})
+        """Return the textures of a tile; a PyramidError tells what cannot be read."""
+        textures = super().tile(key, steps)
+        if textures is not None:
+            self.check_nodes(key, textures, steps)
+        return textures
 
     def check_nodes(self, key: TileKey, textures: TextureSet, steps: Sequence[int]) -> None:
         """Raise a PyramidError where the nodes of a tile are not those of the level above it.
@@ -209,10 +159,6 @@ class StoredPyramid(Pyramid):
             )
             raise PyramidError(msg)
 
-    def _read(self, textures: TextureSet, key: TileKey, read: dict[int, StoredTile]) -> TextureSet:
-        parts = {name: getattr(textures, name) for name in TextureSet.__dataclass_fields__}
-        return _StoredTextures(**parts, levels=self._stored, key=key, read=read)
-
     def _positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         return self._stored.positions(level, rows, columns)
 
@@ -220,44 +166,7 @@ class StoredPyramid(Pyramid):
         return self._stored.nodes(level, rows, columns)
 
 
-@dataclass(frozen=True, eq=False)
-class _StoredTextures(TextureSet):
-    """Textures whose layers are read. Those at hand already are handed over once."""
-
-    levels: Levels = field(kw_only=True)
-    key: TileKey = field(kw_only=True)
-    read: dict[int, StoredTile] = field(default_factory=dict)
-
-    def layers(self, step: int = 0) -> Floats32:
-        """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
-        tile = self.read.pop(step, None)
-        if tile is not None:
-            return tile.layers
-        try:
-            tile = self.levels.tile(self.key, step)
-            _check_nodes(self, tile, step)
-            return tile.layers
-        except PyramidError:
-            if self.key.level < self.levels.about["depth"]:
-                raise
-            # There is nothing coarser to show, and what it is made from is at hand.
-            return super().layers(step)
-
-
-def _fits(textures: TextureSet, about: dict[str, Any]) -> bool:
-    """Whether layers that were read are those of some textures."""
-    own = (textures.lags.tolist(), textures.count, list(textures.geometry.size))
-    return not about["empty"] and own == (about["lags"], about["count"], about["size"])
-
-
-def _check_nodes(textures: TextureSet, tile: StoredTile, step: int) -> None:
-    """Raise a PyramidError where a tile was made of other nodes than those that are read."""
-    if nodes_hash(textures, step) != tile.about["nodes"]:
-        msg = f"tile {tile.about['tile']} was made of other nodes than there are; build it anew"
-        raise PyramidError(msg)
-
-
 def _alike(own: AnyArray, told: AnyArray) -> bool:
-    """Whether values are the same but for rounding."""
+    """Whether values are the same but for rounding, which is that of velocities at most."""
     size = np.abs(np.nan_to_num(told)).max(initial=0.0)
-    return bool(np.allclose(own, told, 1e-5, 1e-6 * size, equal_nan=True))
+    return bool(np.allclose(own, told, 2.0**-VELOCITY_BITS, 1e-6 * size, equal_nan=True))

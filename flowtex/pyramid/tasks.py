@@ -2,33 +2,26 @@
 
 They are plain functions of a place and of numbers, so that any process on any machine can run
 them. Each opens the store itself, and reads no more than what it needs.
-
-A tile of a series has one halo at all times, the widest that any of them needs. Tasks make each
-step with the one that it needs itself and tell both in ``halos``: what it needs, and what it was
-made with. Steps of tiles whose halos differ are made again, so it does not matter which steps a
-task had.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import Indices
-from flowtex.pyramid.checks import identity_of, nodes_hash, part_digest
-from flowtex.pyramid.client_parts import write_surface, write_values
+from flowtex.pyramid.checks import part_digest
+from flowtex.pyramid.client_parts import write_tile
 from flowtex.pyramid.layout import (
     DIGESTS,
-    HALOS,
-    MOST_HELD,
-    TRACES,
+    FLOW,
+    SURFACE,
     VALUES,
     Part,
-    has_halos,
-    shard_texels,
+    rounded,
     to_write,
     value_names,
 )
@@ -37,11 +30,8 @@ from flowtex.pyramid.places import ChangedError, DamageError, store_at
 from flowtex.pyramid.samples import write_samples
 from flowtex.pyramid.source import Source
 from flowtex.pyramid.stored import StoredPyramid, root_of
-from flowtex.textures import TextureSet
-from flowtex.tiles import Pyramid, TileKey
-from flowtex.tiles.pyramid import SPARES, Nodes, averaged, beside, level_lines
-from flowtex.tiles.region import is_cut
-from flowtex.trace import SliceStore
+from flowtex.tiles import TileKey
+from flowtex.tiles.pyramid import Nodes, averaged, beside, level_lines
 
 __all__ = [
     "TileTask",
@@ -51,21 +41,15 @@ __all__ = [
     "make_part",
     "make_tile",
     "mend",
-    "trace_tile",
     "write_part",
-    "write_tile",
 ]
 
 
 class TileTask(NamedTuple):
-    """A tile, and those of its destination times that are to be written.
-
-    The halo is ``spare`` times as wide as paths of even speed need; the task finds out for 0.
-    """
+    """A tile, and those of its destination times that are to be written."""
 
     key: TileKey
     steps: tuple[int, ...]
-    spare: int = 0
 
 
 def make_finest(source: Source, place: str, run: str, part: Part) -> None:
@@ -74,13 +58,14 @@ def make_finest(source: Source, place: str, run: str, part: Part) -> None:
     nodes = _source_nodes(levels, source, part)
     if not levels.about.get("ranges"):
         write_samples(group, levels.about, part, nodes)
-    write_part(group, levels.about, part, part.lines(source.shape), nodes)
+    write_part(group, levels.about, part, part.lines(source.shape), _as_written(nodes))
 
 
 def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
     """Raise a ChangedError where the source has other values than a part was made of."""
     levels = _levels(place, run)
-    own = part_digest(_source_nodes(levels, source, part), levels.about, part.step)
+    nodes = _as_written(_source_nodes(levels, source, part))
+    own = part_digest(nodes, levels.about, part.step)
     if own != levels.digest(part):
         rows, columns = (f"{s.start}-{s.stop - 1}" for s in part.lines(source.shape))
         msg = (
@@ -116,10 +101,7 @@ def checks_of(
 
 
 def _objects(about: Mapping[str, Any], unit: Part | TileTask) -> Iterator[str]:
-    """Give the objects of a part, or of a tile at a step; by the first one it is known to be there.
-
-    All but surfaces, which are written whole: of what is there Zarr reads what is not written anew.
-    """
+    """Give the objects of a part, or of a tile at a step; by the first it is known to be there."""
     if isinstance(unit, Part):
         level, step, row, column = unit
         series = [f"scalars/{name}" for name, count in about["scalars"].items() if step < count]
@@ -130,11 +112,11 @@ def _objects(about: Mapping[str, Any], unit: Part | TileTask) -> Iterator[str]:
             yield f"{level}/points/c/{row}/{column}/0"
         return
     (level, row, column), (step,) = unit.key, unit.steps
-    yield f"{level}/{TRACES}/c/{step}/{row}/{column}/0/0/0/0"
+    yield f"{level}/{FLOW}/c/{step}/{row}/{column}/0"
     for number in range(len(value_names(about))):
-        yield f"{level}/{VALUES}/c/{step}/{row}/{column}/{number}/0/0"
-    if has_halos(about, level):
-        yield f"{level}/{HALOS}/c/{step // MOST_HELD}/{row}/{column}/0"
+        yield f"{level}/{VALUES}/c/{step}/{row}/{column}/{number}/0"
+    if step == 0:
+        yield f"{level}/{SURFACE}/c/{row}/{column}/0"
 
 
 def _source_nodes(levels: Levels, source: Source, part: Part) -> Nodes:
@@ -146,6 +128,10 @@ def _source_nodes(levels: Levels, source: Source, part: Part) -> Nodes:
     nodes = source.nodes(part.step, *lines, valid)
     known = None if source.has_position is None else source.has_position[lines]
     return Nodes(nodes.points, nodes.valid, nodes.velocity, known, nodes.scalars)
+
+
+def _as_written(nodes: Nodes) -> Nodes:
+    return nodes._replace(velocity=rounded(np.asarray(nodes.velocity)))
 
 
 def make_part(place: str, run: str, part: Part) -> None:
@@ -168,7 +154,9 @@ def make_part(place: str, run: str, part: Part) -> None:
     _, valid = levels.positions(finer, needed[0], needed[1])
     nodes = _at_step(levels, finer, part.step, picks[0], picks[1])
     mean = averaged(velocity, valid, around[0], around[1])
-    write_part(_writable(place, run), about, part, chosen, nodes._replace(velocity=mean))
+    write_part(
+        _writable(place, run), about, part, chosen, _as_written(nodes._replace(velocity=mean))
+    )
 
 
 def write_part(
@@ -192,87 +180,9 @@ def write_part(
 
 
 def make_tile(place: str, run: str, task: TileTask) -> None:
-    """Trace a tile in the level that it belongs to."""
+    """Write what a browser is handed of a tile."""
     pyramid, here = _pyramid(place, run), _writable(place, run)[str(task.key.level)]
-    _, *at = task.key
-    halos = to_write(here, HALOS) if has_halos(pyramid.about, task.key.level) else None
-    for step, spare, textures in _made(pyramid, task):
-        write_tile(here, pyramid, task.key, step, spare, textures, surface=step == 0)
-        if textures is not None:
-            textures.store.forget()
-        if halos is not None:
-            needed = int(halos[(step, *at, 0)]) if task.spare else spare
-            halos[(step, *at)] = np.array([needed, spare], np.uint8)
-
-
-def trace_tile(
-    pyramid: StoredPyramid, key: TileKey, steps: Sequence[int]
-) -> tuple[int, TextureSet | None]:
-    """Return a tile with a halo that does for some destination times, and its ``spare``."""
-    if key.level < pyramid.depth:
-        return pyramid.settled(key, steps)
-    store = SliceStore(pyramid.root, parameter=pyramid.parameter, lines=pyramid.lines)
-    return 0, Pyramid.root_textures(pyramid, store)
-
-
-def write_tile(
-    here: Any,
-    pyramid: StoredPyramid,
-    key: TileKey,
-    step: int,
-    spare: int,
-    textures: TextureSet | None,
-    *,
-    surface: bool = True,
-) -> None:
-    """Write a tile at a time step, and its surface, into the group of its level."""
-    # Before the traces: by these a tile is known to be whole.
-    if surface:
-        write_surface(here, pyramid, key, textures)
-    array = here[TRACES]
-    belongs = identity_of(pyramid.about, key, step)
-    texels = shard_texels({"empty": True, **belongs}, None, array.shape[3:])
-    if textures is not None:
-        write_values(here, key, textures, step)
-        told = {**_about_tile(textures, spare), **belongs, "nodes": nodes_hash(textures, step)}
-        texels = shard_texels(told, textures.layers(step), array.shape[3:])
-    array[(step, *key[1:])] = texels
-
-
-def _made(pyramid: StoredPyramid, task: TileTask) -> Iterator[tuple[int, int, TextureSet | None]]:
-    """Give the steps of a task, the halo of each, and textures that have its layers."""
-    if task.key.level == pyramid.depth:
-        spare, textures = trace_tile(pyramid, task.key, task.steps)
-        yield from ((step, spare, textures) for step in task.steps)
-        return
-    left = task.steps
-    for spare in (task.spare,) if task.spare else SPARES:
-        tile, cut = pyramid.textures(task.key, spare), []
-        for step in left:
-            last = spare == task.spare or spare == SPARES[-1]
-            if tile is None or last or not is_cut(tile, step):
-                yield step, spare, tile
-            else:
-                cut.append(step)
-                tile.store.forget()
-        left = tuple(cut)
-        if not left:
-            return
-
-
-def _about_tile(textures: TextureSet, spare: int) -> dict[str, Any]:
-    return {
-        "empty": False,
-        "spare": spare,
-        "count": textures.count,
-        "size": list(textures.geometry.size),
-        "lags": textures.lags.tolist(),
-        "sides": textures.sides,
-        "unit": textures.unit,
-        "pace": textures.pace,
-        "cell": textures.cell,
-        "critical_cell": textures.critical_cell,
-    }
+    write_tile(here, pyramid, task.key, task.steps, pyramid.about["fingerprint"])
 
 
 def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indices) -> Nodes:

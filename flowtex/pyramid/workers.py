@@ -7,7 +7,7 @@ import io
 import os
 import traceback
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import suppress
 from functools import cache
@@ -72,7 +72,7 @@ class Threads:
         tasks: Sequence[tuple[Any, ...]],
         need: int,
         *given: Any,
-    ) -> Iterator[Exception | None]:
+    ) -> Generator[Exception | None]:
         """Yield what became of each task, in the order in which they end.
 
         The arguments of the function are what is ``given`` and those of the task, which needs so
@@ -130,7 +130,7 @@ class Cluster(Threads):
         tasks: Sequence[tuple[Any, ...]],
         need: int,
         *given: Any,
-    ) -> Iterator[Exception | None]:
+    ) -> Generator[Exception | None]:
         """Yield what became of each task, in the order in which they end."""
         if not tasks:
             return

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import csr_array
+import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError
@@ -171,7 +171,7 @@ def _averaged(field: FlowField, number: Indices, triangles: Indices) -> FlowFiel
     kept, count = np.flatnonzero(number >= 0), int(number.max(initial=-1)) + 1
     members = np.bincount(number[kept], minlength=count)
     weights = 1 / members[number[kept]]
-    matrix = csr_array((weights, (number[kept], kept)), shape=(count, len(number)))
+    matrix = scipy.sparse.csr_array((weights, (number[kept], kept)), shape=(count, len(number)))
 
     def means(steps: Steps) -> Steps:
         return map_steps(steps, lambda step: known_means(step[0], matrix)[None])

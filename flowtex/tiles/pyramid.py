@@ -222,14 +222,7 @@ class Pyramid:
         return None if region is None else tile_of(region, self.whole)
 
     def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
-        """Return the textures of a tile, with a halo that does for some destination times."""
-        return self.settled(key, steps)[1]
-
-    def settled(self, key: TileKey, steps: Sequence[int]) -> tuple[int, TextureSet | None]:
-        """Trace a tile, again with a wider halo where paths were cut, and tell its ``spare``.
-
-        That is the greatest of those that the steps need, one by one.
-        """
+        """Trace a tile, again with a wider halo where paths were cut at some destination times."""
         for spare in SPARES:
             textures = self.textures(key, spare)
             if textures is None or spare == SPARES[-1]:
@@ -237,7 +230,7 @@ class Pyramid:
             steps = [step for step in steps if is_cut(textures, step)]
             if not steps:
                 break
-        return spare, textures
+        return textures
 
     @cached_property
     def whole(self) -> Whole:

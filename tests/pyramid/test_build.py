@@ -1,7 +1,6 @@
 """A pyramid in a store: the tiles of the field, built again only where something is missing.
 
-Velocities are float32 there. Where those of a field are, its finest tiles are the same bit for bit;
-of coarser levels means are rounded, and layers, which are half floats, differ by their last digit.
+Velocities have thirteen bits there, so layers, which are half floats, differ by their last digits.
 """
 
 from __future__ import annotations
@@ -14,16 +13,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from store_contents import contents
 
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.field.steps import LazySteps
-from flowtex.pyramid import Built, PyramidError, build, is_store, open_store
+from flowtex.pyramid import Built, PyramidError, build, client_parts, is_store, open_store, tasks
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.stored import StoredPyramid
-from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, shared_pyramid
 from flowtex.trace.store import shared_store
 
@@ -32,7 +31,7 @@ zarr = pytest.importorskip("zarr")
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1000)
 
 
 def grid(rows: int, columns: int) -> tuple[Floats, Floats]:
@@ -40,7 +39,7 @@ def grid(rows: int, columns: int) -> tuple[Floats, Floats]:
     return x, y
 
 
-def steady(rows: int = 74, columns: int = 134) -> FlowField:
+def steady(rows: int = 70, columns: int = 75) -> FlowField:
     """A flow around an island."""
     x, y = grid(rows, columns)
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
@@ -58,20 +57,19 @@ def steady(rows: int = 74, columns: int = 134) -> FlowField:
     )
 
 
-def series() -> FlowField:
-    x, y = grid(50, 75)
-    velocity = np.stack(
-        [np.stack([np.cos(3 * y + t), np.sin(4 * x - t)], axis=-1) for t in (0.0, 0.1, 0.2)]
-    )
-    scalars = {"heat": np.stack([x, x + 1, x + 2])}
+def series(steps: int = 3) -> FlowField:
+    x, y = grid(40, 70)
+    times = np.arange(steps) / 10
+    velocity = np.stack([np.stack([np.cos(3 * y + t), np.sin(4 * x - t)], axis=-1) for t in times])
+    scalars = {"heat": np.stack([x + step for step in range(steps)])}
     return FlowField.from_arrays(
-        np.stack([x, y], axis=-1), velocity, times=[0, 0.1, 0.2], periodic="", scalars=scalars
+        np.stack([x, y], axis=-1), velocity, times=times, periodic="", scalars=scalars
     )
 
 
 def late() -> FlowField:
     """A series whose steps are read when they are asked for."""
-    field = series()
+    field = series(2)
     whole = np.asarray(field.velocity)
     lazy = LazySteps(len(whole), lambda step: whole[step])
     return replace(field, velocity=lazy)
@@ -79,7 +77,7 @@ def late() -> FlowField:
 
 def ring() -> FlowField:
     """Curved, closed around, on a cone."""
-    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 101), np.linspace(0, 1, 48))
+    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 81), np.linspace(0, 1, 40))
     radius = 1 + 0.4 * height
     points = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1)
     around = np.stack([-np.sin(turn), np.cos(turn), 0.3 * np.sin(5 * turn)], axis=-1)
@@ -130,16 +128,16 @@ class Stores:
     folder: Path
     built: dict[str, Built] = field(default_factory=dict)
 
-    def get(self, name: str, levels: str = "coarse") -> Path:
+    def get(self, name: str) -> Path:
         """Return a store to read."""
-        place = self.folder / f"{name}-{levels}.zarr"
+        place = self.folder / f"{name}.zarr"
         if place.name not in self.built:
-            self.built[place.name] = made(place, FIELDS[name](), levels=levels)
+            self.built[place.name] = made(place, FIELDS[name]())
         return place
 
-    def copy(self, to: Path, name: str, levels: str = "coarse") -> Path:
+    def copy(self, to: Path, name: str) -> Path:
         """Return a store that may be broken."""
-        return Path(shutil.copytree(self.get(name, levels), to))
+        return Path(shutil.copytree(self.get(name), to))
 
 
 @pytest.fixture(scope="module")
@@ -152,53 +150,40 @@ def shards(store: Path) -> list[str]:
     return sorted(str(p.relative_to(store)) for p in files)
 
 
-def contents(store: Path) -> dict[str, bytes]:
-    """What lies in all arrays; files also tell when they were packed."""
-    members = zarr.open_group(store, mode="r").members(max_depth=None)
-    return {name: np.asarray(a[:]).tobytes() for name, a in members if isinstance(a, zarr.Array)}
-
-
-@pytest.mark.parametrize(
-    ("name", "levels"), [("steady", "coarse"), *((name, "all") for name in FIELDS)]
-)
-def test_tiles_are_those_of_the_field_in_memory(stores: Stores, name: str, levels: str) -> None:
+@pytest.mark.parametrize("name", FIELDS)
+def test_tiles_are_those_of_the_field_in_memory(stores: Stores, name: str) -> None:
     field = FIELDS[name]()
-    there = stored(stores.get(name, levels))
+    there = stored(stores.get(name))
     memory = Pyramid(field, "arclength", there.lines)
     assert (there.depth, there.blocks) == (memory.depth, memory.blocks)
-    exactly: dict[str, Any] = {"rtol": 1e-6, "atol": 1e-6}
+    nearly: dict[str, Any] = {"rtol": 5e-4, "atol": 5e-4}
     np.testing.assert_allclose(
-        np.asarray(there.root.velocity), np.asarray(memory.root.velocity), **exactly
+        np.asarray(there.root.velocity), np.asarray(memory.root.velocity), **nearly
     )
     np.testing.assert_array_equal(there.root.points, memory.root.points)
     np.testing.assert_array_equal(there.root.valid, memory.root.valid)
     every, empty = range(len(field.times)), 0
     slices = shared_store(memory.root, "arclength", there.lines)
     for step in every:
-        read = there.root_textures(slices)
-        assert type(read) is not TextureSet
-        assert_alike(read.layers(step), memory.root_textures(slices).layers(step))
-    for key in keys_of(memory):
-        assert there.made(key) == (levels == "all" or key.level > 0)
+        own = shared_store(there.root, "arclength", there.lines)
+        read = there.root_textures(own).layers(step)
+        assert_alike(read, memory.root_textures(slices).layers(step))
+    for key in keys_of(memory)[::3]:
         one, other = there.tile(key, every), memory.tile(key, every)
         if one is None or other is None:
             assert one is other is None
             empty += 1
             continue
-        traced = super(StoredPyramid, there).tile(key, every)
-        assert traced is not None
         for step in every:
             layers = one.layers(step)
             assert_alike(layers, other.layers(step))
-            # What is in the store is what is traced of it, bit for bit.
-            np.testing.assert_array_equal(halves(layers), halves(traced.layers(step)))
         for number in ("unit", "pace", "cell", "critical_cell", "count", "longest"):
-            assert getattr(one, number) == pytest.approx(getattr(other, number), rel=1e-6)
+            assert getattr(one, number) == pytest.approx(getattr(other, number), rel=1e-3)
         np.testing.assert_array_equal(one.geometry.points, other.geometry.points)
         np.testing.assert_array_equal(one.grid.normal, other.grid.normal)
         for scalar in field.scalars:
             first, second = (np.asarray(t.geometry.field.scalars[scalar]) for t in (one, other))
-            np.testing.assert_allclose(first, second, **exactly)
+            np.testing.assert_allclose(first, second, rtol=1e-6, atol=1e-6)
 
 
 def halves(layers: AnyArray) -> AnyArray:
@@ -221,56 +206,37 @@ def test_what_a_field_is_called_comes_with_it(tmp_path: Path, stores: Stores) ->
     assert not is_store(tmp_path)
 
 
+def test_a_level_is_a_dataset_of_xarrays(stores: Stores) -> None:
+    xr = pytest.importorskip("xarray")
+    level = xr.open_zarr(stores.get("steady") / "0", consolidated=False)
+    velocity = level["velocity"].isel(time=0)
+    assert velocity.dims == ("j", "i", "component")
+    there = steady().valid
+    np.testing.assert_allclose(
+        velocity.values[there], steady().velocity[0][there][:, :2], rtol=2**-13
+    )
+
+
 def test_a_second_run_makes_what_is_missing(tmp_path: Path, stores: Stores) -> None:
-    store = stores.copy(tmp_path / "a.zarr", "series", "all")
-    first = stores.built["series-all.zarr"]
+    store = stores.copy(tmp_path / "a.zarr", "series")
+    first = stores.built["series.zarr"]
     assert first.made and not first.kept
     whole, files = contents(store), shards(store)
-    assert made(store, series(), levels="all") == Built(str(store), first.depth, 0, first.made)
-    gone = [name for name in files if "traces" in name or "velocity" in name][::3]
+    assert made(store, series()) == Built(str(store), first.depth, 0, first.made)
+    gone = [name for name in files if "flow" in name or "velocity" in name][::3]
     assert len(gone) > 3
     for name in gone:
         (store / name).unlink()
-    again = made(store, series(), levels="all")
+    again = made(store, series())
     assert again.made >= 1 and again.made + again.kept == first.made
     assert (shards(store), contents(store)) == (files, whole)
-
-
-def test_steps_have_one_halo_whichever_tasks_make_them(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The last steps flow to where cells are small, which asks for a wider halo."""
-    x = np.cumsum(np.where(np.arange(140) < 64, 0.04, 0.012))
-    along = np.array([0, 0, 1, 1.0])[:, None, None]
-    velocity = np.stack(np.broadcast_arrays(along, 1 - along, np.ones((4, 10, 140))), axis=-1)
-    field = FlowField.from_arrays(
-        (x, np.arange(10) / 25), velocity[..., :2], times=np.arange(4) / 10, periodic=""
-    )
-    options = {"levels": "all", "lines": "streamlines"}
-    made(tmp_path / "a.zarr", field, **options)
-    halos = zarr.open_array(tmp_path / "a.zarr" / "0" / "halos", mode="r")
-    widest = halos[-1, 0, 0, 0]
-    assert widest > 1
-    assert halos[:, 0, 0].tolist() == [[1, widest]] * 2 + [[widest, widest]] * 2
-    for name in ("build", "layout"):
-        monkeypatch.setattr(sys.modules[f"flowtex.pyramid.{name}"], "MOST_HELD", 2)
-    made(tmp_path / "b.zarr", field, **options)
-    assert contents(tmp_path / "b.zarr") == contents(tmp_path / "a.zarr")
-    pyramid, levels = stored(tmp_path / "b.zarr"), Levels(tmp_path / "b.zarr")
-    spares = {
-        key: [levels.tile(key, step).about["spare"] for step in range(4)]
-        for key in keys_of(pyramid)
-    }
-    assert all(len(set(some)) == 1 for some in spares.values())
-    for key in spares:
-        assert pyramid.tile(key, range(4)) is not None
 
 
 def test_shards_of_land_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Though of themselves chunks of zeros are not written, and what is not there is missing."""
     for name in ("layout", "samples"):
         monkeypatch.setattr(sys.modules[f"flowtex.pyramid.{name}"], "SHARD_CHUNKS", (1, 1))
-    x, y = grid(74, 266)
+    x, y = grid(40, 140)
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
     land = x > 2
     depth = np.where(land, 0, x)
@@ -278,8 +244,8 @@ def test_shards_of_land_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         np.stack([x, y], axis=-1), velocity, valid=~land, periodic="", scalars={"depth": depth}
     )
     store = tmp_path / "a.zarr"
-    built = made(store, flow, levels="all")
-    assert made(store, flow, levels="all").kept == built.made
+    built = made(store, flow)
+    assert made(store, flow).kept == built.made
     there, memory = stored(store), Pyramid(flow, "arclength", lines_of(store))
     np.testing.assert_array_equal(there.root.valid, memory.root.valid)
     tiles = [there.tile(key, [0]) for key in keys_of(memory)]
@@ -289,69 +255,48 @@ def test_shards_of_land_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert None in tiles
 
 
-def test_coarse_levels_are_completed(tmp_path: Path, stores: Stores) -> None:
-    store = stores.copy(tmp_path / "a.zarr", "steady")
-    assert not stored(store).made(TileKey(0, 0, 0))
-    made(store, steady(), levels="all")
-    made(store, steady())
-    assert stored(store).made(TileKey(0, 0, 0))
-
-
 def test_a_build_that_ends_early_goes_on(
     tmp_path: Path, stores: Stores, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     store, count = tmp_path / "a.zarr", iter(range(100))
     with monkeypatch.context() as patch:
-        layers = TextureSet.layers
+        write = client_parts.write_tile
 
-        def broken(self: Any, step: int = 0) -> Any:
+        def broken(*given: Any) -> None:
             if next(count) > 2:
                 msg = "no room"
                 raise OSError(msg)
-            return layers(self, step)
+            write(*given)
 
-        patch.setattr(TextureSet, "layers", broken)
+        patch.setattr(tasks, "write_tile", broken)
         with pytest.raises(PyramidError, match=r"shards could not be made .* OSError: no room"):
-            made(store, steady(), levels="all")
-    assert made(store, steady(), levels="all").kept > 3
-    assert contents(store) == contents(stores.get("steady", "all"))
+            made(store, steady())
+    assert made(store, steady()).kept > 3
+    assert contents(store) == contents(stores.get("steady"))
 
 
 @pytest.mark.parametrize("fault", ["flipped", "cut", "gone"])
 def test_a_broken_tile_is_told(tmp_path: Path, stores: Stores, fault: str) -> None:
-    store = stores.copy(tmp_path / "a.zarr", "steady", "all")
-    (file,) = (store / "0" / "traces" / "c" / "0" / "0" / "1").rglob("0/0/0/0")
+    store = stores.copy(tmp_path / "a.zarr", "steady")
+    (file, *_) = (path for path in (store / "0/velocity/c").rglob("*") if path.is_file())
     data = bytearray(file.read_bytes())
     if fault == "flipped":
-        data[len(data) // 2] ^= 1
+        data[len(data) // 9] ^= 1
         file.write_bytes(data)
     elif fault == "cut":
         file.write_bytes(data[: len(data) // 2])
     else:
         file.unlink()
-    with pytest.raises(PyramidError, match=r"tile \(0, 0, 1\).*(cannot be read|missing)"):
-        stored(store).tile(TileKey(0, 0, 1), [0])
-    assert stored(store).tile(TileKey(0, 0, 0), [0]) is not None
-
-
-def test_a_broken_root_is_traced_again(tmp_path: Path, stores: Stores) -> None:
-    store = stores.copy(tmp_path / "a.zarr", "steady")
-    for file in (store / "2" / "traces" / "c").rglob("*"):
-        if file.is_file():
-            file.write_bytes(b"torn")
-    there = stored(store)
-    slices = shared_store(there.root, "arclength", "pathlines")
-    own = Pyramid(steady()).root_textures(slices).layers()
-    with pytest.warns(UserWarning, match=r"traced anew, for .* cannot be read"):
-        textures = there.root_textures(slices)
-    assert_alike(textures.layers(), own)
+    with pytest.raises(PyramidError, match=r"0/velocity of .*(cannot be read|missing)"):
+        stored(store).tile(TileKey(0, 0, 0), [0])
+    assert stored(store).tile(TileKey(1, 0, 0), [0]) is not None
 
 
 def test_a_small_field_is_all_root(tmp_path: Path) -> None:
     field = steady(6, 9)
     assert made(tmp_path / "a.zarr", field).depth == 0
     root = open_store(tmp_path / "a.zarr")
-    np.testing.assert_array_equal(root.velocity, field.velocity.astype(np.float32))
+    np.testing.assert_allclose(root.velocity, field.velocity, rtol=2**-13)
     slices = shared_store(root, "arclength", "pathlines")
     assert stored(tmp_path / "a.zarr").root_textures(slices).layers().shape[0] > 4
 
@@ -383,5 +328,3 @@ def test_fields_that_have_no_such_pyramid(tmp_path: Path) -> None:
     )
     with pytest.raises(flowtex.field.FieldError, match="on triangles"):
         made(tmp_path / "a.zarr", field)
-    with pytest.raises(ValueError, match="levels is 'some'"):
-        made(tmp_path / "a.zarr", steady(), levels="some")

@@ -8,6 +8,7 @@ from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from threading import Thread
+from threading import enumerate as threads
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ from flowtex.tiles import TileKey
 zarr = pytest.importorskip("zarr")
 
 
-def series(rows: int = 30, columns: int = 40) -> FlowField:
+def series(rows: int = 15, columns: int = 20) -> FlowField:
     """A flow that turns around from step to step, closed around along i."""
     y, x = np.mgrid[0:rows, 0:columns] / 100
     steps = [np.stack([np.cos(3 * y + t), np.sin(4 * x - t)], axis=-1) for t in range(3)]
@@ -118,7 +119,7 @@ def test_long_and_narrow_roots_are_read_as_they_were_built(tmp_path: Path) -> No
     y, x = np.mgrid[0:5, 0:12_000] / 100
     field = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack([1 + y, x], axis=-1))
     build(field, tmp_path / "a.zarr", progress=False)
-    assert Levels(tmp_path / "a.zarr").tile(TileKey(0, 0, 0), 0).about["size"][1] > 10_000
+    Levels(tmp_path / "a.zarr").check_tile(TileKey(0, 0, 0), 0)
 
 
 def test_tasks_that_fail_keep_no_memory() -> None:
@@ -140,7 +141,7 @@ def test_tasks_that_fail_keep_no_memory() -> None:
 def test_a_build_of_which_all_fails_ends_soon(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1000)
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 250)
     tried = []
 
     def full(*given: Any) -> Any:
@@ -150,15 +151,19 @@ def test_a_build_of_which_all_fails_ends_soon(
 
     monkeypatch.setattr(tasks, "write_part", full)
     many = FlowField.from_arrays(
-        (np.arange(40), np.arange(30)), np.ones((300, 30, 40, 2)), times=np.arange(300), periodic=""
+        (np.arange(20), np.arange(15)), np.ones((300, 15, 20, 2)), times=np.arange(300), periodic=""
     )
     with pytest.raises(PyramidError, match=r"1 of 1 shards .* OSError: no space left"):
         build(series(), tmp_path / "a.zarr", progress=False)
     # The first step comes alone.
     monkeypatch.setattr(tasks, "write_part", lambda *given: given[2].step and full(*given))
     tried.clear()
-    with pytest.raises(PyramidError, match=rf"{MOST_FAILURES} in a row shards .* no space left"):
+    failed = rf"{MOST_FAILURES} in a row shards .* no space left"
+    with pytest.raises(PyramidError, match=failed) as caught:
         build(many, tmp_path / "b.zarr", progress=False)
+    # The workers have ended, though the error and its frames are still there.
+    assert caught.tb is not None
+    assert not [one for one in threads() if one.name.startswith("flowtex-pyramid")]
     assert len(tried) <= MOST_TRIALS * (MOST_FAILURES + 4 * Threads().count(1))
 
 

@@ -15,16 +15,14 @@ import numpy as np
 import pytest
 
 from flowtex._util.array_types import AnyArray
-from flowtex.pyramid.checks import identity_of
-from flowtex.pyramid.layout import SURFACE, TRACES, VALUES, create_array, shard_texels, to_write
+from flowtex.pyramid.layout import FLOW, SURFACE, VALUES, create_array
 from flowtex.rendering.webgl.protocol import parts_file
-from flowtex.tiles import TileKey
 
 zarr = pytest.importorskip("zarr")
 
 FILE = Path(__file__).resolve().parents[2] / "client" / "tests" / "store.json"
-#: Nodes of a tile, its texels, and those that there is room for.
-NODES, SIZE, ROOM = (4, 5), (5, 7), (6, 8)
+#: Nodes of a tile, its texels, and bytes of a file and of its chunks.
+NODES, SIZE, ROOM, CHUNK = (4, 5), (5, 7), 4096, 1024
 COUNT, EXTRA, STEPS = 3, [0, 2], 2
 ABOUT = {"format": "form", "fingerprint": "print", "parameter": "arclength", "lines": "pathlines"}
 
@@ -59,53 +57,51 @@ def told() -> dict[str, Any]:
     }
 
 
-def numbers() -> dict[str, AnyArray]:
-    """Return the arrays of a level of two tiles, the second of which is empty."""
+def files() -> dict[str, dict[tuple[int, ...], dict[str, AnyArray]]]:
+    """Return the files of two tiles, the second of which is empty, by array and place."""
     rng = np.random.default_rng(3)
-    layers = rng.integers(-9, 10, (STEPS, COUNT, *SIZE, 4)).astype(np.float32) / 8
-    mesh = np.arange(19, dtype=np.float32).reshape(1, 1, 19)
-    position = rng.integers(0, 99, (*NODES, 3)).astype(np.float32)
-    traces = np.zeros((STEPS, 1, 2, 6, *ROOM, 4), np.float16)
-    slices = told()["slices"]
-    measures = {name: slices[name] for name in ("count", "lags", "unit", "cell")}
+    result: dict[str, dict[tuple[int, ...], dict[str, AnyArray]]] = {FLOW: {}, VALUES: {}}
     for step in range(STEPS):
-        whole, empty = (identity_of(ABOUT, TileKey(0, 0, column), step) for column in (0, 1))
-        text = {**measures, "size": list(SIZE), **whole}
-        traces[step, 0, 0] = shard_texels(text, layers[step], traces.shape[3:])
-        traces[step, 0, 1] = shard_texels({"empty": True, **empty}, None, traces.shape[3:])
-    values = np.zeros((STEPS, 1, 2, 2, *ROOM), np.float32)
-    nodal = rng.integers(0, 99, (STEPS, 2, *NODES)).astype(np.float32)
-    values[:, 0, 0, :, : NODES[0], : NODES[1]] = nodal
-    header = np.frombuffer(json.dumps(told()).encode(), np.uint8)
-    parts: dict[str, AnyArray] = {"header": header, "mesh": mesh, "position": position}
-    files = [
-        parts_file({f"tile/0/0/0/{name}": part for name, part in parts.items()}),
-        parts_file({"tile/0/0/1/header": np.frombuffer(b"null", np.uint8)}),
-    ]
-    surface = np.zeros((1, 2, 4096), np.uint8)
-    for column, file in enumerate(files):
-        surface[0, column, : len(file)] = np.frombuffer(file, np.uint8)
-    return {TRACES: traces, VALUES: values, SURFACE: surface}
+        layers = rng.integers(-9, 10, (COUNT, *SIZE, 4)).astype(np.float16) / np.float16(8)
+        slopes, extra = np.ascontiguousarray(layers[..., :2]), layers[EXTRA, ..., 3]
+        parts = {f"tile/0/0/0/slices/{step}": slopes, f"tile/0/0/0/extra/{step}": extra}
+        result[FLOW][step, 0, 0], result[FLOW][step, 0, 1] = parts, {}
+        for number in range(2):
+            values = rng.integers(0, 99, NODES).astype(np.float32)
+            result[VALUES][step, 0, 0, number] = {f"tile/0/0/0/scalars/{step}/{number}": values}
+    drawn: dict[str, AnyArray] = {
+        "tile/0/0/0/header": np.frombuffer(json.dumps(told()).encode(), np.uint8),
+        "tile/0/0/0/mesh": np.arange(19, dtype=np.float32).reshape(1, 1, 19),
+        "tile/0/0/0/position": rng.integers(0, 99, (*NODES, 3)).astype(np.float32),
+    }
+    empty: dict[str, AnyArray] = {"tile/0/0/1/header": np.frombuffer(b"null", np.uint8)}
+    return {**result, SURFACE: {(0, 0): drawn, (0, 1): empty}}
 
 
 def expected() -> dict[str, Any]:
     """Return what the client makes of it: slopes as they are packed, and values."""
-    arrays = numbers()
-    result: dict[str, Any] = {}
-    for step in range(STEPS):
-        layers = arrays[TRACES][step, 0, 0, 1 : 1 + COUNT, : SIZE[0], : SIZE[1]]
-        result[f"slices/{step}"] = layers[..., :2]
-        result[f"extra/{step}"] = layers[EXTRA, ..., 3]
-        for number in range(2):
-            nodal = arrays[VALUES][step, 0, 0, number, : NODES[0], : NODES[1]]
-            result[f"scalars/{step}/{number}"] = nodal
+    made = files()
+    parts = [parts for array in (FLOW, VALUES) for parts in made[array].values()]
     return {
-        name: {
+        name.removeprefix("tile/0/0/0/"): {
             "shape": list(array.shape),
             "data": np.ascontiguousarray(array).view(f"u{array.itemsize}").ravel().tolist(),
         }
-        for name, array in result.items()
+        for name, array in (item for some in parts for item in some.items())
     }
+
+
+def numbers() -> dict[str, AnyArray]:
+    """Return the arrays of the level."""
+    of = np.frombuffer(ABOUT["fingerprint"].encode(), np.uint8)
+    result: dict[str, AnyArray] = {}
+    for name, made in files().items():
+        counts = np.max([*made], axis=0) + 1
+        result[name] = np.zeros((*counts, ROOM), np.uint8)
+        for at, parts in made.items():
+            file = np.frombuffer(parts_file({"of": of, **parts}, planes=True), np.uint8)
+            result[name][at][: len(file)] = file
+    return result
 
 
 def write(folder: Path) -> None:
@@ -113,15 +109,10 @@ def write(folder: Path) -> None:
     group.attrs["flowtex"] = ABOUT
     level = group.require_group("0")
     for name, array in numbers().items():
-        shape = array.shape
-        last = {TRACES: 3, VALUES: 2, SURFACE: 1}[name]
-        chunks = (*(1,) * (len(shape) - last), *shape[-last:])
-        shards = (1, 1, 1, *shape[3:]) if name == TRACES else None
-        axes = [f"axis{n}" for n in range(len(shape))]
-        kind = array.dtype.name
-        create_array(level, name, shape, chunks, shards, kind, axes)
-        writable = level[name] if name == TRACES else to_write(level, name)
-        writable[...] = array
+        ones = (1,) * (array.ndim - 1)
+        axes = [f"axis{n}" for n in range(array.ndim)]
+        create_array(level, name, array.shape, (*ones, CHUNK), (*ones, ROOM), "uint8", axes)
+        level[name][...] = array
 
 
 def test_the_clients_store_is_what_python_writes(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ xr = pytest.importorskip("xarray")
 pytest.importorskip("zarr")
 
 #: Nodes of the coarsest level, here and on the workers.
-ROOT_NODES = 10_000
+ROOT_NODES = 2_500
 
 
 @pytest.fixture
@@ -35,20 +35,20 @@ def storage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ObjectS
     server.close()
 
 
-def flow(rows: int = 256, columns: int = 512) -> Any:
+def flow(rows: int = 128, columns: int = 256) -> Any:
     """A dataset of waves of many lengths around an island."""
     y, x = (np.arange(n) / 25 for n in (rows, columns))
     u, v = np.full((2, rows, columns), 0.3)
     for k in (0.5, 2, 7, 23):
         u += np.cos(k * y)[:, None] / k**0.2
         v += np.sin(k * x) / k**0.2
-    u[np.hypot(x - 8, y[:, None] - 5) < 1.5] = np.nan
+    u[np.hypot(x - 4, y[:, None] - 2.5) < 1] = np.nan
     words: list[dict[str, str]] = [
         {"standard_name": f"sea_water_{axis}_velocity", "units": "m s-1"} for axis in "xy"
     ]
     dims = ("y", "x")
     data = {"u": (dims, u.astype("f4"), words[0]), "v": (dims, v.astype("f4"), words[1])}
-    return xr.Dataset(data, {"x": x, "y": y}).chunk(y=64, x=128)
+    return xr.Dataset(data, {"x": x, "y": y}).chunk(y=32, x=64)
 
 
 @pytest.mark.slow
@@ -135,15 +135,16 @@ def _small_roots() -> None:
 
 
 def _tell_tiles() -> None:
-    """Tell, on a worker, that it traces tiles."""
+    """Tell, on a worker, that it makes tiles."""
     from distributed import get_worker
 
-    from flowtex.textures import TextureSet
+    from flowtex.pyramid import tasks
 
-    layers = TextureSet.layers
+    module: Any = tasks
+    write = module.write_tile
 
-    def told(self: TextureSet, step: int = 0) -> Any:
+    def told(*given: Any) -> None:
         get_worker().log_event("tile", {"worker": get_worker().address})
-        return layers(self, step)
+        write(*given)
 
-    TextureSet.layers = told  # type: ignore[method-assign]
+    module.write_tile = told

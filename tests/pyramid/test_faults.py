@@ -25,7 +25,6 @@ from flowtex.pyramid import PyramidError, build, open_store
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.tiles import Pyramid, TileKey, TileLoader, shared_pyramid
-from flowtex.trace.store import shared_store
 
 pytest.importorskip("zarr")
 
@@ -45,7 +44,7 @@ class Drawn(dict[Any, list[AnyArray] | None]):
 
 
 def flow() -> FlowField:
-    y, x = np.mgrid[0:145, 0:25].astype(float) / 25
+    y, x = np.mgrid[0:145, 0:13].astype(float) / 25
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
     points = np.stack([x + 0.1 * np.sin(y), y], axis=-1)
     land = np.hypot(x - 0.6, y - 1.2) < 0.3
@@ -54,12 +53,12 @@ def flow() -> FlowField:
     )
 
 
-@pytest.fixture(scope="module", params=["coarse", "all"])
-def whole(request: Any, tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Path:
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Path:
     place = tmp_path_factory.mktemp("whole") / "flow.zarr"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 312)
-        build(flow(), place, levels=request.param, progress=False)
+        build(flow(), place, progress=False)
     return place
 
 
@@ -67,9 +66,7 @@ def drawn(place: Any, keys: list[TileKey] = KEYS) -> Drawn:
     """What pictures are made of; tiles that are told to be broken have none."""
     root = open_store(place)
     pyramid = shared_pyramid(root, "arclength", "pathlines")
-    slices = shared_store(root, "arclength", "pathlines")
     result = Drawn(root=[root.points, root.valid, root.velocity, root.scalars["depth"]])
-    result["traces"] = [pyramid.root_textures(slices).layers()]
     result["ranges"] = [np.array([pyramid.ranges["speed", False]])]
     for key in keys:
         try:
@@ -82,10 +79,10 @@ def drawn(place: Any, keys: list[TileKey] = KEYS) -> Drawn:
 def tile_of(pyramid: Pyramid, key: TileKey) -> list[AnyArray]:
     textures = pyramid.tile(key, [0])
     assert textures is not None
-    field, at = textures.geometry.field, textures.grid.drawn
+    field = textures.geometry.field  # from which paths are traced
     nodal = (field.points, field.valid, field.velocity[0], field.scalars["depth"][0])
     told = np.array([textures.unit, textures.cell, textures.critical_cell])
-    return [told, textures.layers(0), *(some[at] for some in nodal)]
+    return [told, *nodal]
 
 
 @pytest.fixture(scope="module")
@@ -172,7 +169,7 @@ def garble(text: Any, share: float, value: Any) -> None:
         inside[name] = value
 
 
-@property_test(20)
+@property_test(12)
 @given(harm())
 def test_harm_is_told_or_does_no_harm(whole: Path, truth: Drawn, harmed: Any) -> None:
     place = whole.parent / "harmed.zarr"
@@ -182,13 +179,12 @@ def test_harm_is_told_or_does_no_harm(whole: Path, truth: Drawn, harmed: Any) ->
     judge(place, truth)
 
 
-@pytest.mark.parametrize("array", ["traces", "velocity", "points", "valid", "scalars/depth"])
+@pytest.mark.parametrize("array", ["velocity", "points", "valid", "scalars/depth"])
 def test_shards_in_each_others_place_are_noticed(whole: Path, truth: Drawn, array: str) -> None:
     place = whole.parent / "swapped.zarr"
     shutil.rmtree(place, ignore_errors=True)
     shutil.copytree(whole, place)
-    level = "0" if array != "traces" or (place / "0/traces/c").exists() else "1"
-    files = sorted(path for path in (place / level / array / "c").rglob("*") if path.is_file())
+    files = sorted(path for path in (place / "0" / array / "c").rglob("*") if path.is_file())
     if len(files) < 2:
         pytest.skip("there is one shard")
     one, other = files[0].read_bytes(), files[-1].read_bytes()
@@ -305,9 +301,7 @@ def test_neighbours_read_what_they_share_once(server: RangeServer) -> None:
     pyramid.tile(TileKey(0, 0, 0), [0])
     server.asked.clear()
     pyramid.tile(TileKey(0, 0, 0), [0])
-    assert all("/traces/" in path for path in server.paths)
-    asked = [one for one in server.asked if "/traces/" not in one[1]]
-    assert len(set(asked)) == len(asked)
+    assert not server.asked
 
 
 def test_what_nobody_wants_is_not_read_any_more(server: RangeServer) -> None:

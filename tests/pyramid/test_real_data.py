@@ -15,27 +15,33 @@ from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.pyramid import build, open_store
 from flowtex.tiles import has_pyramid, shared_pyramid
 
+xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
 pytest.importorskip("zarr")
 
 FILES = {
     "nemo": [f"nemo_orca025_{name}.nc" for name in ("U", "V", "coordinates")],
-    "globcurrent": [f"globcurrent_200201{day:02d}.nc" for day in range(1, 9)],
+    "globcurrent": [f"globcurrent_200201{day:02d}.nc" for day in range(1, 4)],
 }
+#: A part of what a file has is enough.
+PART = {"y": slice(50, 100), "x": slice(40, 90), "depthu": slice(2), "depthv": slice(2)}
+PART |= {"lat": slice(36), "lon": slice(50)}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", FILES)
 def test_pictures_are_those_of_the_files(
     name: str, data_dir: Path, tmp_path: Path, opengl: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The files are small, so that there would be no levels.
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 3000)
-    files = [data_dir / file for file in FILES[name]]
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1000)
+    files = [tmp_path / file for file in FILES[name]]
+    for file in files:
+        with xr.open_dataset(data_dir / file.name, decode_cf=False) as whole:
+            whole.isel(PART, missing_dims="ignore").to_netcdf(file)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DatasetNotice)
         field = FlowField.from_file(files)
-        build(field, tmp_path / "flow.zarr", levels="all", progress=False)
+        build(field, tmp_path / "flow.zarr", progress=False)
     store = open_store(tmp_path / "flow.zarr")
     assert has_pyramid(store) and shared_pyramid(store, "arclength").depth >= 1
     assert store.start == field.start and store.projection == field.projection
@@ -48,5 +54,7 @@ def test_pictures_are_those_of_the_files(
         if not field.steady:
             options["time"] = float(time)
         pictures = [flowtex.render(one, **options) for one in (field, tmp_path / "flow.zarr")]
-        np.testing.assert_array_equal(pictures[0], pictures[1])
+        # Velocities have 13 bits in a store, and where paths end a little more or less is seen.
+        away = np.abs(pictures[0].astype(int) - pictures[1])
+        assert away.mean() < 0.02 and (away > 3).mean() < 5e-4
         assert pictures[0].std() > 10
