@@ -32,8 +32,8 @@ from rich.table import Table
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-#: Rows and columns of nodes.
-MESHES = ("70x120", "250x500", "500x1000", "2000x4000")
+#: Rows and columns of nodes; "c" stands for a grid whose lines are crooked.
+MESHES = ("70x120", "70x120c", "250x500", "250x500c", "500x1000", "500x1000c", "2000x4000")
 FRAMES = 4
 #: Seeds of streamlines, and the separation of evenly spaced ones as a share of the height.
 SEEDS, SEPARATION = 2000, 0.01
@@ -49,11 +49,12 @@ def place(view: Any) -> dict[str, Any]:
     return {"zoom": view.options["zoom"], "focus": view.options["focus"]}
 
 
-def flow(rows: int, columns: int) -> Any:
-    """Return the double gyre on a sheared, stretched grid."""
+def flow(mesh: str) -> Any:
+    """Return the double gyre on a sheared, stretched grid, or on a crooked one."""
     from scenes import gyre_field
 
-    return gyre_field(columns=columns, rows=rows)
+    rows, columns = (int(n) for n in mesh.removesuffix("c").split("x"))
+    return gyre_field(columns, rows, crooked=mesh.endswith("c"))
 
 
 def flowtex_grey(field: Any, size: tuple[int, int]) -> Draw:
@@ -169,8 +170,7 @@ def measure(case: str, mesh: str, size: tuple[int, int]) -> dict[str, float]:
     from flowtex.diagnostics import prefer_headless
 
     prefer_headless()
-    rows, columns = (int(n) for n in mesh.split("x"))
-    field = flow(rows, columns)
+    field = flow(mesh)
     views = [gyre_view(field, 1.0 - 1e-4 * n, size) for n in range(FRAMES + 1)]
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     start = time.perf_counter()
@@ -319,7 +319,9 @@ def compare(mesh: str, size: tuple[int, int], timeout: float) -> Table:
 def main() -> None:
     """Print a table for each mesh."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--meshes", nargs="*", default=list(MESHES), help="rows x columns")
+    parser.add_argument(
+        "--meshes", nargs="*", default=list(MESHES), help="rows x columns, and c for a crooked grid"
+    )
     parser.add_argument("--size", nargs=2, type=int, default=(800, 600))
     parser.add_argument("--timeout", type=float, default=120.0, help="seconds for a case")
     parser.add_argument("--one", choices=list(CASES), help=argparse.SUPPRESS)

@@ -59,7 +59,7 @@ def _measured(results: list[Any]) -> list[Row]:
         return (name, *(of(result, result["build"]) for result in results))
 
     return [
-        row("tiles traced", lambda r, b: f"{r['levels']}, {b['tiles']:,}"),
+        row("tiles", lambda r, b: f"{b['tiles']:,}"),
         row("memory of a worker", lambda r, _: r["memory"]),
         row("source, GB", lambda r, _: f"{r['source']['bytes'] / GB:.2f}"),
         row("store, GB", lambda r, _: f"{r['store']['bytes'] / GB:.2f}"),

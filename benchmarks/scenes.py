@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-import pyvista as pv
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
 import flowtex
-from flowtex.plotting.vtk_camera import look
 
 __all__ = ["FOCUS", "Stage", "View", "gyre", "gyre_field", "gyre_view", "lic_actor", "vortex_view"]
 
@@ -33,9 +31,19 @@ def gyre(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     )
 
 
-def gyre_field(columns: int = 120, rows: int = 60) -> flowtex.FlowField:
-    """Sample the double gyre on a sheared, stretched curvilinear grid."""
+#: Height of the waves of a crooked grid as a share of its sides, and radians of them along one.
+CROOKED, WAVES = 0.02, 8 * np.pi
+
+
+def gyre_field(columns: int = 120, rows: int = 60, *, crooked: bool = False) -> flowtex.FlowField:
+    """Sample the double gyre on a sheared, stretched curvilinear grid.
+
+    The lines of a crooked one are waves, so that it is nowhere straight.
+    """
     s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
+    if crooked:
+        wave = CROOKED * np.sin(np.pi * s) * np.sin(np.pi * t)
+        s, t = s + wave * np.sin(WAVES * t), t + wave * np.sin(WAVES * s)
     x = 2 * (s + 0.06 * np.sin(2 * np.pi * s)) + BULGE * np.sin(np.pi * t)
     y = t**CROWDED
     return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(gyre(x, y), -1))
@@ -101,6 +109,8 @@ class Stage:
     """An off-screen plotter on which a field is drawn, by flowtex or by VTK's Surface LIC."""
 
     def __init__(self, field: flowtex.FlowField, size: tuple[int, int], **settings: Any) -> None:
+        import pyvista as pv
+
         self.field = field
         self.plotter: Any = pv.Plotter(off_screen=True, window_size=list(size))
         self.plotter.disable_anti_aliasing()
@@ -116,6 +126,8 @@ class Stage:
         self, zoom: float = 1.0, focus: Any = None, roll: float = 0.0, **state: float
     ) -> NDArray[Any]:
         """Draw one frame; ``state`` sets the handle's ``time`` or ``clock``."""
+        from flowtex.plotting.vtk_camera import look
+
         for name, value in state.items():
             setattr(self.handle, name, value)
         look(self.plotter, self.field, zoom=zoom, focus=focus)
@@ -130,6 +142,8 @@ class Stage:
 
 def _grid_of(field: flowtex.FlowField) -> Any:
     """Return the polygons of a structured field, with its vectors as ``velocity``."""
+    import pyvista as pv
+
     rows, columns = field.shape
     grid = pv.StructuredGrid()
     grid.points, grid.dimensions = field.points.reshape(-1, 3), (columns, rows, 1)

@@ -54,6 +54,8 @@ _LAZY = {
     "render": "offscreen.render",
     "show": "display",
 }
+#: Those that need OpenGL: it is tried while they are imported.
+_DRAWS = ("axes", "movie", "render", "show")
 
 
 def __getattr__(name: str) -> Any:
@@ -62,6 +64,8 @@ def __getattr__(name: str) -> Any:
 
     if name in ("examples", "pyramid"):
         return importlib.import_module(f"flowtex.{name}")
+    if name in _DRAWS:
+        importlib.import_module("flowtex.diagnostics").begin_trial()
     if name in _LAZY:
         return getattr(importlib.import_module(f"flowtex.{_LAZY[name]}"), name)
     msg = f"module 'flowtex' has no attribute {name!r}"

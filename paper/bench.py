@@ -38,7 +38,8 @@ class Bench:
     Attributes
     ----------
     quick
-        Whether to do the reduced form: smaller pictures, fewer particles, fewer views.
+        Whether to do the reduced form: smaller pictures, fewer particles, fewer views, and long
+        paths of steady fields composed of short ones.
     seed
         Number that every random choice follows from.
     data
@@ -105,7 +106,9 @@ class Bench:
         """Textures of a field, each kind built once; the field must be one of this bench."""
         store = self.once(
             ("store", id(flow), settings.parameter),
-            lambda: SliceStore(flow, parameter=settings.parameter, compose=False),
+            lambda: SliceStore(
+                flow, parameter=settings.parameter, compose=self.quick and flow.steady
+            ),
         )
         kind = (settings.noise, settings.noise_correction, settings.resolution, settings.seed)
         if settings.noise == "procedural":

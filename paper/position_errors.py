@@ -14,8 +14,8 @@ from flowtex.trace import TraceSlices, paths, trace
 __all__ = ["Errors", "position_errors", "step_slices"]
 
 
-#: Steps of time that a particle goes back, and error allowed in one step of the integration.
-STEPS, TOLERANCE_CELLS = 10, 1e-5
+#: Steps of time that a particle goes back.
+STEPS = 10
 
 
 @dataclass(frozen=True)
@@ -78,20 +78,28 @@ class Errors:
         )
 
 
-def step_slices(field: FlowField, step: int) -> TraceSlices:
-    """Trace the slices of one destination time at lags of 1 ... 10 time steps."""
+def step_slices(field: FlowField, step: int, tolerance: float) -> TraceSlices:
+    """Trace the slices of one destination time at lags of 1 ... 10 time steps.
+
+    `tolerance` is the error in cells that is allowed in one step of the integration.
+    """
     return trace(
         field,
         lags=_lags(field),
         steps=[step],
         compose=False,
-        tolerance=TOLERANCE_CELLS,
+        tolerance=tolerance,
         progress=False,
     )
 
 
 def position_errors(
-    field: FlowField, slices: TraceSlices, factor: int, count: int, rng: np.random.Generator
+    field: FlowField,
+    slices: TraceSlices,
+    factor: int,
+    count: int,
+    rng: np.random.Generator,
+    tolerance: float,
 ) -> Errors:
     """Follow particles back, by slices and by fields of fewer nodes.
 
@@ -107,6 +115,8 @@ def position_errors(
         Number of particles.
     rng
         Which of them.
+    tolerance
+        Error in cells that is allowed in one step of the integration.
 
     Returns
     -------
@@ -117,16 +127,16 @@ def position_errors(
     coarse, at = slices.downsample(factor), field.surface.at
     entries = coarse.nodes.reshape(-1, 2)
     entries = entries[rng.permutation(len(entries))[:count]]
-    start, true = _accurate(field, entries, step)
+    start, true = _accurate(field, entries, step, tolerance)
     low, high = coarse.nodes[0, 0], coarse.nodes[-1, -1]
-    anywhere, true_anywhere = _accurate(field, rng.uniform(low, high, (count, 2)), step)
+    anywhere, true_anywhere = _accurate(field, rng.uniform(low, high, (count, 2)), step, tolerance)
     lines = _lines(field, factor)
     result = paths(
         field.downsample(factor),
         _inverse(lines, start),
         _lags(field),
         step=step,
-        tolerance=TOLERANCE_CELLS,
+        tolerance=tolerance,
     )
 
     coarse_positions = _looked_up(coarse, start)
@@ -151,9 +161,11 @@ def _lags(field: FlowField) -> Floats:
     return np.asarray(np.mean(np.diff(field.times)) * np.arange(1, STEPS + 1))
 
 
-def _accurate(field: FlowField, start: Floats, step: int) -> tuple[Floats, Floats]:
+def _accurate(
+    field: FlowField, start: Floats, step: int, tolerance: float
+) -> tuple[Floats, Floats]:
     """Return starts whose paths do not end, (N, 2), and the true positions, (M, N, 2)."""
-    result = paths(field, start, _lags(field), step=step, tolerance=TOLERANCE_CELLS)
+    result = paths(field, start, _lags(field), step=step, tolerance=tolerance)
     alive = result.reach >= _lags(field)[-1]
     return start[alive], result.positions[:, alive]
 

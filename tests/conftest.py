@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 
 from flowtex import diagnostics
+from flowtex._util import compiled
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
 
 pytest_plugins = ["small_pages", "small_tiles"]
 
+# Both implementations of a loop are right, and not alike to the bit: one does not take over from
+# the other in the middle of a test.
+compiled.LARGE_WORK = sys.maxsize
 # Before anything opens a window, and for every process that a test starts.
 diagnostics.prefer_headless()
 # Workers and the many processes that tests start would each compile the package and the tests anew.
@@ -245,4 +249,5 @@ def client(client_page: ClientPage) -> Iterator[ClientPage]:
     yield client_page
     client_page.clear()
     heard, client_page.errors = client_page.errors, []
+    client_page.asked, client_page.tiles = [], []
     assert heard == []

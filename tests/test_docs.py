@@ -7,13 +7,16 @@ import inspect
 import json
 import os
 import re
+from functools import partial
 from importlib import import_module
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
 import pytest
+from test_notebooks import smaller
 
+import flowtex
 from flowtex.settings import TABLE, Setting
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -27,14 +30,42 @@ def blocks(page: Path) -> list[str]:
     return re.findall(r"^```python\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
 
 
+@pytest.fixture(scope="module")
+def small_examples() -> dict[str, Any]:
+    """Examples with every third point, or every fifth instant."""
+    pytest.importorskip("xarray")
+    examples = flowtex.examples
+    found: dict[str, Any] = {
+        "cylinder_series": examples.cylinder_series()[::5],
+        "vortex_field": examples.vortex_field().downsample(3),
+    }
+    for name in ("ocean", "weather"):
+        data = getattr(examples, name)()
+        found[name] = data.isel(
+            {dim: slice(None, None, 3) for dim in data.dims if dim not in ("level", "time")}
+        )
+    return found
+
+
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=lambda p: p.stem)
 def test_the_blocks_of_a_page_run(
-    page: Path, opengl: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    page: Path,
+    opengl: Any,
+    small_examples: dict[str, Any],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    defaults = {**(flowtex.render.__kwdefaults__ or {}), "size": (160, 120)}
+    monkeypatch.setattr(flowtex.render, "__kwdefaults__", defaults)
+    for name, shape in (("airfoil_field", (33, 97)), ("double_gyre_field", (33, 65))):
+        made = partial(getattr(flowtex.examples, name), shape=shape)
+        monkeypatch.setattr(flowtex.examples, name, made)
+    for name, example in small_examples.items():
+        monkeypatch.setattr(flowtex.examples, name, lambda example=example: example)
     names: dict[str, Any] = {}
     for number, block in enumerate(blocks(page), start=1):
-        exec(compile(block, f"{page.name}, block {number}", "exec"), names)
+        exec(compile(smaller(block), f"{page.name}, block {number}", "exec"), names)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)

@@ -21,7 +21,11 @@ flowtex.tiles.pyramid.ROOT_NODES = 20_000
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "changes"),
-    [("ocean", {}), ("weather", {}), ("pyramid", {"760": "190", "500": "125"})],
+    [
+        ("ocean", {"seconds=3": "seconds=1"}),
+        ("weather", {}),
+        ("pyramid", {"760": "190", "500": "125"}),
+    ],
 )
 def test_a_notebook_runs(name: str, changes: dict[str, str], opengl: Any) -> None:
     pytest.importorskip("cf_xarray")

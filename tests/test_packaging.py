@@ -194,7 +194,7 @@ came, parts, done = [], {}, threading.Event()
 def send(self, content, buffers=None):
     for info, data in zip(content["parts"], buffers or ()):
         parts[info["name"]] = {**info, "data": bytes(data).hex()}
-    if "slices/0" in parts:
+    if "flow/0" in parts:
         done.set()
 FlowWidget.send = send
 widget = FlowWidget(flowtex.examples.double_gyre_field(shape=(20, 40)), samples=5)

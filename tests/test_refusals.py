@@ -101,7 +101,7 @@ CALLS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     ),
     "build": (
         flowtex.pyramid.build,
-        {"source": field, "store": "a.zarr", "levels": "coarse", "lines": "auto", "memory": None},
+        {"source": field, "store": "a.zarr", "lines": "auto", "memory": None},
     ),
     "open_store": (flowtex.pyramid.open_store, {"store": None}),
     "double_gyre": (flowtex.examples.double_gyre, {"time": 0.0}),

@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.ndimage import distance_transform_edt
-from scipy.spatial import cKDTree
+import scipy
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
@@ -91,7 +89,7 @@ def ocean() -> xr.Dataset:
     places = np.stack(np.meshgrid(lon, lat), axis=-1)
     land = _land(lon, lat)
     cell = np.array([lat[1] - lat[0], (lon[1] - lon[0]) * np.cos(np.radians(lat.mean()))])
-    far = distance_transform_edt(~land, sampling=cell * DEGREE)
+    far = scipy.ndimage.distance_transform_edt(~land, sampling=cell * DEGREE)
     sea = 1 - np.exp(-((far / SHELF) ** 2))
     days = np.arange(8)
     # The sea is as high along all of the coast, so no current goes through it.
@@ -193,7 +191,7 @@ def _height(places: Floats, seconds: float) -> Floats:
     narrow = np.cos(np.radians(38.0))
     here = places * [narrow, 1.0] * DEGREE
     path, along = _stream(seconds, narrow)
-    near = cKDTree(path).query(here)[1]
+    near = scipy.spatial.cKDTree(path).query(here)[1]
     way = here - path[near]
     # Metres to the left of the stream.
     left = along[near, 0] * way[..., 1] - along[near, 1] * way[..., 0]
@@ -217,7 +215,7 @@ def _stream(seconds: float, narrow: float) -> tuple[Floats, Floats]:
     """Return points along the middle of the stream and its directions, (N, 2) each, in metres."""
     corners = np.array(STREAM) * [narrow, 1.0] * DEGREE
     lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1)))
-    line = CubicSpline(lengths, corners)
+    line = scipy.interpolate.CubicSpline(lengths, corners)
     s = np.arange(0.0, lengths[-1], 2e3)
     along = line(s, 1) / np.linalg.norm(line(s, 1), axis=1, keepdims=True)
     # They begin where the stream leaves the coast, and grow.

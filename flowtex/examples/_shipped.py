@@ -10,9 +10,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import fft
-from scipy.interpolate import CubicSpline
 
 from flowtex._util.array_types import AnyArray, Floats
 
@@ -46,9 +45,9 @@ def polar_vorticity(points: Floats, velocity: Floats) -> Floats:
     u, v = np.moveaxis(open_velocity, -1, 0)
     outward, around = u * cosine + v * sine, v * cosine - u * sine
     count = cosine.shape[1]
-    modes = fft.rfft(outward, axis=-1) * 1j * np.arange(count // 2 + 1)
-    slope = CubicSpline(radii, radii[:, None] * around, axis=1)(radii, 1)
-    result = (slope - fft.irfft(modes, count, axis=-1)) / radii[:, None]
+    modes = scipy.fft.rfft(outward, axis=-1) * 1j * np.arange(count // 2 + 1)
+    slope = scipy.interpolate.CubicSpline(radii, radii[:, None] * around, axis=1)(radii, 1)
+    result = (slope - scipy.fft.irfft(modes, count, axis=-1)) / radii[:, None]
     return np.concatenate([result, result[..., :1]], axis=-1)
 
 
@@ -59,7 +58,7 @@ def vortex_arrays() -> tuple[Floats, Floats, Floats, Floats]:
     """
     file = load(VORTEX)
     vorticity = unpack(file["vorticity"], float(file["step"]), axis=2)
-    velocity = np.array([periodic_velocity(fft.rfft2(w)) for w in vorticity])
+    velocity = np.array([periodic_velocity(scipy.fft.rfft2(w)) for w in vorticity])
     size = vorticity.shape[-1]
     axis = np.linspace(0.0, 1.0, size + 1)
     points = np.stack(np.meshgrid(axis, axis), axis=-1)
@@ -78,11 +77,11 @@ def periodic_velocity(vorticity: NDArray[np.complex128]) -> Floats:
     The vorticity comes as Fourier coefficients from ``scipy.fft.rfft2``, (N, N // 2 + 1).
     """
     size = len(vorticity)
-    ky = 2.0 * np.pi * fft.fftfreq(size, 1.0 / size)[:, None]
-    kx = 2.0 * np.pi * fft.rfftfreq(size, 1.0 / size)[None, :]
+    ky = 2.0 * np.pi * scipy.fft.fftfreq(size, 1.0 / size)[:, None]
+    kx = 2.0 * np.pi * scipy.fft.rfftfreq(size, 1.0 / size)[None, :]
     square = np.asarray(kx**2 + ky**2)
     psi = vorticity / np.where(square == 0.0, np.inf, square)
-    parts = fft.irfft2(np.stack([1j * ky * psi, -1j * kx * psi]), (size, size))
+    parts = scipy.fft.irfft2(np.stack([1j * ky * psi, -1j * kx * psi]), (size, size))
     return np.moveaxis(parts, 0, -1)
 
 

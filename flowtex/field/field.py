@@ -25,7 +25,7 @@ from flowtex.field.io.constructors import FieldConstructors
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
-from flowtex.field.steps import LazySteps, Steps
+from flowtex.field.steps import LazySteps, Steps, typical_steps
 from flowtex.field.surface import Surface, known_positions
 from flowtex.field.triangles.arrays import triangle_arrays
 from flowtex.field.triangles.creases import velocity_on_triangles
@@ -474,8 +474,7 @@ class FlowField(FieldConstructors):
         """The steps from which ranges and lengths are taken: some of those that are read late."""
         if not isinstance(self.velocity, LazySteps):
             return self
-        last = len(self.times) - 1
-        return self.at_steps(sorted({0, last // 2, last}))
+        return self.at_steps(typical_steps(len(self.times)))
 
     def step_number(self, step: int) -> int:
         """Return the number of a time step from 0, where negative ones count from the end.

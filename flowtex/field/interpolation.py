@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Literal, TypeVar, cast
 
 import numpy as np
-from scipy import ndimage
+import scipy
 
 from flowtex._util.arguments import checked_count
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
@@ -29,7 +29,7 @@ A = TypeVar("A", bound=AnyArray)
 
 def nearest_known(known: Bools) -> tuple[Indices, Indices]:
     """Return row and column of the nearest node that is known, for each node of (J, I)."""
-    rows, columns = ndimage.distance_transform_edt(
+    rows, columns = scipy.ndimage.distance_transform_edt(
         ~known, return_distances=False, return_indices=True
     )
     return rows, columns
@@ -102,7 +102,9 @@ def between_nodes(nodal: AnyArray, index: Floats) -> Floats:
     Beyond the border they are constant.
     """
     at = [index[..., 1], index[..., 0]]
-    return np.asarray(ndimage.map_coordinates(nodal.astype(float), at, order=1, mode="nearest"))
+    return np.asarray(
+        scipy.ndimage.map_coordinates(nodal.astype(float), at, order=1, mode="nearest")
+    )
 
 
 def along_line(line: Floats, index: Floats, *, periodic: bool) -> Floats:

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.spatial import cKDTree
 
 from flowtex._util.arguments import check_field, checked_array
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
@@ -137,7 +137,7 @@ class Locator:
         self._surface = surface
         self._nodes = surface.points.reshape(-1, 3)
         self._number = np.flatnonzero(_starts(surface))
-        self._tree = cKDTree(self._nodes[self._number])
+        self._tree = scipy.spatial.cKDTree(self._nodes[self._number])
         self._last = np.array(surface.shape) - 2
         # An axis goes around in space, or ends and is repeated a period farther.
         away = np.linalg.norm(surface.offset, axis=-1) > 1e-6 * surface.extent

@@ -159,6 +159,11 @@ class Poles:
         return (pole for pole in (self.first, self.last) if pole is not None)
 
     @property
+    def both(self) -> bool:
+        """Whether the surface is closed at both ends."""
+        return self.first is not None and self.last is not None
+
+    @cached_property
     def component(self) -> int:
         """Component of a position (i, j) that leads from pole to pole."""
         return next(iter(self)).component
@@ -166,14 +171,13 @@ class Poles:
     def fold(self, position: AnyArray) -> AnyArray:
         """Positions (2, N) with those beyond a pole given as the points that they are."""
         end = self.lines - 1
-        low, high = self.first is not None, self.last is not None
-        outside = self._outside(position)
-        if not outside.any():
+        outside = np.flatnonzero(self._outside(position))
+        if not len(outside):
             return position
         result = np.array(position)
         c, a = self.component, 1 - self.component
         x, y = result[c][outside], result[a][outside]
-        if low and high:
+        if self.both:
             # Twice over the poles is once around.
             x -= (2 * end * np.rint((x - end / 2) / (2 * end))).astype(x.dtype)
         for pole in self:

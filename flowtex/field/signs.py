@@ -15,9 +15,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse.csgraph import dijkstra
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.field.poles import Poles
@@ -69,7 +68,7 @@ def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Flo
     unit = flat / np.where(length > 0, length, 1.0)
     agree = np.sum(unit[one] * unit[two], axis=-1)
     cost = 1 + TURN_COST * (1 - np.abs(agree))
-    graph = sparse.csr_array((cost, (one, two)), shape=(valid.size, valid.size))
+    graph = scipy.sparse.csr_array((cost, (one, two)), shape=(valid.size, valid.size))
     parent = _tree(graph, valid)
     sign = np.where(np.sum(unit * unit[parent], axis=-1) < 0, -1.0, 1.0)
     # Every node takes over what its parent has gathered, twice as far up each time.
@@ -155,14 +154,14 @@ def _along(number: Indices, valid: Bools, axis: int) -> Indices:
 
 def _tree(graph: Any, valid: Bools) -> Indices:
     """Node that each node takes its direction from; itself for the first of each part."""
-    _, part = sparse.csgraph.connected_components(graph, directed=False)
+    _, part = scipy.sparse.csgraph.connected_components(graph, directed=False)
     rows, columns = valid.shape
     j, i = np.divmod(np.arange(valid.size), columns)
     aside = np.hypot(j - (rows - 1) / 2, i - (columns - 1) / 2)
     order = np.lexsort((aside, part))
     firsts = order[np.unique(part[order], return_index=True)[1]]
     firsts = firsts[valid.ravel()[firsts]]
-    _, parent, _ = dijkstra(
+    _, parent, _ = scipy.sparse.csgraph.dijkstra(
         graph, directed=False, indices=firsts, return_predecessors=True, min_only=True
     )
     itself = np.arange(valid.size)

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.vectors import norm
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.surface import Surface
@@ -253,8 +254,8 @@ class SurfaceGeometry(DrawnSurface):
         A node whose cells have collapsed takes that of the line beside it.
         """
         normal = np.cross(*self.field.surface.tangents)
-        length = np.linalg.norm(normal, axis=-1, keepdims=True)
-        small = length[..., 0] <= 1e-9 * max(float(np.median(length)), 1e-300)
+        length = norm(normal)[..., None]
+        small = _is_small(length[..., 0])
         if small.any() and not small.all():
             for row, beside in ((0, 1), (-1, -2)):
                 if small[row].any():
@@ -266,6 +267,13 @@ class SurfaceGeometry(DrawnSurface):
         safe = np.where(length > 0, length, 1.0)
         unit = np.where(length > 0, normal / safe, [0.0, 0.0, 1.0])
         return unit[self.drawn].astype(np.float32)
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether every node has a position and a normal by those around it."""
+        surface = self.field.surface
+        lengths = norm(np.cross(*surface.tangents))
+        return bool(surface.has_position.all() and not _is_small(lengths).any())
 
     @cached_property
     def coordinate(self) -> Floats32:
@@ -318,3 +326,8 @@ class SurfaceGeometry(DrawnSurface):
             return None
         blank = ~valid
         return blank, tuple(at[blank] for at in nearest_known(valid))
+
+
+def _is_small(lengths: Floats) -> Bools:
+    """Which normals are those of cells that have collapsed, by their lengths."""
+    return np.asarray(lengths <= 1e-9 * max(float(np.median(lengths)), 1e-300))

@@ -19,7 +19,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
+import scipy
 
 from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.blocks import block_means
@@ -259,4 +259,4 @@ def _deviations(noise: Floats32) -> list[float]:
 def _bilinear(level: Floats, at: Floats) -> Floats:
     """Values at coordinates (2, N) from 0 to 1, texels in the middle of their squares."""
     at = at * np.array(level.shape)[:, None] - 0.5
-    return np.asarray(ndimage.map_coordinates(level, at, order=1, mode="grid-wrap"))
+    return np.asarray(scipy.ndimage.map_coordinates(level, at, order=1, mode="grid-wrap"))

@@ -31,6 +31,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32
+from flowtex._util.vectors import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.surface import Surface
@@ -174,7 +175,7 @@ class TextureSet:
         field = self.geometry.field
         flow, tangents = field.index_velocity.components[0], field.surface.tangents
         along = np.einsum("jic,cjik->jik", flow, tangents)
-        length = np.linalg.norm(along, axis=-1, keepdims=True)
+        length = norm(along)[..., None]
         along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
         corners, longest = _cells(field.surface)
         mean: Floats = np.sum([along[at] for at in corners], axis=0)
@@ -183,11 +184,9 @@ class TextureSet:
             normal = field.surface.crosses
             height = np.einsum("mc,mc->m", mean, normal) / np.einsum("mc,mc->m", normal, normal)
             mean = mean - height[:, None] * normal
-        mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), np.finfo(float).tiny)
+        mean /= np.maximum(norm(mean), np.finfo(float).tiny)[..., None]
         # What stands still says nothing of the direction.
-        cosines = [
-            np.where(length[at][..., 0] > 0, (along[at] * mean).sum(-1), 1) for at in corners
-        ]
+        cosines = [np.where(length[at][..., 0] > 0, dot(along[at], mean), 1) for at in corners]
         parting = (np.min(cosines, axis=0) < AGREED) & field.surface.cells
         return float(longest[parting].max(initial=0.0))
 

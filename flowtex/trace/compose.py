@@ -114,19 +114,24 @@ def compose(
     run: Map,
     integrate: Integrate,
     direction: float = -1.0,
+    longest: float = np.inf,
 ) -> None:
     """Fill the long slices of one direction in place.
 
     The slices of the first ``known`` of all lags (M,) are filled, and ``reach`` is infinite for
     paths that did not end within these. ``landing`` comes from :func:`landings`, ``run`` maps a
     function over blocks of paths, and ``integrate`` follows paths right beside a pole, of which
-    more are marked. Direction -1 is backward, 1 forward.
+    more are marked. Direction -1 is backward, 1 forward. Paths end, and stay there, with the first
+    slice whose lag, times the unit, is ``longest`` or more.
     """
-    lookup = _SliceLookup(field, lags, unit, side, landing * int(direction))
+    wanted = np.maximum(np.searchsorted(lags, longest / unit) + 1, known)
+    lookup = _SliceLookup(field, lags, unit, side, landing * int(direction), wanted)
     beside = None if field.surface.poles is None else integrate
     for m in range(known + 1, len(lags) + 1):
         lookup.judge(m - 1, always=m - 1 == known)
         _Doubling(lookup, m, beside).run(run)
+    ends = np.where(wanted < len(lags), lookup.knots[np.minimum(wanted, len(lags))], np.inf)
+    np.minimum(side.reach, ends, out=side.reach)
 
 
 class _Piece(NamedTuple):
@@ -153,8 +158,11 @@ class _SliceLookup:
         unit: Floats,
         side: SideSlices,
         landing: Indices,
+        wanted: Indices,
     ) -> None:
         slices, reach = side.slices, side.reach
+        #: Number of slices of each node whose paths are followed, (J, I).
+        self.wanted = wanted
         self.grid = NodeGrid.of(field)
         self.knots = np.concatenate([[0.0], lags]).astype(np.float32)
         # What is stored at lag zero is the slope itself.
@@ -190,7 +198,7 @@ class _SliceLookup:
             grid = self._grids[:, m]
             error = (_bend(grid, 2) + _bend(grid, 3)).max(axis=0)
             good = error <= 8 * (ERROR_SHARE * self.knots[m] * self._pace + ERROR_CELLS)
-            good &= (self._trust == self.knots[m - 1]) & ~self.polar
+            good &= (self._trust == self.knots[m - 1]) & ~self.polar & (m <= self.wanted)
             self._trust[good] = self.knots[m]
         # A cell may use what is good at its four nodes.
         trust = np.minimum(self._trust[:, :-1], self._trust[:, 1:])
@@ -200,9 +208,10 @@ class _SliceLookup:
         self._capped = np.minimum(self.reach, 1e4 * self.knots[m])
         self._endless = bool(np.isinf(self.reach).all())
 
-    def continued(self, position: Floats32, left: Floats32, step: Indices, most: Any) -> _Piece:
-        """Continue paths from positions (2, n) by up to ``left`` of lag."""
-        corners = self.grid.corners(position)
+    def continued(
+        self, position: Floats32, corners: Corners, left: Floats32, step: Indices, most: Any
+    ) -> _Piece:
+        """Continue paths from positions (2, n), in these cells, by up to ``left`` of lag."""
         base = self._base(step)
         unit = self.unit[:1] if self._even else self.grid.blend(self.unit, corners)
         longest = self._longest[corners.at + base] if most is None else most
@@ -229,10 +238,13 @@ class _SliceLookup:
         covered = np.broadcast_to(lag * unit, left.shape)
         return _Piece(moved, covered, ends, self.landing[m])
 
-    def stuck(self, position: Floats | Floats32, step: Indices | int = 0) -> Bools:
+    def stuck(self, position: Floats) -> Bools:
         """Whether positions (2, n) are so close to a pole that nothing can be looked up, (n,)."""
-        base = self._base(step)
-        return np.asarray(self._longest[self.grid.corners(position).at + base] == 0)
+        return self.is_stuck(self.grid.corners(position))
+
+    def is_stuck(self, corners: Corners, step: Indices | int = 0) -> Bools:
+        """Return the same for positions in these cells, at a time step."""
+        return np.asarray(self._longest[corners.at + self._base(step)] == 0)
 
     def displaced(self, position: Floats32, lag: Floats32, step: Indices) -> Floats32:
         """Displacements (2, n) of paths from positions (2, n) at any lags up to the last slice."""
@@ -296,6 +308,9 @@ class _Doubling:
         self._lookup, self._lag, self._before = lookup, lag, before
         self._moved = lookup.slices[:, m]
         self._moved[:] = lookup.slices[:, m - 1]
+        going = np.tile(lookup.wanted.ravel() >= m, count // nodes)
+        #: Paths that are followed, ``None`` for all; the others stay where they are.
+        self._which = None if going.all() else np.flatnonzero(going)
         self._whole = lag * lookup.unit
         self._left = np.tile((lag - before) * lookup.unit, count // nodes)
         self._integrate = integrate
@@ -307,7 +322,9 @@ class _Doubling:
         """Follow all paths to their end, piece by piece."""
         count = len(self._left)
         blocks: list[Some] = [slice(k, min(k + BLOCK, count)) for k in range(0, count, BLOCK)]
-        for number in range(2 * MOST_PIECES):
+        if self._which is not None:
+            blocks = _parts(self._which)
+        for number in range(2 * MOST_PIECES if blocks else 0):
             check()
             longest = self._before if number >= MOST_PIECES else None
             more = np.concatenate(list(run(partial(self.follow, longest=longest), blocks)))
@@ -325,14 +342,20 @@ class _Doubling:
     def follow(self, some: Some, longest: np.float32 | None) -> Indices:
         """Continue some paths by a piece, and return those that must go further."""
         lookup = self._lookup
+        position = self._where(some)
+        corners = lookup.grid.corners(position)
         if self._integrate is not None:
-            some = self._without_stuck(some)
+            stuck = lookup.is_stuck(corners, self._step[some])
+            if stuck.any():
+                self._stuck.append(_numbers(some, np.flatnonzero(stuck)))
+                free = np.flatnonzero(~stuck)
+                some, position = _numbers(some, free), position[:, free]
+                corners = Corners(*(part[free] for part in corners))
         left = self._left[some]
         if not len(left):
             return np.empty(0, np.intp)
-        node, position = self._where(some)
-        piece = lookup.continued(position, left, self._step[some], longest)
-        whole = self._whole[node]
+        piece = lookup.continued(position, corners, left, self._step[some], longest)
+        whole = self._whole[self._node(some)]
         self._suspect(some, position, piece)
         for row, part in zip(self._moved, piece.moved, strict=True):
             row[some] += part
@@ -342,27 +365,24 @@ class _Doubling:
             self._step[some] = lookup.clipped(self._step[some] + piece.steps)
         return _numbers(some, np.flatnonzero(left > LAG_ROUNDING * whole))
 
-    def _where(self, some: Some) -> tuple[Some, Floats32]:
-        """Nodes at which some paths begin, and where they have come, (2, n)."""
-        node = some
-        if self._lookup.unsteady:
-            node = np.arange(len(self._left))[some] % self._lookup.grid.size
-        return node, self._lookup.nodes[:, node] + self._moved[:, some]
-
-    def _without_stuck(self, some: Some) -> Some:
-        """Set apart the paths that have come right beside a pole."""
-        stuck = self._lookup.stuck(self._where(some)[1], self._step[some])
-        if not stuck.any():
+    def _node(self, some: Some) -> Some:
+        """Nodes at which some paths begin."""
+        if not self._lookup.unsteady:
             return some
-        self._stuck.append(_numbers(some, np.flatnonzero(stuck)))
-        return _numbers(some, np.flatnonzero(~stuck))
+        return np.asarray(np.arange(len(self._left))[some] % self._lookup.grid.size)
+
+    def _where(self, some: Some) -> Floats32:
+        """Where some paths have come, (2, n)."""
+        node, nodes, moved = self._node(some), self._lookup.nodes, self._moved
+        # Row by row, which is several times as fast with numbers of paths.
+        return np.stack([nodes[0][node] + moved[0][some], nodes[1][node] + moved[1][some]])
 
     def _pass(self, which: Indices, *, final: bool) -> Indices:
         """Integrate paths by a pole, or to their end, and return those that must go further."""
         lookup, left, step = self._lookup, self._left[which], self._step[which]
         if self._integrate is None:
             return which
-        node, position = self._where(which)
+        position = self._where(which)
         within = None if lookup.unsteady or final else lookup.stuck
         scale = lookup.scale
         moved, covered, ends = self._integrate(position, left.astype(float) * scale, step, within)
@@ -371,13 +391,15 @@ class _Doubling:
         self._left[which] = left - covered
         lookup.polar.reshape(-1)[which] = True
         new = np.isinf(lookup.reach[which]) & np.isfinite(ends)
-        whole = self._whole[node]
+        whole = self._whole[self._node(which)]
         lookup.reach[which[new]] = self._lag * (1 - (left - ends)[new] / whole[new])
         return _numbers(which, np.flatnonzero(self._left[which] > LAG_ROUNDING * whole))
 
     def _suspect(self, some: Some, position: Floats32, piece: _Piece) -> None:
         """List the paths that seem to end within their piece."""
         lookup = self._lookup
+        if piece.ends is None and lookup.grid.endless:
+            return
         ending = ~lookup.grid.alive(position + piece.moved, BORDER_CELLS)
         rest = np.full(1, np.inf, np.float32)
         if piece.ends is not None:

@@ -17,7 +17,7 @@ changes to another chart between two steps, and its positions are returned in in
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
@@ -43,7 +43,7 @@ STEPS_PER_LINE, LEAST_STEPS, MOST_STEPS = 50, 1_000, 20_000
 LAG_ROUNDING = 1e-9
 #: Displacement in cells that single precision holds, with what is computed of it.
 MOST_CELLS = 1e30
-#: Those of these that :mod:`flowtex._util.kernels` is given as numbers.
+#: Those of these that :mod:`flowtex._util.compiled.loops` is given as numbers.
 RULES = (STEP_SHRINK, STEP_GROWTH, STEP_SAFETY, LAG_ROUNDING, BORDER_ROUNDING_CELLS, MOST_CELLS)
 
 
@@ -145,8 +145,10 @@ class _Columns:
 
     def pick(self, mask: Bools | Indices) -> Self:
         """Return those of some particles."""
-        parts = (getattr(self, f.name) for f in fields(self))
-        return type(self)(*(None if part is None else part[..., mask] for part in parts))
+        # Numbers are several times as fast as a mask where there is more than one row.
+        some = np.flatnonzero(mask) if mask.dtype == bool else mask
+        parts = vars(self).values()
+        return type(self)(*(None if part is None else part.take(some, axis=-1) for part in parts))
 
 
 @dataclass
@@ -380,7 +382,7 @@ def _speed(rate: Floats) -> Floats:
 
 def _join(one: _Particles, two: _Particles) -> _Particles:
     """Put some particles behind others."""
-    pairs = ((getattr(one, f.name), getattr(two, f.name)) for f in fields(_Particles))
+    pairs = zip(vars(one).values(), vars(two).values(), strict=True)
     joined: Iterator[Any] = (
         None if a is None else np.concatenate([a, b], axis=-1) for a, b in pairs
     )

@@ -12,7 +12,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 
-__all__ = ["choose_lags", "lag_unit"]
+__all__ = ["choose_lags", "lag_unit", "longest_path"]
 
 
 #: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
@@ -38,6 +38,16 @@ def lag_unit(field: FlowField, parameter: str) -> Floats:
     return np.ones(field.shape)
 
 
+def longest_path(field: FlowField) -> float:
+    """Length of the paths where none is chosen, in the mesh's units.
+
+    A globe is as wide as a side of its bounding box, and no view shows the diagonal.
+    """
+    poles = field.surface.poles
+    closed = poles is not None and poles.both
+    return LAST_EXTENTS * field.surface.extent / (np.sqrt(3) if closed else 1)
+
+
 def choose_lags(field: FlowField, parameter: str, longest: float | None = None) -> Floats:
     """Lags from a quarter of a cell to a quarter of the surface, (M,), in lag units.
 
@@ -45,7 +55,7 @@ def choose_lags(field: FlowField, parameter: str, longest: float | None = None) 
     """
     size = field.surface.cell_size[field.valid]
     if longest is None:
-        longest = LAST_EXTENTS * field.surface.extent
+        longest = longest_path(field)
     if parameter == "arclength":
         first, last = FIRST_CELLS, longest / float(np.percentile(size, SMALL_CELLS))
     else:

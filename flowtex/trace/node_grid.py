@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy import ndimage
+import scipy
 
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Indices
 from flowtex.field import FlowField
@@ -62,6 +62,14 @@ class NodeGrid:
         """Number of nodes."""
         return self.rows * self.columns
 
+    @cached_property
+    def endless(self) -> bool:
+        """Whether no path can leave the domain: there are neither borders nor blanked cells."""
+        borders = {axis for axis, closed in enumerate(self.periodic) if not closed}
+        if self.poles is not None and self.poles.both:
+            borders -= {1 - self.poles.component}
+        return self._open is None and not borders
+
     def corners(self, position: AnyArray) -> Corners:
         """Cells of positions (2, N); those beyond a border are moved onto it."""
         if self.poles is not None:
@@ -86,7 +94,9 @@ class NodeGrid:
         for axis, closed in enumerate(self.periodic):
             width = [(around * (a == axis),) * 2 for a in range(2)]
             cells = np.pad(cells, width, mode="wrap" if closed else "edge")
-        far = ndimage.distance_transform_cdt(cells, "chessboard")[around:-around, around:-around]
+        far = scipy.ndimage.distance_transform_cdt(cells, "chessboard")[
+            around:-around, around:-around
+        ]
         room = np.minimum(far, MOST_ROOM_CELLS)
         return np.pad(room, ((0, 1), (0, 1))).astype(np.uint8).ravel()
 

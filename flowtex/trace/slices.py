@@ -58,7 +58,8 @@ class TraceSlices:
         One unit of lag at each node, (J, I): a length for paths by arc length, a time else.
     displacement
         Backward slices, (T, M, J, I, 2), components (a - i, b - j) in cells, one set for each
-        destination time. Beyond a path's reach they go on straight.
+        destination time. Beyond a path's reach they go on straight, or stay where it is as long as
+        was asked for.
     forward
         Forward slices, the same shape, or ``None``.
     rate, forward_rate

@@ -19,7 +19,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 from flowtex.trace.compose import landings
-from flowtex.trace.lags import choose_lags, lag_unit
+from flowtex.trace.lags import choose_lags, lag_unit, longest_path
 from flowtex.trace.lines import chosen_lines
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.trace import trace
@@ -63,6 +63,8 @@ class SliceStore:
         self.field = field
         #: Whether each destination time is traced as a steady field.
         self.streamlines = field.steady or chosen_lines(field, lines) == "streamlines"
+        #: Whether the slices were traced by somebody else.
+        self.given = slices is not None
         self._whole = slices
         self._compose = compose
         self._nodes = nodes
@@ -70,7 +72,11 @@ class SliceStore:
         self._lock = threading.Lock()
         if slices is None:
             self.parameter = parameter if self.streamlines else "time"
+            longest = longest_path(field) if longest is None else longest
             self.lags: Floats = choose_lags(field, self.parameter, longest)
+            # On a globe the lags that are long enough beside a pole are many times that elsewhere.
+            poles = field.surface.poles
+            self._longest = longest if poles is not None and poles.both else np.inf
             self.unit: Floats = lag_unit(field, self.parameter)
             if self.parameter == "time":
                 # Half precision holds lags near one, whatever the field's unit of time is.
@@ -131,7 +137,7 @@ class SliceStore:
     def _trace_with(self, field: FlowField, **options: Any) -> TraceSlices:
         # A part of a surface is one of many, whose bars would tell nothing.
         alone = self._nodes is None
-        parts: dict[str, Any] = {"nodes": self._nodes, "progress": alone}
+        parts: dict[str, Any] = {"nodes": self._nodes, "longest": self._longest, "progress": alone}
         return trace(field, lags=self.lags, unit=self.unit, **parts, **options)
 
 

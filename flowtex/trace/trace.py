@@ -55,6 +55,7 @@ def trace(
     steps: Sequence[int] | None = None,
     compose: bool | None = None,
     nodes: ArrayLike | None = None,
+    longest: float = np.inf,
     progress: bool = True,
 ) -> TraceSlices:
     """Follow the path through every node, and return where it is at a handful of lags.
@@ -91,6 +92,10 @@ def trace(
         Nodes whose paths are wanted, (J, I), all by default. Where paths are integrated only these
         are followed, and the others are treated as blanked ones; to compose takes all. On
         triangles the others have displacements and reach zero, as blanked ones have.
+    longest
+        Length in the mesh's units that a path by arc length has to have. Where cells are large the
+        last lags lead farther; paths that are composed end, and stay, with the first lag that is as
+        long.
     progress
         Whether to show a progress bar when the work takes longer than a second.
 
@@ -155,7 +160,10 @@ def trace(
     followed = field.valid
     if nodes is not None and landing is None:
         followed = followed & _checked_nodes(field, nodes)
-    tracing = _Tracing(field, samplers, lag_values, units, followed, tolerance, progress)
+    expected = "a positive length in the mesh's units"
+    longest = checked_number("longest", longest, np.nextafter(0, 1), np.inf, expected=expected)
+    most = longest if parameter == "arclength" else np.inf
+    tracing = _Tracing(field, samplers, lag_values, units, followed, tolerance, progress, most)
     paths_by_side = tracing.follow(directions, landing)
     backward = paths_by_side[-1.0]
     forward = paths_by_side.get(1.0)
@@ -323,6 +331,7 @@ class _Tracing:
     followed: Bools  #: nodes whose paths are followed, (J, I)
     tolerance: float
     progress: bool
+    longest: float  #: that a path by arc length has to be
 
     @cached_property
     def nodes(self) -> Floats:
@@ -369,6 +378,7 @@ class _Tracing:
                         run,
                         partial(self._piece, direction),
                         direction,
+                        self.longest,
                     )
         return sides
 
@@ -383,7 +393,9 @@ class _Tracing:
     def _integrate(self, sides: dict[float, SideSlices], known: int, run: Map) -> None:
         """Fill the first ``known`` slices."""
         at = np.flatnonzero(self.followed)
-        compiled.prepare(len(at) * len(self.samplers) * len(sides))
+        # Steady ones are composed of short paths, which gains little.
+        if not self.field.steady:
+            compiled.prepare(len(at) * len(self.samplers) * len(sides))
         start, unit = self.nodes.reshape(-1, 2)[at], self.unit.ravel()[at]
 
         def work(job: tuple[int, float, slice]) -> None:

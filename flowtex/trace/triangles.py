@@ -53,7 +53,7 @@ LAG_ROUNDING = 1e-12
 BORDER_ROUNDING = 1e-6
 #: Twice what acceleration may move a particle in one step, in sizes of its triangle.
 MOST_TURN = 0.2
-#: Those of these that :mod:`flowtex._util.kernels` is given as numbers.
+#: Those of these that :mod:`flowtex._util.compiled.loops` is given as numbers.
 RULES = (SHARE_ROUNDING, EDGE_ROUNDING, BORDER_ROUNDING, MOST_TURN, LAG_ROUNDING, MOST_CELLS)
 #: Rounds of Newton's method for the place in a step where a path has some length.
 NEWTON_ROUNDS = 3

@@ -14,6 +14,7 @@ import pytest
 
 from paper import SectionError, reproduce, sections
 from paper.__main__ import main
+from paper.findings import Panel
 
 #: The quick form takes half a minute, once.
 pytestmark = pytest.mark.slow
@@ -154,6 +155,14 @@ def test_pictures_are_all_shown_and_none_is_plain(page_folder: Path, text: str) 
             assert np.asarray(picture.convert("L")).std() > 1 or "zooms" in file.name
 
 
+@pytest.fixture
+def plain_title(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out the title's picture, whose vortices would be traced for each page."""
+    panel = Panel(np.zeros((4, 4, 3), np.uint8), "Nothing.")
+    monkeypatch.setattr("paper.run._title_picture", lambda bench: panel)
+
+
+@pytest.mark.usefixtures("plain_title")
 def test_numbers_repeat_for_a_seed_and_differ_for_another(
     numbers: dict[str, Any], data: Path | None, tmp_path: Path
 ) -> None:
@@ -169,6 +178,7 @@ def test_numbers_repeat_for_a_seed_and_differ_for_another(
         assert figures != numbers["figures"][key], key
 
 
+@pytest.mark.usefixtures("plain_title")
 def test_the_post_is_missed_in_words(tmp_path: Path) -> None:
     page = tmp_path / "page"
     reproduce(page, quick=True, data=tmp_path, only=("table1", "figure5"), progress=False)

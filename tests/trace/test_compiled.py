@@ -233,8 +233,8 @@ def test_large_work_compiles_once(kernels: Any) -> None:
 
 def test_without_numba_numpy_does_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "numba", None)
-    monkeypatch.delitem(sys.modules, "flowtex._util.kernels", raising=False)
-    monkeypatch.delattr("flowtex._util.kernels", raising=False)
+    monkeypatch.delitem(sys.modules, "flowtex._util.compiled.loops", raising=False)
+    monkeypatch.delattr("flowtex._util.compiled.loops", raising=False)
     thread = compiled.prepare(compiled.LARGE_WORK)
     assert thread is not None
     thread.join()

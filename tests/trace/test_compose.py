@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from flowtex import FlowField, TraceSlices, trace
+from flowtex import FieldError, FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field, vortex_field
 from flowtex.trace.compose import landings
@@ -134,3 +134,29 @@ def test_centre_of_a_rotation_stays_bounded() -> None:
         away = np.abs(np.hypot(there[..., 0], there[..., 1]) - radius)
         assert np.quantile(away[whole], 0.95) < 0.3
         assert away[whole].max() < 2.0
+
+
+@pytest.mark.parametrize("longest", [0.5, 1e-6, 1e6])
+def test_paths_end_with_the_first_slice_that_is_as_long_as_asked_for(longest: float) -> None:
+    x = np.sinh(np.linspace(-3, 3, 81))
+    points = np.stack(np.meshgrid(x, np.linspace(-2, 2, 41)), axis=-1)
+    field = FlowField.from_arrays(points, np.broadcast_to([1.0, 0.02], points.shape), periodic="")
+    whole, some = trace(field), trace(field, longest=longest)
+    before = np.concatenate([[0.0], whole.lags[:-1]])
+    for one, two, reach, short in (
+        (whole.displacement, some.displacement, whole.reach[0], some.reach[0]),
+        (whole.forward, some.forward, whole.forward_reach, some.forward_reach),
+    ):
+        assert one is not None
+        assert two is not None
+        assert reach is not None
+        assert short is not None
+        assert (short >= np.minimum(longest / some.unit, reach) * 0.99).all()
+        for m, lag in enumerate(before):
+            followed = lag * some.unit < longest
+            np.testing.assert_allclose(two[0, m][followed], one[0, m][followed], atol=0.02)
+            if lag > 2:
+                stays = ~followed
+                np.testing.assert_array_equal(two[0, m][stays], two[0, m - 1][stays])
+    with pytest.raises(FieldError, match=r"longest is -1\.0; expected a positive length"):
+        trace(field, longest=-1.0)

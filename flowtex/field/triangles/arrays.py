@@ -9,8 +9,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.sparse import csr_array
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError, raise_faults
@@ -210,14 +210,14 @@ def nodal_means(
     at, face = triangles.ravel(), np.repeat(np.arange(len(triangles)), triangles.shape[1])
     weights = areas if known is None else np.where(known, areas, 0.0)
     there = at >= 0
-    matrix = csr_array(
+    matrix = scipy.sparse.csr_array(
         (weights[face[there]], (at[there], face[there])), shape=(nodes, len(triangles))
     )
 
     return map_steps(values, partial(known_means, matrix=matrix))
 
 
-def known_means(values: Floats, matrix: csr_array) -> Floats:
+def known_means(values: Floats, matrix: scipy.sparse.csr_array) -> Floats:
     """Means (n, ...) of values (N, ...), weighted by rows of a matrix (n, N), of what is known.
 
     A row without any that is has NaN.
@@ -235,7 +235,9 @@ def _joined(
 ) -> tuple[Bools, Floats, dict[str, Steps]]:
     """Average what nodes at one place have; nodes with the number -1 are left out."""
     kept = np.flatnonzero(number >= 0)
-    matrix = csr_array((np.ones(len(kept)), (number[kept], kept)), shape=(count, len(number)))
+    matrix = scipy.sparse.csr_array(
+        (np.ones(len(kept)), (number[kept], kept)), shape=(count, len(number))
+    )
 
     def mean(step: Floats) -> Floats:
         return known_means(step[0], matrix)[None]

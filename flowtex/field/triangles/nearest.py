@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.triangles.surface import TriangleSurface
@@ -37,7 +37,7 @@ class TriangleLocator:
         self._nodes, self._first, self._count = np.unique(
             nodes[order], return_index=True, return_counts=True
         )
-        self._tree = cKDTree(self._points[self._nodes])
+        self._tree = scipy.spatial.cKDTree(self._points[self._nodes])
 
     def nearest(self, points: Floats) -> tuple[Floats, Floats]:
         """Find the points of the surface that are nearest to points (P, 3) in space.

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 
@@ -75,12 +73,14 @@ def merged_nodes(points: Floats, triangles: Indices, joined: Indices | tuple[()]
         _, first, at = np.unique(points[border], axis=0, return_index=True, return_inverse=True)
         twins = np.stack([border[first[at.ravel()]], border], axis=-1)
         left = border[first]
-        close: Indices = cKDTree(points[left]).query_pairs(near, output_type="ndarray")
+        close: Indices = scipy.spatial.cKDTree(points[left]).query_pairs(
+            near, output_type="ndarray"
+        )
         pairs = np.concatenate([pairs, twins[twins[:, 0] != twins[:, 1]], left[close]])
     if not len(pairs):
         return np.arange(count)
-    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
-    place = connected_components(graph, directed=False)[1]
+    graph = scipy.sparse.coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
+    place = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
     return np.asarray(np.unique(place, return_index=True)[1][place])
 
 
@@ -158,8 +158,8 @@ def flipped(triangles: Indices, beside: Indices) -> Bools:
     # Triangles that face alike are one patch; patches are few and are walked one by one.
     size = (len(triangles), len(triangles))
     alike = mutual & ~turned
-    graph = coo_array((np.ones(alike.sum()), (rows[alike], other[alike])), shape=size)
-    count, patch = connected_components(graph, directed=False)
+    graph = scipy.sparse.coo_array((np.ones(alike.sum()), (rows[alike], other[alike])), shape=size)
+    count, patch = scipy.sparse.csgraph.connected_components(graph, directed=False)
     near: dict[int, set[int]] = {}
     for one, two in np.unique(np.stack([patch[rows[turned]], patch[other[turned]]], -1), axis=0):
         near.setdefault(int(one), set()).add(int(two))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import BinaryIO
 
+from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 
 __all__ = ["MAGIC", "check_grib"]
@@ -22,7 +23,7 @@ def check_grib(path: Path) -> None:
     Raises
     ------
     FieldError
-        With what is missing.
+        With what is missing, or that a message of GRIB 2 is corrupt.
     """
     size = path.stat().st_size
     with path.open("rb") as stream:
@@ -39,7 +40,7 @@ def check_grib(path: Path) -> None:
                 # Its length is not to be had without the sections.
                 length = (length - LONG_MESSAGE) * LONG_UNIT - LONG_UNIT
             check_count(size - at, length, what)
-            points = _points(stream, at, head[7], min(at + length, size))
+            points = _points(stream, at, head[7], min(at + length, size), what)
             check_memory(8 * points, f"the grid of {what}")
             at = _next(stream, at + max(length, 4))
 
@@ -55,7 +56,7 @@ def _next(stream: BinaryIO, at: int) -> int | None:
     return None
 
 
-def _points(stream: BinaryIO, at: int, edition: int, end: int) -> int:
+def _points(stream: BinaryIO, at: int, edition: int, end: int, what: str) -> int:
     """Return how many points the largest grid of a message has."""
     if edition == 1:
         stream.seek(at + 8)
@@ -70,9 +71,14 @@ def _points(stream: BinaryIO, at: int, edition: int, end: int) -> int:
         stream.seek(place)
         head = stream.read(10)
         length = int.from_bytes(head[:4], "big")
-        if head[:4] == b"7777" or not 5 <= length <= end - place:
+        if not 5 <= length <= end - place:
             break
         if head[4] == 3:
             most = max(most, int.from_bytes(head[6:10], "big"))
         place += length
+    # ecCodes reads for ever where sections do not lead to the end.
+    stream.seek(place)
+    if place + 4 != end or stream.read(4) != b"7777":
+        msg = f"the sections of {what} do not lead to its end; the file is corrupt"
+        raise FieldError(msg)
     return most

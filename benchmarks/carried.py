@@ -1,0 +1,74 @@
+"""What is carried to a browser: ``python benchmarks/carried.py``.
+
+Pages of a steady gyre on a crooked grid, with its velocity, which the browser traces, and with its
+slices: bytes of the page and of a node, processor time of writing it, and seconds from opening it
+in headless Chromium until the picture is whole. ``--meshes`` chooses others, as rows x columns.
+Compare within one run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import tempfile
+import time
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+#: Rows and columns of nodes.
+MESHES = ("70x120", "250x500", "500x1000")
+SIZE = {"width": 800, "height": 600}
+#: Software drawing: Mesa's, which is several times as fast as Chromium's own.
+MESA = ["--use-angle=gl-egl", "--ignore-gpu-blocklist"]
+#: A view whose picture is whole.
+COMPLETE = '.flowtex[data-sharp="true"][data-tiles="0"]'
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--meshes", nargs="*", default=list(MESHES), help="rows x columns")
+    arguments = parser.parse_args()
+    from playwright.sync_api import sync_playwright
+    from scenes import gyre_field
+
+    from flowtex.options import Options
+    from flowtex.web.export import page_data, page_pieces
+    from flowtex.web.view import web_views
+
+    names = ("page, MB", "bytes a node", "written in, s of processor", "drawn after, s")
+    table = Table("nodes, and what a page has", *names)
+    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=MESA)
+        for mesh in arguments.meshes:
+            rows, columns = (int(n) for n in mesh.split("x"))
+            field = gyre_field(columns, rows, crooked=True)
+            for traces in (True, False):
+                path = Path(folder) / f"{mesh}.html"
+                start = time.process_time()
+                views = web_views(field, Options.split())
+                scenes = page_data(views, traces=traces)
+                path.write_text("".join(page_pieces(views, scenes)), encoding="utf-8")
+                written = time.process_time() - start
+                page = browser.new_page(viewport=SIZE)
+                start = time.perf_counter()
+                page.goto(path.as_uri())
+                page.wait_for_selector(COMPLETE, timeout=300_000)
+                drawn = time.perf_counter() - start
+                page.close()
+                size = path.stat().st_size
+                table.add_row(
+                    f"{columns} × {rows}, {'velocity' if traces else 'slices'}",
+                    f"{size / 1e6:.2f}",
+                    f"{size / field.valid.size:.1f}",
+                    f"{written:.2f}",
+                    f"{drawn:.1f}",
+                )
+        browser.close()
+    Console(width=110).print(table)
+
+
+if __name__ == "__main__":
+    main()
