@@ -26,7 +26,7 @@ __all__ = [
 ]
 
 #: Pixels of the longer side of a cell above which the next level is drawn.
-CELL_PIXELS = 2.0
+CELL_PIXELS = 2.5
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,7 @@ from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.tiles.region import Region, Whole, is_cut, tile_of
 from flowtex.trace import SliceStore
+from flowtex.trace.lags import small_cell
 
 __all__ = [
     "BLOCK_CELLS",
@@ -50,7 +51,7 @@ ROOT_NODES = 150_000
 BLOCK_CELLS, TILE_BLOCKS = 64, 4
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Length of the paths in cells, by their longer side.
-PATH_CELLS = 32
+PATH_CELLS = 28
 #: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile; lines that it
 #: has more than that; and its greatest width.
 HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
@@ -237,7 +238,8 @@ class Pyramid:
         """What the tiles have from the whole surface."""
         speed = self.root.typical.speed[:, self.root.valid]
         typical = float(np.sqrt(np.mean(speed**2))) or 1.0
-        return Whole(self.root.surface, typical, self.parameter, self.lines)
+        cell = small_cell(self.root)
+        return Whole(self.root.surface, typical, cell, self.parameter, self.lines)
 
     def region(self, key: TileKey, spare: int = 1) -> Region | None:
         """Return the part of a level that a tile is made from; :meth:`textures` has the rest."""

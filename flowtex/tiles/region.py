@@ -31,12 +31,15 @@ class Whole(NamedTuple):
         That of the coarsest level, whose frame, middle and size the tiles have.
     speed
         Typical speed of the flow.
+    cell
+        Size of its small cells.
     parameter, lines
         As for :class:`~flowtex.trace.SliceStore`.
     """
 
     surface: Surface
     speed: float
+    cell: float
     parameter: str
     lines: str
 
@@ -77,6 +80,7 @@ def tile_of(region: Region, whole: Whole) -> TextureSet:
         lines=whole.lines,
         compose=(field.steady or whole.lines == "streamlines") and region.compose,
         longest=longest,
+        cell=whole.cell,
         nodes=nodes,
     )
     return TextureSet(geometry, store, whole_speed=whole.speed, longest=longest)

@@ -114,7 +114,7 @@ def compose(
     run: Map,
     integrate: Integrate,
     direction: float = -1.0,
-    longest: float = np.inf,
+    longest: float | Floats = np.inf,
 ) -> None:
     """Fill the long slices of one direction in place.
 
@@ -122,7 +122,7 @@ def compose(
     paths that did not end within these. ``landing`` comes from :func:`landings`, ``run`` maps a
     function over blocks of paths, and ``integrate`` follows paths right beside a pole, of which
     more are marked. Direction -1 is backward, 1 forward. Paths end, and stay there, with the first
-    slice whose lag, times the unit, is ``longest`` or more.
+    slice whose lag, times the unit, is ``longest`` or more, one number or one for each node.
     """
     wanted = np.maximum(np.searchsorted(lags, longest / unit) + 1, known)
     lookup = _SliceLookup(field, lags, unit, side, landing * int(direction), wanted)

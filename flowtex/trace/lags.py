@@ -12,13 +12,15 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 
-__all__ = ["choose_lags", "lag_unit", "longest_path"]
+__all__ = ["choose_lags", "drawn_lags", "lag_unit", "longest_path", "small_cell"]
 
 
 #: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
 FIRST_CELLS, LAST_EXTENTS, MOST_CHOSEN_LAGS = 0.25, 0.25, 24
 #: Percentile of the sizes of cells that small ones have.
 SMALL_CELLS = 5
+#: Sizes of cells, in one unit for all, from which and up to which they share it.
+LEAST_CELL, MOST_CELL = 0.25, 64.0
 #: Quotient of one lag and the one before.
 RATIO = 2.0
 
@@ -57,7 +59,7 @@ def choose_lags(field: FlowField, parameter: str, longest: float | None = None) 
     if longest is None:
         longest = longest_path(field)
     if parameter == "arclength":
-        first, last = FIRST_CELLS, longest / float(np.percentile(size, SMALL_CELLS))
+        first, last = FIRST_CELLS, longest / small_cell(field)
     else:
         speed = field.typical.speed[:, field.valid]
         moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
@@ -72,3 +74,36 @@ def choose_lags(field: FlowField, parameter: str, longest: float | None = None) 
             first = step * RATIO ** np.rint(np.log(first / step) / np.log(RATIO))
     count = int(np.ceil(np.log(max(last / first, RATIO)) / np.log(RATIO))) + 1
     return np.asarray(first * RATIO ** np.arange(min(count, MOST_CHOSEN_LAGS)))
+
+
+def small_cell(field: FlowField) -> float:
+    """Size of the small cells of a field."""
+    return float(np.percentile(field.surface.cell_size[field.valid], SMALL_CELLS))
+
+
+def drawn_lags(
+    field: FlowField, parameter: str, longest: float | None = None, cell: float | None = None
+) -> tuple[Floats, Floats]:
+    """Lags to draw with, (M,), and their unit at each node, (J, I), as :func:`choose_lags` takes.
+
+    Cells of about the same size have one unit, so that a path takes the same slice everywhere, and
+    is composed at a single look-up. In a part of a surface it is that surface's ``cell`` times a
+    power of two: all parts have the same lags. The last is the greatest length, where it is given.
+    """
+    lags, unit = choose_lags(field, parameter, longest), lag_unit(field, parameter)
+    if parameter == "time":
+        # Half precision holds lags near one, whatever the field's unit of time is.
+        first = 2.0 ** np.rint(np.log2(lags[0]))
+        return lags / first, unit * first
+    known, even = unit[field.valid], small_cell(field)
+    if cell is not None:
+        even = cell * 2.0 ** np.rint(np.log2(even / cell))
+    alike = LEAST_CELL * even <= known.min() and known.max() <= MOST_CELL * even
+    if not alike or field.surface.poles is not None or field.triangles is not None:
+        return lags, unit
+    if longest is not None:
+        last = longest / even
+        doubled = FIRST_CELLS * RATIO ** np.arange(MOST_CHOSEN_LAGS - 1)
+        # A last lag that is hardly longer than the one before takes its place.
+        lags = np.append(doubled[doubled < last / np.sqrt(RATIO)], last)
+    return lags, np.full(field.shape, even)

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util.array_types import Bools
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 from flowtex.trace.compose import landings
-from flowtex.trace.lags import choose_lags, lag_unit, longest_path
+from flowtex.trace.lags import drawn_lags, longest_path
 from flowtex.trace.lines import chosen_lines
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.trace import trace
@@ -42,8 +42,8 @@ class SliceStore:
     were traced already nothing is traced; in a field without a sign they lead to both sides.
     ``compose`` allows to compose all steps together, which is quicker than step by step, but slower
     for one or two of them. ``longest`` is the greatest length that is traced, in the mesh's units,
-    a quarter of the surface by default, and ``nodes`` (J, I) are those that :func:`flowtex.trace`
-    is to follow.
+    a quarter of the surface by default, ``cell`` the size of small cells of the surface that the
+    field is a part of, and ``nodes`` (J, I) are those that :func:`flowtex.trace` is to follow.
     """
 
     def __init__(
@@ -55,6 +55,7 @@ class SliceStore:
         slices: TraceSlices | None = None,
         compose: bool = True,
         longest: float | None = None,
+        cell: float | None = None,
         nodes: Bools | None = None,
     ) -> None:
         if field.sign_free and slices is not None and slices.forward is None:
@@ -72,16 +73,11 @@ class SliceStore:
         self._lock = threading.Lock()
         if slices is None:
             self.parameter = parameter if self.streamlines else "time"
-            longest = longest_path(field) if longest is None else longest
-            self.lags: Floats = choose_lags(field, self.parameter, longest)
+            self.lags, self.unit = drawn_lags(field, self.parameter, longest, cell)
             # On a globe the lags that are long enough beside a pole are many times that elsewhere.
             poles = field.surface.poles
-            self._longest = longest if poles is not None and poles.both else np.inf
-            self.unit: Floats = lag_unit(field, self.parameter)
-            if self.parameter == "time":
-                # Half precision holds lags near one, whatever the field's unit of time is.
-                first = 2.0 ** np.rint(np.log2(self.lags[0]))
-                self.lags, self.unit = self.lags / first, self.unit * first
+            closed = poles is not None and poles.both
+            self._longest = (longest or longest_path(field)) if closed else np.inf
         else:
             self.parameter, self.lags, self.unit = slices.parameter, slices.lags, slices.unit
 

@@ -90,8 +90,9 @@ def trace(
         all lags are integrated, as they are in a field without a sign and on triangles.
     nodes
         Nodes whose paths are wanted, (J, I), all by default. Where paths are integrated only these
-        are followed, and the others are treated as blanked ones; to compose takes all. On
-        triangles the others have displacements and reach zero, as blanked ones have.
+        are followed, and the others are treated as blanked ones. To compose takes those around
+        them too, and theirs end where no path of a wanted one needs them. On triangles the others
+        have displacements and reach zero, as blanked ones have.
     longest
         Length in the mesh's units that a path by arc length has to have. Where cells are large the
         last lags lead farther; paths that are composed end, and stay, with the first lag that is as
@@ -162,7 +163,10 @@ def trace(
         followed = followed & _checked_nodes(field, nodes)
     expected = "a positive length in the mesh's units"
     longest = checked_number("longest", longest, np.nextafter(0, 1), np.inf, expected=expected)
-    most = longest if parameter == "arclength" else np.inf
+    most = np.full(field.shape, longest if parameter == "arclength" else np.inf)
+    if nodes is not None and parameter == "arclength" and field.surface.poles is None:
+        outside = _distance(_checked_nodes(field, nodes))
+        np.minimum(most, (1 - outside) * lag_values[-1] * units, out=most, where=outside > 0)
     tracing = _Tracing(field, samplers, lag_values, units, followed, tolerance, progress, most)
     paths_by_side = tracing.follow(directions, landing)
     backward = paths_by_side[-1.0]
@@ -320,6 +324,17 @@ def _checked_nodes(field: FlowField, nodes: ArrayLike) -> Bools:
     return chosen
 
 
+def _distance(chosen: Bools) -> Floats:
+    """Distance of nodes from the box of the chosen ones, in that of the farthest line, (J, I)."""
+    away = []
+    for axis in (0, 1):
+        lines, at = np.arange(chosen.shape[axis]), np.flatnonzero(chosen.any(axis=1 - axis))
+        first, last = (at[0], at[-1]) if len(at) else (0, len(lines) - 1)
+        beyond = np.maximum(np.maximum(first - lines, lines - last), 0)
+        away.append(beyond / max(beyond.max(), 1))
+    return np.asarray(np.maximum(away[0][:, None], away[1][None, :]))
+
+
 @dataclass(frozen=True, eq=False)
 class _Tracing:
     """Everything that the paths of one call share."""
@@ -331,7 +346,7 @@ class _Tracing:
     followed: Bools  #: nodes whose paths are followed, (J, I)
     tolerance: float
     progress: bool
-    longest: float  #: that a path by arc length has to be
+    longest: Floats  #: that paths by arc length have to be, (J, I)
 
     @cached_property
     def nodes(self) -> Floats:

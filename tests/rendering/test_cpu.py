@@ -414,7 +414,7 @@ def test_turned_space_gives_the_same_picture(rng: np.random.Generator) -> None:
     # The axes of the slopes differ, and with them what half precision makes of them.
     away = np.abs(there - here)[~np.isnan(here)]
     assert np.quantile(away, 0.99) < 1e-3
-    assert away.max() < 2e-2
+    assert away.max() < 3e-2
 
 
 def test_far_from_the_origin_the_noise_is_the_same() -> None:

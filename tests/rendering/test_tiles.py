@@ -55,14 +55,15 @@ def picture(field: FlowField, root: int, monkeypatch: Any, **options: Any) -> Fl
 
 
 NEAR = {"zoom": 4.0, "focus": (0.63, 0.37)}
-#: A field, how it is drawn, and how far pictures may be apart (RMS, of 255). The middle of a curved
-#: surface is that of its root, and tiles of a flow that varies are integrated, not composed.
+#: A field, how it is drawn, and how far pictures may be apart (RMS, of 255). A level may be coarser
+#: than the whole, and the last lags of tiles are others. The middle of a curved surface is that of
+#: its root, and tiles of a flow that varies are integrated, not composed.
 CASES: dict[str, tuple[Any, dict[str, Any], float]] = {
-    "whole": (flat, {"scalars": False}, 1.2),
-    "near": (flat, {"scalars": False, **NEAR}, 0.5),
-    "by speed": (flat, NEAR, 0.6),
+    "whole": (flat, {"scalars": False}, 1.6),
+    "near": (flat, {"scalars": False, **NEAR}, 0.7),
+    "by speed": (flat, NEAR, 0.9),
     "far in": (flat, {"scalars": False, "zoom": 60.0, "focus": (0.63, 0.37)}, 0.5),
-    "land": (land, {"scalars": False, **NEAR}, 0.6),
+    "land": (land, {"scalars": False, **NEAR}, 0.9),
     "varying": (varying, {"scalars": False, "time": 0.13, **NEAR}, 5.0),
     "pole": (sphere, {"camera": [(0.9, 0.2, 1.9), (0, 0, 1), (0, 1, 0)], "scalars": False}, 3.5),
 }

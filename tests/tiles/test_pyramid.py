@@ -38,8 +38,7 @@ def waves(rows: int = 290, columns: int = 330, **options: Any) -> FlowField:
 
 def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
     """Layers of all nodes, at the lags of a tile, (layers, J, I, 4)."""
-    # By time all nodes have the same unit of lag; by length each has its own.
-    unit = like.store.unit.flat[0] if like.store.parameter == "time" else None
+    unit = like.store.unit.flat[0]
     slices = trace(field, lags=like.store.lags, unit=unit, compose=field.steady, progress=False)
     textures = TextureSet(
         SurfaceGeometry.of(field),

@@ -15,7 +15,7 @@ from flowtex._util import progress
 from flowtex._util.array_types import Floats
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
 from flowtex.trace import SliceStore, paths
-from flowtex.trace.lags import choose_lags, lag_unit
+from flowtex.trace.lags import choose_lags
 
 
 @pytest.fixture(scope="module")
@@ -374,8 +374,25 @@ def test_the_greatest_length_decides_how_many_lags_there_are(parameter: str) -> 
     np.testing.assert_array_equal(
         quarter, choose_lags(field, parameter, longest=field.surface.extent / 4)
     )
+    whole = SliceStore(field, parameter=parameter)
     shorter = SliceStore(field, parameter=parameter, longest=field.surface.extent / 16)
-    # Lags by time are scaled by a power of two, and their unit with them.
-    scale = shorter.unit / lag_unit(field, parameter)
-    np.testing.assert_array_equal(shorter.lags * scale.flat[0], quarter[:-2])
-    assert shorter.at(0).displacement.shape[1] == len(quarter) - 2
+    np.testing.assert_array_equal(shorter.lags[:-1], whole.lags[: len(shorter.lags) - 1])
+    np.testing.assert_array_equal(shorter.unit, whole.unit)
+    assert (
+        shorter.at(0).displacement.shape[1]
+        == len(shorter.lags)
+        in (len(whole.lags) - k for k in (2, 3))
+    )
+    if parameter == "arclength":
+        np.testing.assert_allclose(
+            shorter.lags[-1] * shorter.unit, field.surface.extent / 16, rtol=1e-12
+        )
+        part = SliceStore(field, longest=0.3, cell=3 * whole.unit[0, 0])
+        np.testing.assert_allclose(part.unit, 0.75 * whole.unit)
+
+
+def test_cells_of_very_different_sizes_have_units_of_their_own() -> None:
+    x = np.concatenate([np.linspace(0, 1e-3, 30), [1.0, 2.0]])
+    points = np.stack(np.meshgrid(x, x), axis=-1)
+    field = FlowField.from_arrays(points, np.ones_like(points))
+    np.testing.assert_array_equal(SliceStore(field).unit, field.surface.cell_size)

@@ -28,7 +28,7 @@ LEAST_SIZE = 1e-4
 #: Error of a position as a share of a small cell, and which percentile that is.
 CELL_SHARE, SMALL_CELLS = 2**-11, 1.0
 #: Bytes of a node at one time, about.
-NODE_BYTES = 6
+NODE_BYTES = 4
 
 
 def can_trace(textures: TextureSet) -> bool:
