@@ -1,16 +1,14 @@
-"""What people see in Firefox: the page, the widget, and an exported page."""
+"""What people see in Firefox: the page, and an exported page, which draws as the widget does."""
 
 from __future__ import annotations
 
 import signal
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from firefox import Firefox, firefox
-from lab import Lab, LabServer
 from served import start
 from waiting import wait_until
 
@@ -20,8 +18,6 @@ from flowtex._util.array_types import Bytes
 pytestmark = [pytest.mark.slow, pytest.mark.browser]
 
 SHARP = "() => document.querySelector('.flowtex[data-sharp=\"true\"]')?.clientWidth"
-CELL = """import flowtex
-flowtex.show(flowtex.examples.double_gyre(), samples=9, size=(600, 300))"""
 
 
 @pytest.fixture(scope="module")
@@ -54,9 +50,3 @@ def test_the_page_draws(page: Firefox) -> None:
         wait_until(lambda: is_textured(page.screenshot()))
     finally:
         served.end(signal.SIGINT)
-
-
-def test_the_widget_draws_in_jupyterlab(page: Any, jupyter: LabServer) -> None:
-    Lab(page, jupyter).run(CELL)
-    page.wait_for_function(SHARP)
-    assert is_textured(page.screenshot())

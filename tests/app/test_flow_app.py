@@ -14,7 +14,7 @@ import pyvista as pv
 
 pytest.importorskip("trame_rca")
 
-from small_pages import small, small_page
+from small_pages import played, small, small_page
 
 from flowtex import examples
 from flowtex.app import FlowApp, Library
@@ -87,12 +87,14 @@ def test_use_leaves_no_object_behind() -> None:
         app.area.player.playing = False
         list(app.stream.painter.full())
 
-    use()  # every kind of noise has been shown once
-    before = objects()
-    for _ in range(2):
-        use()
-    assert objects() - before == Counter()
-    app.close()
+    async def story() -> None:
+        use()  # every kind of noise has been shown once
+        before = objects()
+        for _ in range(2):
+            use()
+        assert objects() - before == Counter()
+
+    played(app, story)  # a second move of the pointer soon after the first waits in the loop
 
 
 def write_flow(path: Path) -> None:

@@ -127,18 +127,6 @@ def test_the_code_still_makes_the_shipped_vortices(instant: int) -> None:
     assert np.sqrt(np.mean(difference**2)) < 5e-3 * np.sqrt(np.mean(vorticity[instant] ** 2))
 
 
-@pytest.mark.slow
-def test_the_code_still_makes_the_first_vortices_from_their_seed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """The later ones follow from these, as above; a coarser run would lead to other vortices."""
-    monkeypatch.setattr(vortex_run, "INSTANTS", 1)
-    made, times = vortex_run.run()
-    _, _, vorticity, shipped_times = _shipped.vortex_arrays()
-    np.testing.assert_array_equal(times, shipped_times[:1])
-    np.testing.assert_allclose(made, vorticity[:1, :-1, :-1], atol=1e-3 * np.abs(made).max())
-
-
 def test_the_build_command_writes_what_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -369,8 +369,9 @@ class MovieJob(Job):
         if viewport.field.steady:
             viewport.clock = self._times.clocks[number]
             return
-        viewport.set_time(self._times.times[number])
-        await self._in_thread(viewport.trace)
+        time = self._times.times[number]
+        await self._in_thread(viewport.trace, time)
+        viewport.set_time(time)
 
 
 def _moving(settings: Settings, field: FlowField) -> Settings:

@@ -35,13 +35,13 @@ class Playback(Controller):
     def take_time(self) -> None:
         """Show the time that the page asks for."""
         time = number(self.state.get("time"))
-        if time is not None and time != self.viewport.handle.time:
+        if time is not None and time != self.player.time:
             self.player.seek(time)
-        self.state.set(time=self.viewport.handle.time)
+        self.state.set(time=self.player.time)
 
     def show_time(self) -> None:
         """Let the page show the time."""
-        self.state.send(time=self.viewport.handle.time, moment=self._time_text())
+        self.state.send(time=self.player.time, moment=self._time_text())
 
     def take_playing(self) -> None:
         """Let time go by, or stop it."""
@@ -72,13 +72,13 @@ class Playback(Controller):
             first=first,
             last=last,
             tick=(last - first) / max((len(field.times) - 1) * STOPS_PER_STEP, 1),
-            time=self.viewport.handle.time,
+            time=self.player.time,
             moment=self._time_text(),
         )
 
     def describe(self) -> dict[str, Any]:
         """Return the time, where it makes a difference."""
-        return {} if self.viewport.field.steady else {"time": self.viewport.handle.time}
+        return {} if self.viewport.field.steady else {"time": self.player.time}
 
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Go to a saved time."""

@@ -162,6 +162,7 @@ class FlowArea(AppearanceAttributes):
         for task in self._tasks:
             task.cancel()
         self._tasks.clear()
+        self.player.close()
         self._stop_watching()
         self.viewport.close()
 

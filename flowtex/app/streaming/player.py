@@ -9,7 +9,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from flowtex.app.server.page import Signal
+from flowtex.app.server.page import Signal, start_task
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
@@ -44,6 +44,8 @@ class Player:
         self._viewport = viewport
         self._stream = stream
         self._held_until = 0.0
+        self._wanted: float | None = None
+        self._reading: asyncio.Task[None] | None = None
 
     @property
     def playing(self) -> bool:
@@ -59,19 +61,58 @@ class Player:
                     pane.handle.settings.motion = "speed"
         self._stream.moved()
 
+    @property
+    def time(self) -> float:
+        """The time that is shown, or that will be once it is read."""
+        return self._viewport.handle.time if self._wanted is None else self._wanted
+
     def go_to(self, time: float) -> None:
-        """Show a time, or the nearest there is; time stands where that cannot be read."""
-        times, before = self._viewport.field.times, self._viewport.handle.time
+        """Show a time, or the nearest there is; time stands where that cannot be read.
+
+        Steps that are read when they are asked for are read beside the event loop: until then the
+        time that is shown stays.
+        """
+        times = self._viewport.field.times
         nearest = min(max(float(time), float(times[0])), float(times[-1]))
-        if nearest == before:
+        if nearest == self.time:
             return
+        if not (self._viewport.reads_late and _in_a_loop()):
+            self._show(nearest)
+            return
+        self._wanted = nearest
+        if self._reading is None or self._reading.done():
+            self._reading = start_task(self._read(), "a time cannot be read")
+
+    async def _read(self) -> None:
+        """Read the time that is wanted, the latest only, and show it."""
+        while (wanted := self._wanted) is not None:
+            fault, field = None, self._viewport.field
+            try:
+                await asyncio.to_thread(self._viewport.trace, wanted)
+            except FieldError as error:
+                fault = error
+            if field is not self._viewport.field:
+                self._wanted = None
+            elif wanted == self._wanted:
+                self._wanted = None
+                self._stand(fault) if fault else self._show(wanted)
+
+    def _show(self, time: float) -> None:
+        before = self._viewport.handle.time
         try:
-            self._viewport.set_time(nearest)
+            self._viewport.set_time(time)
         except FieldError as error:
-            self.playing = False
             with suppress(FieldError):
                 self._viewport.set_time(before)
-            self._stream.data_failed.emit(error)
+            self._stand(error)
+            return
+        self.time_changed.emit()
+        self._stream.changed()
+
+    def _stand(self, error: FieldError) -> None:
+        """Stay at the time that is shown, as another one cannot be read."""
+        self.playing = False
+        self._stream.data_failed.emit(error)
         self.time_changed.emit()
         self._stream.changed()
 
@@ -87,7 +128,7 @@ class Player:
             self._viewport.clock += count / RATE_HZ
             self._stream.changed()
             return
-        at = self._viewport.handle.time
+        at = self.time
         after = np.searchsorted(times, at, side="right" if count > 0 else "left")
         self.go_to(float(times[(after - (count > 0) + count) % len(times)]))
 
@@ -102,7 +143,12 @@ class Player:
         first, span = float(field.times[0]), float(np.ptp(field.times))
         run = run_seconds(len(field.times))
         # After the last time comes the first: a period goes round, anything else begins again.
-        self.go_to(first + (self._viewport.handle.time - first + span * seconds / run) % span)
+        self.go_to(first + (self.time - first + span * seconds / run) % span)
+
+    def close(self) -> None:
+        """Show no time any more that is still being read."""
+        if self._reading is not None:
+            self._reading.cancel()
 
     async def play(self) -> None:
         """Let time go by while playing, no faster than pictures are drawn."""
@@ -123,3 +169,11 @@ class Player:
         except Exception:
             _log.exception("time cannot go on")
             self.playing = False
+
+
+def _in_a_loop() -> bool:
+    """Whether this runs in an event loop; a script may use an application as well."""
+    with suppress(RuntimeError):
+        asyncio.get_running_loop()
+        return True
+    return False

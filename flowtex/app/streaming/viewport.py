@@ -22,10 +22,12 @@ from flowtex.app.streaming.reprojection import plane_to_view
 from flowtex.app.streaming.window import OffscreenWindow, Rect
 from flowtex.camera import Camera, ViewPart
 from flowtex.field import FlowField
+from flowtex.field.interpolation import steps_around
+from flowtex.field.steps import LazySteps
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.options import SPEED, Appearance, Options
 from flowtex.plotting.handle import FlowHandle
-from flowtex.scene import Change, Scene
+from flowtex.scene import Change, Scene, steps_of
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image
 
@@ -345,12 +347,27 @@ class Viewport:
         """Return the time of another flow that is now; its last where it has no such time."""
         return _time_in(self.scene, field)
 
-    def trace(self) -> None:
-        """Trace what the time that is shown needs, so that drawing need not wait for it."""
+    @property
+    def reads_late(self) -> bool:
+        """Whether steps of a flow are read when they are asked for, which may take long."""
+        return any(isinstance(p.handle.scene.field.velocity, LazySteps) for p in self.panes)
+
+    def trace(self, time: float | None = None) -> None:
+        """Read and trace what a time needs, the one that is shown by default, in any thread.
+
+        Neither :meth:`set_time` nor drawing need then wait for it. Raises a FieldError when a step
+        cannot be read.
+        """
+        time = self.handle.time if time is None else time
         for pane in self.panes:
-            before, after, _ = pane.handle.scene.moment
+            scene = pane.handle.scene
+            times, name = scene.field.times, scene.appearance.scalar_name
+            before, after, _ = steps_around(times, float(np.clip(time, times[0], times[-1])))
             for step in {before, after}:
-                pane.handle.scene.store.at(step)
+                scene.store.at(step)
+                if name is not None:
+                    values = steps_of(scene.field, name)
+                    _ = values[min(step, len(values) - 1)]  # which keeps it at hand
 
     @property
     def clock(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -96,15 +97,57 @@ def test_a_file_that_crashes_its_reader_is_a_problem_of_one_page(tmp_path: Path)
     played(app, story)
 
 
+def test_the_view_moves_while_a_later_step_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("xarray")
+    daily(4).to_netcdf(tmp_path / "winds.nc")
+    app, streamer = FlowApp(tmp_path / "winds.nc", lines="streamlines"), Streamer()
+    app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})
+    shown, days = app.viewport.handle.time, [day * 86_400.0 for day in range(4)]
+    asked: list[float] = []
+    slow, read = threading.Event(), app.viewport.trace
+
+    def read_slowly(time: float) -> None:
+        asked.append(time)
+        slow.wait()
+        read(time)
+
+    monkeypatch.setattr(app.viewport, "trace", read_slowly)
+
+    async def story() -> None:
+        app.stream.set_streamer(streamer)
+        task = asyncio.create_task(app.stream.run())
+        for day in (days[0], days[1], days[2]):
+            app.state.send(time=day)
+        await until(lambda: asked)
+        streamer.sent = 0
+        app.viewport.pan(0.1, 0.0)
+        app.stream.moved()
+        await until(lambda: streamer.sent)
+        assert (app.viewport.handle.time, app.state.get("time")) == (shown, days[2])
+        slow.set()
+        await until(lambda: app.viewport.handle.time == days[2])
+        assert days[1] not in asked, "only the latest is read"
+        task.cancel()
+
+    played(app, story)
+
+
+def daily(count: int) -> Any:
+    """Winds of so many days."""
+    ds = winds(np.arange(-180.0, 180.0, 20.0), np.arange(-80.0, 81.0, 20.0))
+    steps = xr.concat([ds] * count, "time", coords="minimal", join="exact")
+    steps["time"] = ("time", np.arange(float(count)), {"units": "days since 2001-01-01"})
+    return steps
+
+
 def test_a_later_step_that_cannot_be_read_is_told_and_the_page_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("xarray")
     monkeypatch.setattr("flowtex.field.remote.source.READER", "child_handler:TrickyReader")
-    ds = winds(np.arange(-180.0, 180.0, 20.0), np.arange(-80.0, 81.0, 20.0))
-    steps = xr.concat([ds] * 12, "time", coords="minimal", join="exact")
-    steps["time"] = ("time", np.arange(12.0), {"units": "days since 2001-01-01"})
-    steps.to_netcdf(tmp_path / "winds.nc")
+    daily(12).to_netcdf(tmp_path / "winds.nc")
     app, streamer = FlowApp(tmp_path / "winds.nc", lines="streamlines"), Streamer()
     app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})
 

@@ -211,7 +211,7 @@ def test_a_cancelled_job_leaves_nothing(
 
     async def stop() -> None:
         task = asyncio.create_task(job.run())
-        while job.progress < 0.05:
+        while job.progress < 0.05 and not task.done():
             await asyncio.sleep(0)
         if way == "cancel":
             job.cancel()
