@@ -32,7 +32,7 @@ pytest_plugins = ["small_pages", "small_tiles"]
 
 # Both implementations of a loop are right, and not alike to the bit: one does not take over from
 # the other in the middle of a test.
-compiled.LARGE_WORK = sys.maxsize
+compiled.LARGE_WORK = compiled.SOME_WORK = sys.maxsize
 # Before anything opens a window, and for every process that a test starts.
 diagnostics.prefer_headless()
 # Workers and the many processes that tests start would each compile the package and the tests anew.

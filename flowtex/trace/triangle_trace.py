@@ -27,6 +27,8 @@ __all__ = ["triangle_paths", "triangle_slices"]
 
 #: Particles followed together.
 BLOCK = 16384
+#: Work of a path on triangles, as one on a structured surface: none is composed.
+PATH_WORK = 8
 
 
 def triangle_slices(
@@ -49,7 +51,7 @@ def triangle_slices(
     mesh = _mesh(field)
     at = np.flatnonzero(chosen[0] & (np.diff(mesh.first) > 0))
     sides = (-1.0, 1.0) if two_sided else (-1.0,)
-    compiled.prepare(len(at) * len(steps) * len(sides))
+    compiled.prepare(PATH_WORK * len(at) * len(steps) * len(sides))
     displacement = np.zeros((len(sides), len(steps), len(lags), *field.points.shape), np.float32)
     reach = np.zeros((len(sides), len(steps), *field.shape), np.float32)
     points = field.points[0]

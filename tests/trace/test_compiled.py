@@ -231,6 +231,18 @@ def test_large_work_compiles_once(kernels: Any) -> None:
     assert compiled._loaded == [kernels]
 
 
+def test_what_was_compiled_before_is_loaded_for_less_work(kernels: Any) -> None:
+    if not compiled._is_compiled():
+        pytest.skip("numba keeps what it compiles elsewhere: the package's folder is read-only")
+    code = (
+        "from flowtex._util import compiled as c; c.LONGEST_WAIT_S = 600.0; "
+        "c.prepare(c.SOME_WORK - 1); before = c.kernels(); c.prepare(1); "
+        "print(before is None, c.kernels() is not None)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["True", "True"]
+
+
 def test_without_numba_numpy_does_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "numba", None)
     monkeypatch.delitem(sys.modules, "flowtex._util.compiled.loops", raising=False)
