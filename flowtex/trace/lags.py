@@ -20,7 +20,7 @@ FIRST_CELLS, LAST_EXTENTS, MOST_CHOSEN_LAGS = 0.25, 0.25, 24
 #: Percentile of the sizes of cells that small ones have.
 SMALL_CELLS = 5
 #: Sizes of cells, in one unit for all, from which and up to which they share it.
-LEAST_CELL, MOST_CELL = 0.25, 64.0
+LEAST_CELL, MOST_CELL = 0.25, 16.0
 #: Quotient of one lag and the one before.
 RATIO = 2.0
 
