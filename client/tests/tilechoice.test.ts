@@ -71,8 +71,9 @@ for (const [n, { regions }] of data.views.entries()) {
 
 test("long streaks ask for coarser tiles", () => {
   const settings = { samples: 25, spacing: 0.7, grain: 2 };
-  assert.equal(cellPixels(data.pyramid, settings), 2);
-  assert.equal(cellPixels(data.pyramid, { ...settings, grain: 8 }), 140 / 32);
+  const { cellPixels: pixels, pathCells } = data.pyramid;
+  assert.equal(cellPixels(data.pyramid, settings), pixels);
+  assert.equal(cellPixels(data.pyramid, { ...settings, grain: 8 }), 140 / pathCells);
 });
 
 test("a place on a coarse level lies among all nodes", () => {

@@ -190,7 +190,8 @@ def held(browser: Browser, path: Path, share: str = "") -> NDArray[np.int64]:
 
 VIEWS: list[tuple[str, dict[str, Any]]] = [
     ("flat", {"zoom": 40, "focus": (1.85, 1.2), "scalars": "depth"}),
-    ("series", {"zoom": 6, "focus": (1.2, 0.7), "log_scale": True, "clim": (0.5, 1.6)}),
+    ("flat", {"zoom": 6, "focus": (4.2, 1.4), "log_scale": True, "clim": (0.5, 1.6)}),
+    ("series", {"zoom": 6, "focus": (1.2, 0.7), "scalars": "heat"}),
     ("globe", {"zoom": 30, "focus": (0.0, 0.0, 1.0), "scalars": False}),
 ]
 
