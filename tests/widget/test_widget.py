@@ -183,11 +183,28 @@ def test_a_client_that_is_ready_gets_what_it_needs(
     assert "flow/0" not in heard.arrays
 
 
-def test_a_large_field_comes_coarse_first(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def refine(monkeypatch: pytest.MonkeyPatch) -> Iterator[threading.Event]:
+    """Yield what lets finer forms of a large field follow the coarse one."""
+    may, now = threading.Event(), feed.Feed._refine_to
+
+    def later(*arguments: Any) -> None:
+        may.wait()
+        now(*arguments)
+
+    monkeypatch.setattr(feed.Feed, "_refine_to", later)
+    yield may
+    may.set()
+
+
+def test_a_large_field_comes_coarse_first(
+    make: Make, monkeypatch: pytest.MonkeyPatch, refine: threading.Event
+) -> None:
     monkeypatch.setattr(feed, "LARGE_NODES", 2000)
     monkeypatch.setattr(feed, "COARSE_STEADY", 400)
     widget = make(gyre(nodes=60))
     assert widget._header["geometry"]["shape"] == [20, 20]
+    refine.set()
     heard = Heard(widget, monkeypatch)
     heard.say(kind="ready")
     heard.wait(lambda: heard.arrays.get("padded", np.zeros(1)).shape == (62, 62, 3))
@@ -229,7 +246,7 @@ def test_triangles_come_at_once_and_have_tiles(make: Make, monkeypatch: pytest.M
 
 
 def test_a_field_that_takes_long_has_a_form_between(
-    make: Make, monkeypatch: pytest.MonkeyPatch
+    make: Make, monkeypatch: pytest.MonkeyPatch, refine: threading.Event
 ) -> None:
     for name, nodes in (("LARGE_NODES", 2000), ("VERY_LARGE_NODES", 3000)):
         monkeypatch.setattr(feed, name, nodes)
@@ -238,6 +255,7 @@ def test_a_field_that_takes_long_has_a_form_between(
     widget = make(gyre(2, nodes=60))
     shapes = [widget._header["geometry"]["shape"]]
     widget.observe(lambda change: shapes.append(change["new"]["geometry"]["shape"]), "_header")
+    refine.set()
     assert widget._views.feeds[0].settled.wait(PATIENCE_S)
     assert shapes == [[10, 10], [20, 20], [60, 60]]
 
