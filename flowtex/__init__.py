@@ -23,22 +23,32 @@ if TYPE_CHECKING:
     from flowtex.offscreen.figure import axes, extent
     from flowtex.offscreen.movie import movie
     from flowtex.offscreen.render import render
+    from flowtex.trace.structure import (
+        CriticalPoints,
+        Separatrices,
+        critical_points,
+        separatrices,
+    )
     from flowtex.web.export import export
     from flowtex.widget import FlowWidget as FlowWidget
 
 __all__ = [
     "Camera",
+    "CriticalPoints",
     "FieldError",
     "FlowField",
+    "Separatrices",
     "Settings",
     "TraceSlices",
     "axes",
+    "critical_points",
     "examples",
     "export",
     "extent",
     "movie",
     "pyramid",
     "render",
+    "separatrices",
     "show",
     "trace",
 ]
@@ -46,12 +56,16 @@ __all__ = [
 #: Names that are imported when they are first used: what they need is slow to load, or optional.
 _LAZY = {
     "Camera": "camera",
+    "CriticalPoints": "trace.structure",
     "FlowWidget": "widget",
+    "Separatrices": "trace.structure",
     "axes": "offscreen.figure",
+    "critical_points": "trace.structure",
     "export": "web.export",
     "extent": "offscreen.figure",
     "movie": "offscreen.movie",
     "render": "offscreen.render",
+    "separatrices": "trace.structure",
     "show": "display",
 }
 #: Those that need OpenGL: it is tried while they are imported.

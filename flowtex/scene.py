@@ -21,6 +21,7 @@ from flowtex._util.colours import colour_table, is_diverging
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.dates import seconds_since
+from flowtex.field.derived import DERIVED
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
@@ -95,7 +96,7 @@ class Scene:
     SettingsError
         When an image is asked for and there is none, or the image cannot be used.
     FieldError
-        When there is no such scalar; the text lists those that exist.
+        When there is no such scalar.
     """
 
     def __init__(
@@ -107,9 +108,9 @@ class Scene:
         slices: TraceSlices | None = None,
         image: Floats32 | None = None,
     ) -> None:
-        self.field = field
         self.settings = settings or Settings()
         self._appearance = appearance or Appearance()
+        self.field = _with_scalars(field, self._appearance)
         self.image = image
         if image is None and self.appearance.image is not None:
             self.image = as_picture(load_image(self.appearance.image))
@@ -134,14 +135,8 @@ class Scene:
     def of(cls, mesh: Any, **options: Any) -> Scene:
         """Return the scene of a mesh or a field, from the arguments of one call.
 
-        These are fields of :class:`FieldOptions` and :class:`Appearance`, and settings.
-
-        Raises
-        ------
-        FieldError, SettingsError, ImageError
-            When the mesh, a setting or the image does not fit.
-            When there is no such scalar.
-            When another argument does not fit.
+        These are fields of :class:`FieldOptions` and :class:`Appearance`, and settings. Raises a
+        FieldError, SettingsError or ImageError where one does not fit.
         """
         return cls.from_options(mesh, Options.split("field", "appearance", **options))
 
@@ -179,9 +174,16 @@ class Scene:
 
     @appearance.setter
     def appearance(self, value: Appearance) -> None:
-        self._check_colours(value)
+        before, self.field = self.field, _with_scalars(self.field, value)
+        try:
+            self._check_colours(value)
+        except FieldError:
+            self.field = before
+            raise
         same = value.image is None or value.image is self._appearance.image
         picture = None if same else self._picture(value.image)
+        if before is not self.field and self.pyramid is not None:
+            self._pyramid = self._store = self._textures = None
         self._appearance = value
         if picture is not None:
             self._lay(picture)
@@ -501,20 +503,22 @@ class AppearanceAttributes:
 
 
 def steps_of(field: FlowField, name: str) -> Steps:
-    """Return nodal values at all times, (T or 1, J, I); ``"speed"`` is always there.
-
-    Raises
-    ------
-    FieldError
-        When there is no such array; the text lists those that exist.
-    """
+    """Return nodal values at all times, (T or 1, J, I); a FieldError lists the names there are."""
     if name in field.scalars:
         return field.scalars[name]
     if name == "speed":
         return field.speed
-    names = ", ".join(repr(n) for n in ("speed", *field.scalars))
+    names = ", ".join(repr(n) for n in dict.fromkeys(("speed", *field.scalars, *DERIVED)))
     msg = f"there is no scalar {name!r} on this field; there are {names}"
     raise FieldError(msg)
+
+
+def _with_scalars(field: FlowField, appearance: Appearance) -> FlowField:
+    """Return the field with what it is coloured by, where that is derived from the velocity."""
+    name = appearance.scalar_name
+    if name not in DERIVED or name in field.scalars or has_pyramid(field) or field.sign_free:
+        return field
+    return _fields.get(name, lambda: field.with_derived(name), owner=field)
 
 
 _fields: WeakCache[FlowField] = WeakCache()

@@ -71,7 +71,7 @@ class Library:
 VTK = Library(
     ("vtk", "vtkmodules", "pyvista"),
     on_load=("rendering.vtk", "plotting", "offscreen", "app"),
-    in_functions=("_util.colours", "field.io", "diagnostics", "examples"),
+    in_functions=("_util.colours", "field.io", "trace.structure", "diagnostics", "examples"),
 )
 LIBRARIES = (
     VTK,

@@ -106,7 +106,9 @@ def check_time(field: FlowField, time: str | None) -> float | None:
 
 def check_colours(field: FlowField, options: dict[str, Any]) -> None:
     """Refuse a scalar or a colour map that there is not."""
-    names = dict.fromkeys(("speed", *field.scalars))
+    from flowtex.field.derived import DERIVED
+
+    names = dict.fromkeys(("speed", *field.scalars, *DERIVED))
     if options["scalars"] is not False and options["scalars"] not in names:
         msg = f"--scalars is {options['scalars']!r}; there are {', '.join(names)} and none"
         raise UsageError(msg)

@@ -20,6 +20,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.earth import Projection
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.dates import as_seconds
+from flowtex.field.derived import FOLLOWED, LONG_NAMES, derived_steps, derived_unit, followed_steps
 from flowtex.field.interpolation import every_line
 from flowtex.field.io.constructors import FieldConstructors
 from flowtex.field.metric import IndexVelocity, to_index_space
@@ -47,6 +48,9 @@ __all__ = ["WHOLE_SHAPE", "FlowField"]
 
 #: Where a field that is the coarsest level of a larger one keeps how many nodes (J, I) that has.
 WHOLE_SHAPE = "_whole_shape"
+
+#: What is computed from positions and velocity alone.
+_SHARED = ("surface", "index_velocity")
 
 #: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
 #: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
@@ -448,9 +452,70 @@ class FlowField(FieldConstructors):
             return self.units.get(name, "")
         return speed_unit(self.length_unit, self.time_unit)
 
+    def derive(self, name: str, *, horizon: float | None = None) -> Steps:
+        """Compute a scalar from the velocity and its gradient along the surface.
+
+        Parameters
+        ----------
+        name
+            ``"vorticity"``: positive where the flow turns counterclockwise, seen from outside, or
+            from the positive side of a flat surface. ``"divergence"``. ``"shear"``: the magnitude
+            of the rate of strain without divergence, sqrt((du/dx - dv/dy)^2 + (dv/dx + du/dy)^2).
+            ``"okubo_weiss"``: the square of the shear less that of the vorticity, negative in
+            vortices. ``"ftle"``: the finite-time Lyapunov exponent, the rate at which particles
+            that begin beside a node separate, along the direction in which they separate most.
+        horizon
+            How long particles are followed for ``"ftle"``, in the unit of time; negative follows
+            them backward.
+
+        Returns
+        -------
+        numpy.ndarray
+            (T, J, I), or (T, 1, N) on triangles, in 1 over the unit of time (its square for
+            Okubo-Weiss); NaN where too few neighbours have data. Where the velocity is read step by
+            step, and for ``"ftle"`` of a field that varies, so are the values.
+
+        Raises
+        ------
+        FieldError
+            When the name is not one of these, the vectors have no sign, or the horizon is missing
+            or 0.
+
+        Notes
+        -----
+        Errors are of second order in the size of cells, on any surface. On flat maps of the Earth
+        the values are those on the sphere. Triangles: Zhang and Naga 2005, A new finite element
+        gradient recovery method. FTLE: Shadden, Lekien and Marsden 2005, Definition and properties
+        of Lagrangian coherent structures.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> field = flowtex.examples.double_gyre_field(shape=(41, 81))
+        >>> field.derive("vorticity").shape
+        (1, 41, 81)
+        """
+        if self.sign_free:
+            msg = f"{name} needs directions, and the vectors of this field have no sign"
+            raise FieldError(msg)
+        if horizon is not None or name in FOLLOWED:
+            return followed_steps(name, self, horizon)
+        return derived_steps(name, self.surface, self.projection, self.velocity)
+
+    def with_derived(self, name: str, *, horizon: float | None = None) -> FlowField:
+        """Return the field with what :meth:`derive` computes among its scalars."""
+        flow = replace(
+            self,
+            scalars={**self.scalars, name: self.derive(name, horizon=horizon)},
+            units={**self.units, name: derived_unit(name, self.time_unit)},
+            long_names={**self.long_names, name: LONG_NAMES.get(name, name)},
+        )
+        flow.__dict__.update({k: v for k, v in self.__dict__.items() if k in _SHARED})
+        return flow
+
     def forget(self) -> None:
         """Drop what was derived from the arrays and can be computed again."""
-        for name in ("surface", "index_velocity", "typical"):
+        for name in (*_SHARED, "typical"):
             self.__dict__.pop(name, None)
 
     def at_step(self, step: int) -> FlowField:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from flowtex.trace.ftle import lyapunov_exponent
 from flowtex.trace.lines import changing_share, chosen_lines, judged_lines
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore, shared_store
@@ -13,6 +14,7 @@ __all__ = [
     "changing_share",
     "chosen_lines",
     "judged_lines",
+    "lyapunov_exponent",
     "paths",
     "shared_store",
     "trace",

@@ -1,0 +1,290 @@
+"""The velocity gradient along a surface, at its nodes.
+
+The derivative along a surface of a vector that lies in it (its covariant derivative) is the part
+of its derivative in space that lies in the surface. So components in space are differentiated, on a
+sphere as on a crooked grid, and no term for the curvature of coordinates is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.earth import GLOBE, Projection
+from flowtex.field.poles import Pole
+from flowtex.field.surface import Surface
+from flowtex.field.triangles.surface import TriangleSurface
+
+__all__ = ["NodeGradient", "node_gradient", "true_positions", "true_velocity"]
+
+#: Below this ratio of squared area to squared lengths a cell has no area to divide by.
+COLLAPSED_AREA = 1e-10
+#: Neighbours that a quadratic fit needs, and its regularisation as a share of the largest entry.
+QUADRATIC_NEIGHBOURS, REGULARISATION = 5, 1e-12
+#: Nodes along each axis by which the side of a surface is judged.
+MOST_JUDGED = 1000
+
+
+def true_positions(points: Floats, projection: Projection | None) -> Floats:
+    """Return positions (..., 3) on a flat map of the Earth as those on the sphere; others as is."""
+    if projection is None or projection.is_globe:
+        return points
+    return Projection(GLOBE).positions(*projection.lonlat(points))
+
+
+def true_velocity(velocity: Floats, points: Floats, projection: Projection | None) -> Floats:
+    """Return velocity (..., 3) at points on a flat map as that on the sphere; others as is."""
+    if projection is None or projection.is_globe:
+        return velocity
+    lon, lat = projection.lonlat(points)
+    return Projection(GLOBE).vectors(lon, lat, *projection.components(lon, lat, velocity))
+
+
+def node_gradient(surface: Surface, projection: Projection | None) -> NodeGradient:
+    """Return the gradient at the nodes of a surface; on a flat map it is the one on the sphere."""
+    points = true_positions(surface.points, projection)
+    if isinstance(surface, TriangleSurface):
+        return _TriangleGradient(surface, points).node_gradient
+    return _GridGradient(surface, points).node_gradient
+
+
+@dataclass(frozen=True, eq=False)
+class NodeGradient:
+    """Derivatives at nodes along two orthonormal directions of the tangent plane.
+
+    Arrays have their components first: those of vectors are (3, J, I).
+
+    Attributes
+    ----------
+    directions
+        The two directions, (2, 3, J, I). Turning from the first to the second is positive: seen
+        from the side of a flat surface to which its largest normal component points, and from
+        outside on any other.
+    derivative
+        Takes an array (C, J, I) to its derivatives, (2, C, J, I); NaN where there are too few
+        neighbours with data.
+    """
+
+    directions: Floats
+    derivative: Callable[[Floats], Floats]
+    poles: tuple[Pole, ...] = ()
+
+    def with_poles(self, nodal: Floats) -> Floats:
+        """Give the nodes of each pole, whose directions differ, the mean of the line beside it.
+
+        It is off by a term of second order. ``nodal`` is (J, I), and is changed.
+        """
+        for pole in self.poles:
+            lines = pole.lines(nodal)
+            lines[pole.line] = lines[pole.line + pole.inward, :-1].mean()
+        return nodal
+
+    def of_vectors(self, vectors: Floats) -> Floats:
+        """Return the matrix a[m, n], (2, 2, J, I): change of component m along direction n.
+
+        ``vectors`` are (J, I, 3); what of them is normal to the surface does not count.
+        """
+        one, two = self.directions
+        parts = np.moveaxis(vectors, -1, 0)
+        along = _dot(parts, one) * one
+        along += _dot(parts, two) * two
+        change = self.derivative(along)
+        return np.asarray([[_dot(d, part) for part in change] for d in (one, two)])
+
+
+class _GridGradient:
+    """Differences between the nodes of a structured surface."""
+
+    def __init__(self, surface: Surface, points: Floats) -> None:
+        self._valid, self._periodic = surface.valid, surface.periodic
+        # On the sphere a turn further is the same place.
+        self._offset = surface.offset if points is surface.points else np.zeros((2, 3))
+        self._poles = () if surface.poles is None else tuple(surface.poles)
+        self._points = np.ascontiguousarray(np.moveaxis(points, -1, 0))
+        self._gaps = [self._gap(axis) for axis in (0, 1)]
+
+    @cached_property
+    def node_gradient(self) -> NodeGradient:
+        """The gradient of arrays (C, J, I)."""
+        p_i, p_j = (self._difference(self._points, axis, self._offset[axis]) for axis in (1, 0))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            square = _dot(p_i, p_i)
+            length = np.sqrt(square)
+            one = p_i / length
+            skew = _dot(p_j, one)
+            two = p_j - skew * one
+            height = np.sqrt(_dot(two, two))
+            height[~(height**2 > COLLAPSED_AREA * (height**2 + skew**2))] = np.nan
+            two /= height
+            # Cells per unit of length: of i and j along each direction.
+            i_one, j_two = 1 / length, 1 / height
+            i_two = -skew * i_one * j_two
+        if _clockwise(one, two, self._points, self._valid):
+            for array in (two, i_two, j_two):
+                np.negative(array, out=array)
+
+        def derivative(nodal: Floats) -> Floats:
+            by_i, by_j = (self._difference(nodal, axis) for axis in (1, 0))
+            by_j *= j_two
+            by_j += by_i * i_two
+            by_i *= i_one
+            return np.stack([by_i, by_j])
+
+        return NodeGradient(np.stack([one, two]), derivative, self._poles)
+
+    def _gap(self, axis: int) -> tuple[Indices, Indices]:
+        """Return the nodes (line, place) without two neighbours along an axis, lines first."""
+        valid = self._valid.T if axis else self._valid
+        central = np.zeros(valid.shape, dtype=bool)
+        central[1:-1] = valid[2:] & valid[:-2] & valid[1:-1]
+        if self._periodic[axis]:
+            central[[0, -1]] = valid[1] & valid[-2] & valid[0]
+        line, place = np.nonzero(~central)
+        return line, place
+
+    def _difference(self, nodal: Floats, axis: int, offset: Floats | None = None) -> Floats:
+        """Return the difference per cell along an axis, of second order also beside gaps."""
+        result = np.empty_like(nodal)
+        data, out = (np.swapaxes(a, 1, axis + 1) for a in (nodal, result))
+        np.subtract(data[:, 2:], data[:, :-2], out=out[:, 1:-1])
+        turn = np.zeros(len(data)) if offset is None else offset
+        if self._periodic[axis]:
+            out[:, 0] = out[:, -1] = data[:, 1] + turn[:, None] - data[:, -2]
+        result *= 0.5
+        line, place = self._gaps[axis]
+        if len(line):
+            valid = self._valid.T if axis else self._valid
+            around = turn if self._periodic[axis] else None
+            out[:, line, place] = _one_sided(data, valid, line, place, around)
+        return result
+
+
+def _one_sided(
+    data: Floats, valid: Bools, line: Indices, place: Indices, turn: Floats | None
+) -> Floats:
+    """Return differences (C, N) beside a border or a gap: of second order, or first, or NaN.
+
+    ``turn`` is the change of ``data`` (C, lines, places) around a closed axis, ``None`` where it
+    does not close.
+    """
+    last = data.shape[1] - 1
+    here, result = data[:, line, place], np.full((len(data), len(line)), np.nan)
+    usable, done = valid[line, place], np.zeros(len(line), dtype=bool)
+    for side in (1, -1):
+        values, known = [], []
+        for distance in (1, 2):
+            number = line + side * distance
+            turns = np.zeros_like(number) if turn is None else number // last
+            at = np.clip(number, 0, last) if turn is None else number - turns * last
+            known.append(usable & (at == number if turn is None else True) & valid[at, place])
+            shift = 0.0 if turn is None else turns * turn[:, None]
+            values.append(data[:, at, place] + shift)
+        near, far = values
+        first, second = known[0] & ~done, known[0] & known[1]
+        result[:, first] = side * (near - here)[:, first]
+        result[:, second] = side * (4 * near - 3 * here - far)[:, second] / 2
+        done |= second
+    return result
+
+
+def _dot(one: Floats, two: Floats) -> Floats:
+    """Return the scalar product of vectors (3, ...)."""
+    result = one[0] * two[0]
+    result += one[1] * two[1]
+    result += one[2] * two[2]
+    return np.asarray(result)
+
+
+class _TriangleGradient:
+    """Quadratic fits to the nodes around each node of a surface of triangles.
+
+    Zhang and Naga 2005, A new finite element gradient recovery method: superconvergence property.
+    The fit is of second order on triangles of any shape, which means of the triangles' own
+    gradients are not.
+    """
+
+    def __init__(self, surface: TriangleSurface, points: Floats) -> None:
+        moved = TriangleSurface(points, surface.triangles, surface.valid)
+        self._surface = surface if points is surface.points else moved
+
+    @cached_property
+    def node_gradient(self) -> NodeGradient:
+        """The gradient of arrays (C, 1, N)."""
+        from scipy import sparse
+
+        points, (one, two) = self._surface.points[0], self._surface.tangents[:, 0]
+        if _clockwise(one.T[:, None], two.T[:, None], points.T[:, None], self._surface.valid):
+            two = -two
+        rows, columns = self._neighbours()
+        count = len(points)
+        offset = points[columns] - points[rows]
+        x, y = (np.einsum("ec,ec->e", offset, d[rows]) for d in (one, two))
+        degree = np.bincount(rows, minlength=count)
+        size = np.sqrt(np.bincount(rows, x * x + y * y, count) / np.maximum(degree, 1))
+        size[size == 0] = 1.0
+        x, y = x / size[rows], y / size[rows]
+        terms = np.stack([x, y, x * x, x * y, y * y])
+        terms[2:, degree[rows] < QUADRATIC_NEIGHBOURS] = 0.0
+        weight = 1 / (x * x + y * y + 1e-2)
+        normal = np.empty((count, 5, 5))
+        for a in range(5):
+            for b in range(a, 5):
+                normal[:, a, b] = np.bincount(rows, weight * terms[a] * terms[b], count)
+                normal[:, b, a] = normal[:, a, b]
+        largest = normal.max(axis=(1, 2))
+        normal += np.maximum(largest, 1e-300)[:, None, None] * REGULARISATION * np.eye(5)
+        known = (degree >= 2) & (np.linalg.det(normal[:, :2, :2]) > 1e-6 * largest**2)
+        normal[~known] = np.eye(5)
+        inverse = np.linalg.inv(normal)[:, :2]
+        operators = []
+        for share in inverse.transpose(1, 0, 2):
+            entries = weight * np.einsum("ek,ke->e", share[rows], terms) / size[rows]
+            matrix = sparse.csr_array((entries, (rows, columns)), (count, count))
+            own = np.where(known, -np.bincount(rows, entries, count), np.nan)
+            operators.append(matrix + sparse.diags_array(own))
+
+        def derivative(nodal: Floats) -> Floats:
+            columns = nodal[:, 0].T
+            return np.stack([(operator @ columns).T[:, None] for operator in operators])
+
+        directions = np.stack([one, two]).transpose(0, 2, 1)[:, :, None]
+        return NodeGradient(directions, derivative)
+
+    def _neighbours(self) -> tuple[Indices, Indices]:
+        """Return pairs of nodes at most two edges apart, the first of each pair in order."""
+        from scipy import sparse
+
+        corners = self._surface.triangles[self._surface.cells]
+        a, b = corners.ravel(), np.roll(corners, 1, axis=1).ravel()
+        count = self._surface.valid.size
+        ones = np.ones(2 * len(a), dtype=np.int32)
+        edges = sparse.csr_array(
+            (ones, (np.concatenate([a, b]), np.concatenate([b, a]))), (count, count)
+        )
+        near = (edges @ edges + edges).tocoo()
+        apart = near.row != near.col
+        rows, columns = near.row[apart], near.col[apart]
+        order = np.argsort(rows, kind="stable")
+        return rows[order].astype(np.intp), columns[order].astype(np.intp)
+
+
+def _clockwise(one: Floats, two: Floats, points: Floats, valid: Bools) -> bool:
+    """Return whether turning from the first direction to the second is negative.
+
+    Some of the nodes tell.
+    """
+    some = tuple(slice(None, None, -(-count // MOST_JUDGED)) for count in valid.shape)
+    one, two, points = (a[:, *some] for a in (one, two, points))
+    normal = np.stack([one[a] * two[b] - one[b] * two[a] for a, b in ((1, 2), (2, 0), (0, 1))])
+    known = valid[some] & np.isfinite(normal).all(axis=0)
+    if not known.any():
+        return False
+    normal, place = normal[:, known], points[:, known]
+    mean = normal.mean(axis=1)
+    if np.linalg.norm(mean) > 1 - 1e-6:
+        return bool(mean[np.argmax(np.abs(mean))] < 0)
+    return bool(np.sum(normal * (place - place.mean(axis=1, keepdims=True))) < 0)

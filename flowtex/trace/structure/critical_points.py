@@ -1,0 +1,381 @@
+"""Critical points: where the velocity is zero, and what the flow around it does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, overload
+
+import numpy as np
+from scipy import ndimage
+
+from flowtex._util.arguments import check_field
+from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
+from flowtex.field import FlowField
+from flowtex.field.poles import Pole
+from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.trace.structure.zeros import bilinear_zeros, linear_zeros, triangle_indices
+
+__all__ = ["KINDS", "CriticalPoint", "CriticalPoints", "critical_points"]
+
+#: Kinds of critical points, for tables and legends.
+KINDS = ("saddle", "source", "sink", "centre", "spiral source", "spiral sink")
+#: Growth of a spiral, as a share of its rotation, up to which it is a centre.
+CENTRE_SHARE = 0.05
+#: Points closer than this, in cells, that have the same index are one.
+SAME_POINT_CELLS = 1e-3
+#: Speed as a share of the largest at which a node is at rest.
+REST_SHARE = 1e-12
+#: Share of a neighbour's velocity that takes the place of one that is zero.
+LEAST_SHARE = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class CriticalPoint:
+    """A point where the velocity is zero.
+
+    Attributes
+    ----------
+    position
+        Where it lies, (3,), in the mesh's units.
+    kind
+        ``"saddle"``, ``"source"``, ``"sink"``, ``"centre"``, ``"spiral source"`` or
+        ``"spiral sink"``.
+    eigenvalues
+        Of the velocity gradient there, (2,), complex, in 1 over the unit of time, the one with the
+        larger real part first.
+    eigenvectors
+        The unit vectors that belong to them, (2, 3); complex for spirals and centres.
+    time
+        When, in the unit of time of the field.
+    index
+        The place in index space as (j, i), as :func:`flowtex.field.locate` returns it.
+    lonlat
+        Longitude and latitude in degrees, for a field of the Earth.
+    """
+
+    position: Floats
+    kind: str
+    eigenvalues: AnyArray
+    eigenvectors: AnyArray
+    time: float
+    index: tuple[float, float]
+    lonlat: tuple[float, float] | None = None
+
+    @property
+    def poincare_index(self) -> int:
+        """-1 for a saddle, 1 for any other kind; on a sphere they sum to 2."""
+        return -1 if self.kind == "saddle" else 1
+
+
+class CriticalPoints(Sequence[CriticalPoint]):
+    """Critical points of a field, in the order of times and places.
+
+    A sequence of records with ``position`` (3,), ``kind``, ``eigenvalues`` (2,), ``eigenvectors``
+    (2, 3), ``time``, ``index`` as (j, i), and ``lonlat`` for a field of the Earth.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(41, 81))
+    >>> point = flowtex.critical_points(field).of_kind("centre")[0]
+    >>> point.kind, [round(float(x), 2) for x in point.position]
+    ('centre', [0.5, 0.5, 0.0])
+    """
+
+    def __init__(self, points: Sequence[CriticalPoint]) -> None:
+        self._points = tuple(points)
+
+    @overload
+    def __getitem__(self, key: int) -> CriticalPoint: ...
+    @overload
+    def __getitem__(self, key: slice) -> CriticalPoints: ...
+    def __getitem__(self, key: int | slice) -> CriticalPoint | CriticalPoints:
+        if isinstance(key, slice):
+            return CriticalPoints(self._points[key])
+        return self._points[key]
+
+    def __len__(self) -> int:
+        return len(self._points)
+
+    def __iter__(self) -> Iterator[CriticalPoint]:
+        return iter(self._points)
+
+    def of_kind(self, *kinds: str) -> CriticalPoints:
+        """Return those of some kinds."""
+        for kind in kinds:
+            if kind not in KINDS:
+                msg = f"kind {kind!r} does not exist; expected one of {', '.join(KINDS)}"
+                raise FieldError(msg)
+        return CriticalPoints([p for p in self._points if p.kind in kinds])
+
+    def records(self) -> list[dict[str, Any]]:
+        """Return a row of plain numbers and words for each point."""
+        rows = []
+        for p in self._points:
+            row: dict[str, Any] = {"kind": p.kind, "time": p.time}
+            row |= dict(zip("xyz", (float(x) for x in p.position), strict=True))
+            if p.lonlat is not None:
+                row |= {"lon": p.lonlat[0], "lat": p.lonlat[1]}
+            for n, value in enumerate(p.eigenvalues, 1):
+                row |= {f"real_{n}": float(value.real), f"imaginary_{n}": float(value.imag)}
+            rows.append(row)
+        return rows
+
+    def to_pandas(self) -> Any:
+        """Return a ``pandas.DataFrame`` of :meth:`records`."""
+        return import_extra("pandas", "xarray").DataFrame(self.records())
+
+    def to_geojson(self) -> dict[str, Any]:
+        """Return a GeoJSON ``FeatureCollection`` of points.
+
+        Raises
+        ------
+        FieldError
+            When the field is not one of the Earth.
+        """
+        features = []
+        for point, row in zip(self._points, self.records(), strict=True):
+            if point.lonlat is None:
+                msg = "GeoJSON needs longitudes and latitudes; this field is not one of the Earth"
+                raise FieldError(msg)
+            properties = {key: value for key, value in row.items() if key not in ("lon", "lat")}
+            geometry = {"type": "Point", "coordinates": list(point.lonlat)}
+            features.append({"type": "Feature", "geometry": geometry, "properties": properties})
+        return {"type": "FeatureCollection", "features": features}
+
+    def to_pyvista(self) -> Any:
+        """Return a ``pyvista.PolyData`` of the points, with ``kind`` as numbers into ``KINDS``."""
+        import pyvista as pv
+
+        mesh = pv.PolyData(np.array([p.position for p in self._points]).reshape(-1, 3))
+        mesh["kind"] = np.array([KINDS.index(p.kind) for p in self._points], dtype=np.uint8)
+        mesh["time"] = np.array([p.time for p in self._points])
+        return mesh
+
+    def __repr__(self) -> str:
+        counts = [(kind, sum(p.kind == kind for p in self._points)) for kind in KINDS]
+        found = ", ".join(f"{count} x {kind}" for kind, count in counts if count)
+        return f"CriticalPoints({found or 'no points'})"
+
+
+def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> CriticalPoints:
+    """Find where the velocity is zero, and what kind of point each is.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    steps
+        Numbers of the time steps that are searched; all by default.
+
+    Returns
+    -------
+    CriticalPoints
+
+    Raises
+    ------
+    FieldError
+        When the field has no sign, or there is no such step.
+
+    Notes
+    -----
+    The velocity is bilinear in the cells of a structured surface and linear in triangles. Regions
+    at rest, and walls where the velocity is zero, have no critical points.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field(shape=(41, 81))
+    >>> flowtex.critical_points(field).of_kind("centre")
+    CriticalPoints(2 x centre)
+    """
+    check_field(field, FlowField)
+    if field.sign_free:
+        msg = "critical points need directions, and the vectors of this field have no sign"
+        raise FieldError(msg)
+    numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
+    points: list[CriticalPoint] = []
+    for number in numbers:
+        part = field.at_step(number)
+        search = _on_grid if part.triangles is None else _on_triangles
+        points += search(part)
+    return CriticalPoints(points)
+
+
+def _on_grid(field: FlowField) -> list[CriticalPoint]:
+    """Find the critical points of one step on a structured surface."""
+    u, valid = field.index_velocity.components[0], field.valid
+    rows, columns = field.shape
+    rest = field.speed[0] <= REST_SHARE * field.speed[0].max(initial=0)
+    corners = [(slice(a, rows - 1 + a), slice(b, columns - 1 + b)) for a in (0, 1) for b in (0, 1)]
+    usable = np.logical_and.reduce([valid[c] for c in corners])
+    # A single node at rest may be a critical point; several are a wall or a region at rest.
+    several = rest & (ndimage.convolve(rest.astype(int), np.ones((3, 3), int), mode="constant") > 1)
+    usable &= ~np.logical_or.reduce([several[c] for c in corners])
+    poles = tuple(field.surface.poles or ())
+    for pole in poles:
+        lines = usable if pole.component else usable.T
+        lines[0 if pole.inward > 0 else -1] = False
+    j, i = np.nonzero(usable)
+    cell, place = bilinear_zeros(np.stack([u[c][j, i] for c in corners], axis=1))
+    j, i, (s, t) = j[cell], i[cell], place.T
+    at = [u[j + a, i + b] for a in (0, 1) for b in (0, 1)]
+    by_i = (at[1] - at[0]) * (1 - t[:, None]) + (at[3] - at[2]) * t[:, None]
+    by_j = (at[2] - at[0]) * (1 - s[:, None]) + (at[3] - at[1]) * s[:, None]
+    gradient = np.stack([by_i, by_j], axis=-1)
+    index = np.stack([i + s, j + t], axis=-1)
+    position = field.surface.at(index)
+    tangents = [_blend(tangent, j, i, s, t) for tangent in field.surface.tangents]
+    found = _points(field, position, gradient, np.stack(tangents, axis=1), index)
+    for pole in poles:
+        found += _at_pole(field, pole)
+    return _distinct(found, field)
+
+
+def _blend(nodal: Floats, j: Indices, i: Indices, s: Floats, t: Floats) -> Floats:
+    """Return nodal values (J, I, C) within cells, (K, C)."""
+    s, t = s[:, None], t[:, None]
+    low = nodal[j, i] * (1 - s) + nodal[j, i + 1] * s
+    high = nodal[j + 1, i] * (1 - s) + nodal[j + 1, i + 1] * s
+    return np.asarray(low * (1 - t) + high * t)
+
+
+def _at_pole(field: FlowField, pole: Pole) -> list[CriticalPoint]:
+    """Find the critical points in the cells around a pole, as triangles in the plane there."""
+    points, velocity = (pole.lines(a) for a in (field.points, field.velocity[0]))
+    ring = pole.line + pole.inward
+    center, near = points[pole.line, 0], points[ring]
+    plane = (near - center) @ pole.plane.T
+    vectors = velocity[ring] @ pole.plane.T
+    middle = velocity[pole.line, :-1].mean(axis=0) @ pole.plane.T
+    count = len(near) - 1
+    corners = np.zeros((count, 3, 2))
+    corners[:, 1], corners[:, 2] = plane[:-1], plane[1:]
+    flow = np.stack([np.broadcast_to(middle, (count, 2)), vectors[:-1], vectors[1:]], axis=1)
+    weights, gradient = linear_zeros(corners, flow)
+    with np.errstate(invalid="ignore"):
+        inside = (weights >= -1e-9).all(axis=1)
+    number = np.flatnonzero(inside)
+    if not len(number):
+        return []
+    # One point in the middle of the cap is found by all triangles.
+    w = weights[number]
+    position = w[:, :1] * center + w[:, 1:2] * near[number] + w[:, 2:] * near[number + 1]
+    around = number + np.divide(w[:, 2], 1 - w[:, 0], out=np.zeros(len(w)), where=w[:, 0] < 1)
+    index = np.empty((len(w), 2))
+    index[:, 1 - pole.component] = around
+    index[:, pole.component] = pole.line + pole.inward * (1 - w[:, 0])
+    tangents = np.broadcast_to(pole.plane, (len(w), 2, 3))
+    return _points(field, position, gradient[number], tangents, index)
+
+
+def _on_triangles(field: FlowField) -> list[CriticalPoint]:
+    """Find the critical points of one step on a surface of triangles."""
+    surface = field.surface
+    assert isinstance(surface, TriangleSurface)
+    normals, points = surface.normals[0], field.points[0]
+    velocity = field.velocity[0, 0]
+    velocity = velocity - np.einsum("nc,nc->n", velocity, normals)[:, None] * normals
+    speed = np.linalg.norm(velocity, axis=1)
+    rest = speed <= REST_SHARE * speed.max(initial=0)
+    resting = rest[surface.triangles].sum(axis=1)
+    several = np.zeros(len(points), dtype=bool)
+    several[surface.triangles[resting > 1]] = True
+    number = np.flatnonzero(surface.cells & ~(several & rest)[surface.triangles].any(axis=1))
+    triangles, crosses = surface.triangles[number], surface.crosses[number]
+    # A single node at rest gets the least of its neighbours' velocities: one triangle has the zero.
+    alone = triangles[rest[triangles].any(axis=1)]
+    corner = np.argmax(rest[alone], axis=1)
+    one, two = (
+        velocity[np.take_along_axis(alone, (corner[:, None] + k) % 3, 1)[:, 0]] for k in (1, 2)
+    )
+    still = np.take_along_axis(alone, corner[:, None], 1)[:, 0]
+    velocity[still] = LEAST_SHARE * (0.62 * one + 0.38 * two)
+    corners = points[triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    own = np.einsum("mc,mc->m", normal, crosses) < 0
+    facing = np.where(own[:, None], triangles[:, ::-1], triangles)
+    turning = triangle_indices(points, normals, velocity, facing)
+    chosen = turning != 0
+    number, triangles = number[chosen], triangles[chosen]
+    normal = crosses[chosen] / np.linalg.norm(crosses[chosen], axis=1, keepdims=True)
+    corners = points[triangles]
+    one = corners[:, 1] - corners[:, 0]
+    one /= np.linalg.norm(one, axis=1, keepdims=True)
+    frame = np.stack([one, np.cross(normal, one)], axis=1)
+    flat = np.einsum("mkc,mfc->mkf", corners - corners[:, :1], frame)
+    flow = np.einsum(
+        "mkc,mfc->mkf", _turned(velocity[triangles], normals[triangles], normal), frame
+    )
+    weights, gradient = linear_zeros(flat, flow)
+    weights = np.where(np.isfinite(weights), weights, 1 / 3)
+    weights = np.clip(weights, 0, None)
+    weights /= weights.sum(axis=1, keepdims=True)
+    position = np.einsum("mk,mkc->mc", weights, corners)
+    return _points(field, position, gradient, frame, surface.index_of(number, weights))
+
+
+def _turned(vectors: Floats, normals: Floats, normal: Floats) -> Floats:
+    """Return tangent vectors at corners, (M, 3, 3), turned into the plane of their triangles."""
+    n = normal[:, None]
+    axis = np.cross(normals, n)
+    cosine = np.einsum("mkc,mkc->mk", normals, np.broadcast_to(n, normals.shape))[..., None]
+    along = np.einsum("mkc,mkc->mk", axis, vectors)[..., None]
+    return np.asarray(
+        vectors * cosine + np.cross(axis, vectors) + axis * along / np.maximum(1 + cosine, 1e-6)
+    )
+
+
+def _points(
+    field: FlowField, position: Floats, gradient: Floats, tangents: Floats, index: Floats
+) -> list[CriticalPoint]:
+    """Make records of points (K, 3), gradients (K, 2, 2) and tangents (K, 2, 3) there."""
+    known = np.isfinite(gradient).all(axis=(1, 2)) & (np.abs(gradient).max(axis=(1, 2)) > 0)
+    values, vectors = np.linalg.eig(np.where(known[:, None, None], gradient, np.eye(2)))
+    lonlat = None if field.projection is None else field.projection.lonlat(position)
+    result = []
+    for n in np.flatnonzero(known):
+        order = np.argsort(-values[n].real, kind="stable")
+        value, directions = values[n][order].astype(complex), vectors[n].T[order] @ tangents[n]
+        size = np.linalg.norm(directions, axis=1, keepdims=True)
+        place = None if lonlat is None else (float(lonlat[0][n]), float(lonlat[1][n]))
+        result.append(
+            CriticalPoint(
+                position=position[n],
+                kind=_kind(value),
+                eigenvalues=value,
+                eigenvectors=directions / np.maximum(size, np.finfo(float).tiny),
+                time=float(field.times[0]),
+                index=(float(index[n, 1]), float(index[n, 0])),
+                lonlat=place,
+            )
+        )
+    return result
+
+
+def _kind(values: AnyArray) -> str:
+    real, imaginary = values.real, abs(values[0].imag)
+    if not imaginary:
+        return "saddle" if real[0] * real[1] < 0 else "source" if real.sum() > 0 else "sink"
+    if abs(real[0]) <= CENTRE_SHARE * imaginary:
+        return "centre"
+    return "spiral source" if real[0] > 0 else "spiral sink"
+
+
+def _distinct(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoint]:
+    """Drop points that two cells have found, or both ends of a closed axis."""
+    kept: list[CriticalPoint] = []
+    size = field.surface.cell_size
+    for point in points:
+        j, i = (min(round(x), n - 1) for x, n in zip(point.index, field.shape, strict=True))
+        near = SAME_POINT_CELLS * size[j, i]
+        if not any(
+            other.poincare_index == point.poincare_index
+            and np.linalg.norm(other.position - point.position) < near
+            for other in kept
+        ):
+            kept.append(point)
+    return kept

@@ -1,0 +1,226 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull, Delaunay
+
+import flowtex
+from flowtex import FieldError, FlowField
+from flowtex._util.array_types import Floats
+from flowtex.earth import EARTH_RADIUS, Projection
+from flowtex.field.derived import DERIVED
+from flowtex.field.steps import LazySteps
+
+Made = tuple[FlowField, dict[str, Floats]]
+
+
+def plane_flow(p: Floats) -> tuple[Floats, dict[str, Floats]]:
+    """Return a velocity (..., 2) at positions, and what is derived from it by hand."""
+    x, y = p[..., 0], p[..., 1]
+    velocity = np.stack([np.sin(2 * x) * np.cos(y) + y * y, np.cos(x + 2 * y)], axis=-1)
+    ux, uy = 2 * np.cos(2 * x) * np.cos(y), -np.sin(2 * x) * np.sin(y) + 2 * y
+    vx, vy = -np.sin(x + 2 * y), -2 * np.sin(x + 2 * y)
+    exact = {
+        "vorticity": vx - uy,
+        "divergence": ux + vy,
+        "shear": np.hypot(ux - vy, vx + uy),
+        "okubo_weiss": (ux - vy) ** 2 + (vx + uy) ** 2 - (vx - uy) ** 2,
+    }
+    return velocity, exact
+
+
+def lattice(n: int) -> Floats:
+    return np.stack(np.meshgrid(np.linspace(0, 2, 2 * n + 1), np.linspace(0, 1, n + 1)), axis=-1)
+
+
+def crooked(n: int) -> Made:
+    x, y = np.moveaxis(lattice(n), -1, 0)
+    p = np.stack([x + 0.08 * np.sin(6 * y + x), y + 0.07 * np.sin(3 * x + 1)], axis=-1)
+    velocity, exact = plane_flow(p)
+    return FlowField.from_arrays(p, velocity), exact
+
+
+def triangles(n: int) -> Made:
+    p = lattice(n).reshape(-1, 2)
+    inner = ((p > 0) & (p < (2, 1))).all(axis=1)
+    p[inner] += np.random.default_rng(0).uniform(-0.3, 0.3, (inner.sum(), 2)) / n
+    field = FlowField.from_triangles(p, Delaunay(p).simplices, plane_flow(p)[0])
+    return field, {k: v for k, v in plane_flow(field.points[..., :2])[1].items()}
+
+
+def rossby_wave(lon: Floats, lat: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return a flow without divergence on the unit sphere, and its vorticity (Haurwitz 1940)."""
+    a, b, k = np.radians(lon), np.radians(lat), 3
+    east = -(np.cos(b) ** (k - 1)) * (np.cos(b) ** 2 - k * np.sin(b) ** 2) * np.cos(k * a)
+    north = -k * np.cos(b) ** (k - 1) * np.sin(b) * np.sin(k * a)
+    return east, north, -(k + 1) * (k + 2) * np.cos(b) ** k * np.sin(b) * np.cos(k * a)
+
+
+def on_map(name: str) -> Callable[[int], Made]:
+    def make(n: int) -> Made:
+        lat = (
+            np.linspace(-90, 90, 2 * n + 1) if name == "globe" else np.linspace(-80, 80, 2 * n + 1)
+        )
+        lon, lat = np.meshgrid(np.linspace(-170, 170, 4 * n + 1), lat)
+        if name == "globe":
+            lon = np.broadcast_to(np.linspace(-180, 180, 4 * n + 1), lat.shape)
+        east, north, vorticity = rossby_wave(lon, lat)
+        there = Projection(name)
+        velocity = there.vectors(lon, lat, EARTH_RADIUS * east, EARTH_RADIUS * north)
+        field = FlowField.from_arrays(there.positions(lon, lat), velocity, projection=there)
+        return field, {"vorticity": vorticity, "divergence": np.zeros_like(vorticity)}
+
+    return make
+
+
+def sphere_of_triangles(n: int) -> Made:
+    k = np.arange(8 * n * n) + 0.5
+    height, turn = 1 - 2 * k / len(k), np.pi * (1 + 5**0.5) * k
+    ring = np.sqrt(1 - height**2)
+    p = np.stack([ring * np.cos(turn), ring * np.sin(turn), height], axis=-1)
+    globe = Projection("globe")
+    lon, lat = globe.lonlat(p)
+    east, north, vorticity = rossby_wave(lon, lat)
+    velocity = globe.vectors(lon, lat, east, north)
+    field = FlowField.from_triangles(p, ConvexHull(p).simplices, velocity)
+    return field, {"vorticity": vorticity[None], "divergence": np.zeros((1, len(p)))}
+
+
+MESHES = {
+    "crooked": crooked,
+    "triangles": triangles,
+    "globe": on_map("globe"),
+    "robinson": on_map("robinson"),
+    "sphere of triangles": sphere_of_triangles,
+}
+
+
+@pytest.mark.parametrize("make", MESHES.values(), ids=MESHES.keys())
+def test_errors_fall_with_the_square_of_cells(make: Callable[[int], Made]) -> None:
+    def errors(n: int) -> dict[str, float]:
+        field, exact = make(n)
+        return {k: float(np.abs(field.derive(k)[0] - v).max()) for k, v in exact.items()}
+
+    coarse, fine = errors(16), errors(32)
+    for name, error in fine.items():
+        assert error < max(0.36 * coarse[name], 0.01), name
+        assert error < 0.15, name
+
+
+def test_numbering_and_gaps_change_nothing_elsewhere() -> None:
+    field, _ = crooked(24)
+    p, v = field.points, field.velocity[0]
+    valid = np.ones(field.shape, dtype=bool)
+    valid[10:14, 20:23] = False
+    for name in DERIVED:
+        whole = field.derive(name)[0]
+        turned = FlowField.from_arrays(p[:, ::-1], v[:, ::-1]).derive(name)[0]
+        assert turned[:, ::-1] == pytest.approx(whole, abs=1e-10)
+        holed = FlowField.from_arrays(p, v, valid=valid).derive(name)[0]
+        assert np.isnan(holed[~valid]).all()
+        # Beside the gap differences are of second order to one side.
+        assert np.nanmax(np.abs(holed - whole)) < 0.3
+        assert holed[:9] == pytest.approx(whole[:9], abs=1e-12)
+
+
+def test_a_rotation_on_a_closed_axis_has_one_vorticity() -> None:
+    angle, radius = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(1, 2, 13))
+    p = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+    v = np.stack([-p[..., 1], p[..., 0]], axis=-1)
+    field = FlowField.from_arrays(p, v)
+    assert field.periodic == (False, True)
+    assert field.derive("vorticity")[0] == pytest.approx(2.0, abs=1e-9)
+    assert field.derive("shear")[0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_ftle_of_a_saddle_and_of_the_double_gyre() -> None:
+    p = lattice(20) - (1.0, 0.5)
+    field = FlowField.from_arrays(p, 0.5 * p * (1, -1))
+    rate = field.derive("ftle", horizon=-0.5)[0]
+    assert rate[5:-5, 10:-10] == pytest.approx(0.5, abs=1e-3)
+    # Backward paths leave upward and downward.
+    assert np.isnan(rate[0]).all()
+
+    x, y = np.moveaxis(lattice(40), -1, 0)
+    times = np.linspace(0, 6, 61)
+    flow = [gyre(lattice(40), t) for t in times]
+    field = FlowField.from_arrays((x, y), np.stack(flow), times=times)
+    rates = field.derive("ftle", horizon=5.0)
+    assert isinstance(rates, LazySteps)
+    assert np.abs(rates[0] - gyre_ftle(x, y, 5.0)).mean() < 2e-3
+
+
+def gyre(p: Floats, t: float) -> Floats:
+    """Velocity of the double gyre of Shadden, Lekien and Marsden (2005)."""
+    x, y = p[..., 0], p[..., 1]
+    a = 0.25 * np.sin(2 * np.pi * t / 10)
+    f, slope = a * x * x + (1 - 2 * a) * x, 2 * a * x + 1 - 2 * a
+    u = -0.1 * np.pi * np.sin(np.pi * f) * np.cos(np.pi * y)
+    return np.stack([u, 0.1 * np.pi * np.cos(np.pi * f) * np.sin(np.pi * y) * slope], axis=-1)
+
+
+def gyre_ftle(x: Floats, y: Floats, horizon: float, count: int = 200) -> Floats:
+    """Return the same exponent by Runge-Kutta's method and differences of NumPy."""
+    p, h = np.stack([x, y], axis=-1), horizon / count
+    for n in range(count):
+        t = n * h
+        a = gyre(p, t)
+        b = gyre(p + h / 2 * a, t + h / 2)
+        c = gyre(p + h / 2 * b, t + h / 2)
+        d = gyre(p + h * c, t + h)
+        p = p + h / 6 * (a + 2 * b + 2 * c + d)
+    by_x = np.gradient(p, x[0, 1] - x[0, 0], axis=1, edge_order=2)
+    by_y = np.gradient(p, y[1, 0] - y[0, 0], axis=0, edge_order=2)
+    matrix = np.stack([by_x, by_y], axis=-1)
+    return np.asarray(np.log(np.linalg.norm(matrix, 2, axis=(-2, -1))) / horizon)
+
+
+def test_steps_that_are_read_late_stay_so() -> None:
+    field, exact = crooked(12)
+    read: list[int] = []
+
+    def step(number: int) -> Floats:
+        read.append(number)
+        return np.asarray((number + 1) * field.velocity[0])
+
+    late = FlowField.from_triangles(
+        field.points.reshape(-1, 3),
+        Delaunay(field.points.reshape(-1, 3)[:, :2]).simplices,
+        LazySteps(5, lambda n: step(n).reshape(-1, 3)),
+        times=np.arange(5.0),
+    )
+    read.clear()
+    vorticity = late.derive("vorticity")
+    assert isinstance(vorticity, LazySteps)
+    third = vorticity[3]
+    assert set(read) <= {3}
+    assert np.abs(third.ravel() - 4 * exact["vorticity"].ravel()).max() < 1.0
+
+
+def test_a_picture_is_coloured_by_what_is_derived() -> None:
+    field, _ = crooked(12)
+    named = field.with_derived("vorticity")
+    assert flowtex.render(field, scalars="vorticity", size=(60, 40)) == pytest.approx(
+        flowtex.render(named, scalars="vorticity", size=(60, 40))
+    )
+    assert (named.unit_of("vorticity"), named.label_of("okubo_weiss")) == ("", "okubo_weiss")
+    timed = FlowField.from_arrays(field.points, field.velocity, time_unit="s")
+    for name, unit in {"vorticity": "1/s", "okubo_weiss": "1/s²"}.items():
+        assert timed.with_derived(name).unit_of(name) == unit
+
+
+def test_what_cannot_be_derived_is_refused() -> None:
+    field, _ = crooked(4)
+    with pytest.raises(FieldError, match="'vortcity' cannot be derived; expected one of vorticity"):
+        field.derive("vortcity")
+    with pytest.raises(FieldError, match="horizon is None for 'ftle'; expected a time other than"):
+        field.derive("ftle")
+    with pytest.raises(FieldError, match="horizon is 0 for 'ftle'"):
+        field.derive("ftle", horizon=0)
+    with pytest.raises(FieldError, match=r"horizon=1\.0 for 'shear'; it belongs to ftle"):
+        field.derive("shear", horizon=1.0)
+    free = FlowField.from_arrays(field.points, field.velocity, sign_free=True)
+    with pytest.raises(FieldError, match="have no sign"):
+        free.derive("vorticity")
