@@ -472,21 +472,17 @@ class FlowField(FieldConstructors):
         -------
         numpy.ndarray
             (T, J, I), or (T, 1, N) on triangles, in 1 over the unit of time (its square for
-            Okubo-Weiss); NaN where too few neighbours have data. Where the velocity is read step by
-            step, and for ``"ftle"`` of a field that varies, so are the values.
+            Okubo-Weiss); NaN where too few neighbours have data. Lazy where the velocity is.
 
         Raises
         ------
         FieldError
-            When the name is not one of these, the vectors have no sign, or the horizon is missing
-            or 0.
+            When the name is not one of these, the horizon does not fit, or vectors have no sign.
 
         Notes
         -----
         Errors are of second order in the size of cells, on any surface. On flat maps of the Earth
-        the values are those on the sphere. Triangles: Zhang and Naga 2005, A new finite element
-        gradient recovery method. FTLE: Shadden, Lekien and Marsden 2005, Definition and properties
-        of Lagrangian coherent structures.
+        the values are those on the sphere.
 
         Examples
         --------
@@ -503,7 +499,15 @@ class FlowField(FieldConstructors):
         return derived_steps(name, self.surface, self.projection, self.velocity)
 
     def with_derived(self, name: str, *, horizon: float | None = None) -> FlowField:
-        """Return the field with what :meth:`derive` computes among its scalars."""
+        """Return the field with what :meth:`derive` computes among its scalars.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> field = flowtex.examples.double_gyre_field(shape=(41, 81))
+        >>> sorted(field.with_derived("shear").scalars)
+        ['shear', 'vorticity']
+        """
         flow = replace(
             self,
             scalars={**self.scalars, name: self.derive(name, horizon=horizon)},
