@@ -51,7 +51,6 @@ WHOLE_SHAPE = "_whole_shape"
 
 #: What is computed from positions and velocity alone.
 _SHARED = ("surface", "index_velocity")
-
 #: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
 #: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
 NOTABLE_SHARE = 0.05
