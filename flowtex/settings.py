@@ -40,14 +40,27 @@ Condition = tuple[str, Literal["==", "!="], Any]
 #: Settings of a panel by group, in order; those of the first one are always shown.
 GROUPS: dict[str, tuple[str, ...]] = {
     "": ("lod", "noise", "samples", "contrast"),
-    "Texture": ("kernel", "two_sided", "grain", "fixed_grain", "spacing", "strength", "show_level"),
+    "Texture": (
+        "texture",
+        "kernel",
+        "two_sided",
+        "grain",
+        "fixed_grain",
+        "spacing",
+        "strength",
+        "show_level",
+    ),
     "Noise": ("seed", "tiles", "noise_correction", "resolution"),
     "Motion": ("motion", "speed", "speed_in", "period", "lines", "parameter"),
 }
 #: Settings that make a difference only where one of these others has, or has not, a value.
 _NEEDS_TEXTURE: Condition = ("noise", "!=", "procedural")
+_NEEDS_DENSE: tuple[Condition] = (("texture", "==", "dense"),)
 _NEEDS_MOTION: tuple[Condition] = (("motion", "!=", "off"),)
 NEEDS: dict[str, tuple[Condition, ...]] = {
+    "texture": (("noise", "==", "procedural"),),
+    "kernel": _NEEDS_DENSE,
+    "two_sided": _NEEDS_DENSE,
     "tiles": (_NEEDS_TEXTURE,),
     "noise_correction": (_NEEDS_TEXTURE,),
     "resolution": (_NEEDS_TEXTURE, ("fixed_grain", "==", True), ("lod", "==", False)),
@@ -228,6 +241,12 @@ class Settings:
         affects="uniform",
         text="Distance between two samples, in grains of noise.",
         span=(0.1, 10),
+    )
+    texture: str = _row(
+        default="dense",
+        affects="uniform",
+        text="Streaks everywhere, or sparse ones with a bright head, which show which way it goes.",
+        choices=("dense", "streaklets"),
     )
     kernel: str = _row(
         default="hann",

@@ -77,6 +77,7 @@ IMAGE[5:25, 10:40, 3] = 1.0
 #: The paper's textures, of a size that is made soon.
 TEXTURE: dict[str, Any] = {"noise": "texture", "resolution": 256}
 MOTION = {"motion": "speed"}
+STREAKLETS = {"texture": "streaklets"}
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -124,6 +125,9 @@ VIEWS: dict[str, View] = {
     "grain, contrast, seed": View(settings={"grain": 3.0, "contrast": 2.0, "seed": 7}),
     "streaming": View(camera=straight(2), settings=MOTION, clock=1.7),
     "streaming evenly": View(camera=straight(2), settings={"motion": "uniform"}, clock=0.9),
+    "streaklets": View(camera=straight(4), settings=STREAKLETS),
+    "streaklets, curved": View(torus, ASIDE, STREAKLETS),
+    "streaklets, streaming": View(camera=straight(2), settings=STREAKLETS | MOTION, clock=1.7),
     "between two steps": View(swinging, MIDDLE, {"lines": "pathlines"}, time=0.55),
     "streamlines": View(swinging, MIDDLE, {"lines": "streamlines"}, time=0.55),
     "without a sign": View(lines, MIDDLE),

@@ -109,6 +109,7 @@ IMAGE = np.random.default_rng(5).integers(0, 256, (16, 32, 4), dtype=np.uint8)
 CASES: dict[str, tuple[Callable[[], FlowField], dict[str, Any]]] = {
     "two-sided": (gyre, {}),
     "one-sided": (gyre, {"two_sided": False, "kernel": "ramp"}),
+    "streaklets": (gyre, {"texture": "streaklets"}),
     "lod off": (gyre, {"lod": False, "resolution": 200}),
     "fixed grain": (gyre, {"fixed_grain": True, "resolution": 30}),
     "even count": (gyre, {"samples": 10, "parameter": "time"}),

@@ -40,8 +40,20 @@ function latticeOf(point: Vector, octave: number, u: Uniforms, c: Constants): La
   return { here: add(rest, point, inverse), inverse, key };
 }
 
+/** Value of a sparse grain for an even one. */
+function sparse(even: number, c: Constants): number {
+  const bright = even >= (1 - 2 * c.SPARSE_SHARE[0]) * c.MOST_GRAIN[0];
+  return c.MOST_GRAIN[0] * (bright ? c.SPARSE_HIGH[0] : -c.SPARSE_LOW[0]);
+}
+
 /** Value of an octave at a displacement, of variance 1; in a plane nothing depends on the third axis. */
-function octaveAt({ here, inverse, key }: Lattice, displacement: Vector, c: Constants, axes: number) {
+function octaveAt(
+  { here, inverse, key }: Lattice,
+  displacement: Vector,
+  c: Constants,
+  axes: number,
+  isSparse: boolean,
+) {
   const [toKey, toGrain] = c.HASH_FACTORS;
   const at = add(here, displacement, inverse).slice(0, axes);
   const sides = at.map((x, axis) => {
@@ -57,7 +69,8 @@ function octaveAt({ here, inverse, key }: Lattice, displacement: Vector, c: Cons
     const side = (axis: number) => (corner >> axis) & 1;
     const hash = sides.reduce((all, { hashes }, axis) => all ^ hashes[side(axis)], 0);
     const share = sides.reduce((all, { shares }, axis) => all * shares[side(axis)], 1);
-    sum += share * Math.imul(hash, toGrain);
+    const grain = Math.imul(hash, toGrain);
+    sum += share * (isSparse ? sparse(grain, c) : grain);
   }
   const spread = (all: number, { shares: [a, b] }: (typeof sides)[0]) => all * (1 - 2 * a * b);
   return sum / Math.sqrt(sides.reduce(spread, 1) * c.GRAIN_VARIANCE[0]);
@@ -68,6 +81,7 @@ export function noiseAround(
   local: Vector,
   octave: number,
   isPlanar: boolean,
+  isSparse: boolean,
   u: Uniforms,
   c: Constants,
 ): (displacement: Vector) => [number, number] {
@@ -75,7 +89,7 @@ export function noiseAround(
   const [fine, coarse] = [0, 1].map((n) => latticeOf(point, octave + n, u, c));
   const axes = isPlanar ? 2 : 3;
   return (displacement) => [
-    octaveAt(fine, displacement, c, axes),
-    octaveAt(coarse, displacement, c, axes),
+    octaveAt(fine, displacement, c, axes, isSparse),
+    octaveAt(coarse, displacement, c, axes, isSparse),
   ];
 }

@@ -5,7 +5,7 @@ import type { Camera } from "./camera.ts";
 import { constantsOf, noiseAround, type Constants } from "./noise.ts";
 import { grainAt, layersAt, mover, type PathPlace } from "./pointpath.ts";
 import type { Settings } from "./protocol.ts";
-import { isMoving, uniforms, type Uniform } from "./uniforms.ts";
+import { isMoving, isSparse, uniforms, type Uniform } from "./uniforms.ts";
 import { clamp, length, scale, subtract, toFrame, type Vector } from "./vectors.ts";
 
 /** One look-up of the noise. */
@@ -134,7 +134,7 @@ export function pixelSum({ at, settings, camera, rows }: PixelPlace): PixelSum |
   const octave = Math.floor(octaves);
   const late = octaves - octave;
   const local = toFrame(geometry.frame, subtract(at.position, geometry.center));
-  const noise = noiseAround(local, octave, geometry.planar, u, c);
+  const noise = noiseAround(local, octave, geometry.planar, isSparse(header, settings), u, c);
   const weights = steps.map(({ weight }) => weight);
   const squares = total(weights.map((weight) => weight ** 2));
   const pairs = weights.slice(1).map((weight, n) => weight * weights[n]);

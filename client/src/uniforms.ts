@@ -20,7 +20,7 @@ export interface ViewState {
 }
 
 /** The table's settings with the types that they have there. */
-type Numbers = Record<"kernel" | "noise" | "motion" | "speed_in", string> &
+type Numbers = Record<"kernel" | "texture" | "noise" | "motion" | "speed_in", string> &
   Record<"two_sided" | "lod" | "fixed_grain" | "show_level", boolean> &
   Record<"samples" | "spacing" | "grain" | "contrast" | "strength" | "seed", number> &
   Record<"tiles" | "resolution" | "speed" | "period", number>;
@@ -38,7 +38,9 @@ export function uniforms(
   const finest = 2 ** (Math.floor(Math.log2(geometry.extent)) - constants.noiseDoublings);
   const w = view.eye[3];
   const eye = toFrame(geometry.frame, subtract(view.eye, scale(geometry.center, w)));
-  const kernel = signFree && s.kernel === "ramp" ? "hann" : s.kernel;
+  const sparse = isSparse(header, settings);
+  const chosen = sparse ? "ramp" : s.kernel;
+  const kernel = signFree && chosen === "ramp" ? "hann" : chosen;
   return {
     u_eye: [...subtract(eye, scale(view.anchor, w)), w],
     u_between: view.between,
@@ -46,7 +48,7 @@ export function uniforms(
     u_deepest: geometry.levels,
     u_lags: slices.lags,
     u_lagCount: slices.lags.length,
-    u_sides: s.two_sided || signFree ? slices.sides : 1,
+    u_sides: s.two_sided || signFree || sparse ? slices.sides : 1,
     u_unit: slices.unit,
     u_rateLayer: slices.count - 1,
     u_cell: slices.cell,
@@ -74,6 +76,11 @@ export function isMoving(header: Header, settings: Settings): boolean {
   return !header.paper && (header.slices.steps > 1 || streams);
 }
 
+/** Whether the texture is one of streaklets, which is a variant too. */
+export function isSparse(header: Header, settings: Settings): boolean {
+  return !header.paper && settings.texture === "streaklets";
+}
+
 /**
  * Whether a path may be so short that it stays in a cell where the flow turns, which is a variant too.
  * In perspective the nearest point of the surface counts, or of the ball around it.
@@ -85,6 +92,16 @@ export function isNear(header: Header, settings: Settings, view: ViewState): boo
   const away = view.eye[3] ? Math.max(gap, 0) / Math.hypot(...subtract(view.eye, view.focus)) : 1;
   const grain = s.lod ? view.pixel * away * s.grain * view.density : geometry.extent / s.resolution;
   return Math.floor(s.samples / 2) * s.spacing * grain < constants.farCells * slices.critical;
+}
+
+/** Names that are defined before the shaders' text at these settings. */
+export function variantOf(header: Header, settings: Settings, isClose: boolean): string[] {
+  const chosen = {
+    FLOWTEX_CELLS: isClose,
+    FLOWTEX_MOVING: isMoving(header, settings),
+    FLOWTEX_SPARSE: isSparse(header, settings),
+  };
+  return Object.entries(chosen).flatMap(([name, holds]) => (holds ? [name] : []));
 }
 
 /** The remainder that is not negative, as `%` of Python. */

@@ -32,7 +32,7 @@ import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
 import { Tiles } from "./tiles.ts";
 import type { Program } from "./programs.ts";
-import { isMoving, isNear, type Moment, type ViewState } from "./uniforms.ts";
+import { isNear, variantOf, type Moment, type ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
 
 /** Milliseconds for which a view that was moved counts as being moved. */
@@ -500,9 +500,8 @@ export class Viewer implements User {
   /** The program that draws at the present settings, from near or from afar. */
   private program(header: Header, isClose = this.isClose(header)): Program {
     const { vertex, fragment } = header.shaders;
-    const defines = isMoving(header, this.settings) ? ["FLOWTEX_MOVING"] : [];
-    if (isClose) defines.push("FLOWTEX_CELLS");
-    return this.graphics.programs.get(vertex, fragment, ...defines);
+    const variant = variantOf(header, this.settings, isClose);
+    return this.graphics.programs.get(vertex, fragment, ...variant);
   }
 
   private isClose(header: Header): boolean {

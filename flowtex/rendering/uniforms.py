@@ -23,6 +23,7 @@ __all__ = [
     "client_constants",
     "is_moving",
     "is_near",
+    "is_sparse",
     "uniforms",
     "variants",
 ]
@@ -78,13 +79,21 @@ class ViewState:
 
 
 def variants(
-    textures: TextureSet, *, unsteady: bool, moving: bool = False, near: bool = False
+    textures: TextureSet,
+    *,
+    unsteady: bool,
+    moving: bool = False,
+    near: bool = False,
+    sparse: bool = False,
 ) -> frozenset[str]:
     """Names of the shader's variant for a texture set.
 
-    The grains may change in time, and the view may be so near that paths stay in their cells.
+    The grains may change in time and be sparse, and the view may be so near that paths stay in
+    their cells.
     """
     chosen = set()
+    if sparse:
+        chosen.add("FLOWTEX_SPARSE")
     if moving:
         chosen.add("FLOWTEX_MOVING")
     if near:
@@ -138,14 +147,14 @@ def _shading() -> dict[str, Any]:
 def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
     """Values by name: bool, int, float, tuples of float, or lists for arrays.
 
-    ``moving`` and ``near`` are no uniforms: shaders have variants for them.
+    ``moving``, ``near`` and ``sparse`` are no uniforms: shaders have variants for them.
     """
     geometry = textures.geometry
     # A power of two, so that it is exact.
     finest = float(2.0 ** (np.floor(np.log2(geometry.extent)) - NOISE_DOUBLINGS))
     even = _origin_cell(geometry.local(view.focus), finest)
     sides, kernel = _direction(textures, settings)
-    moving = is_moving(textures, settings)
+    moving, sparse = is_moving(textures, settings), is_sparse(textures, settings)
     eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
     eye -= view.eye[3] * view.anchor
     values: dict[str, Any] = {
@@ -171,6 +180,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_fixed": settings.fixed_grain,
         "moving": moving,
         "near": is_near(textures, settings, view),
+        "sparse": sparse,
         **_motion(textures, settings, view),
         **_noise_origin(even, finest, view.anchor),
         "u_noiseFinest": finest,
@@ -190,6 +200,11 @@ def is_moving(textures: TextureSet, settings: Settings) -> bool:
         return False
     streams = settings.motion != "off" and not textures.geometry.field.sign_free
     return textures.store.steps > 1 or streams
+
+
+def is_sparse(textures: TextureSet, settings: Settings) -> bool:
+    """Tell whether the texture is one of streaklets, which a noise in a texture is not."""
+    return settings.texture == "streaklets" and textures.paper is None
 
 
 def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
@@ -213,7 +228,10 @@ def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str]:
     """Sides of the paths, and kernel.
 
     A field without a sign has no forward: it has both sides, and no kernel that falls towards one.
+    Streaklets have the kernel that makes a head and a tail.
     """
+    if is_sparse(textures, settings):
+        return textures.sides, "hann" if textures.geometry.field.sign_free else "ramp"
     if textures.geometry.field.sign_free:
         return textures.sides, "hann" if settings.kernel == "ramp" else settings.kernel
     return textures.sides if settings.two_sided else 1, settings.kernel

@@ -56,15 +56,17 @@ function latticeOf(point,octave,u,c){let isOdd=(octave&1)===1,cells=2**(octave>>
 Number(u.u_noiseFinest),finest=isOdd?u.u_noiseOriginOdd:u.u_noiseOriginEven,past=isOdd?u.u_noiseRestOdd:[0,0,0],origin=finest.
 map(n=>Math.floor(n/cells)),rest=finest.map((n,axis)=>(n-origin[axis]*cells+past[axis])/cells),key=origin.map((n,axis)=>Math.
 imul(n,c.AXIS_PRIMES[axis]));return key[0]+=Math.imul(octave,c.OCTAVE_PRIME[0])+Math.imul(Number(u.u_seed),c.SEED_PRIME[0]),
-{here:add(rest,point,inverse2),inverse:inverse2,key}}function octaveAt({here,inverse:inverse2,key},displacement,c,axes){
-let[toKey,toGrain]=c.HASH_FACTORS,sides=add(here,displacement,inverse2).slice(0,axes).map((x,axis)=>{let low=Math.floor(
-x),hash=n=>{let k=key[axis]+Math.imul(n,c.AXIS_PRIMES[axis])>>>0;return Math.imul(k^k>>>c.HASH_SHIFT[0],toKey)};return{hashes:[
-hash(low),hash(low+1)],shares:[1-x+low,x-low]}}),sum=0;for(let corner=0;corner<2**axes;corner+=1){let side=axis=>corner>>
-axis&1,hash=sides.reduce((all,{hashes},axis)=>all^hashes[side(axis)],0),share=sides.reduce((all,{shares:shares2},axis)=>all*
-shares2[side(axis)],1);sum+=share*Math.imul(hash,toGrain)}let spread=(all,{shares:[a,b]})=>all*(1-2*a*b);return sum/Math.
-sqrt(sides.reduce(spread,1)*c.GRAIN_VARIANCE[0])}function noiseAround(local,octave,isPlanar,u,c){let point=add(local,scale2(
-u.u_noiseOrigin,-1)),[fine,coarse]=[0,1].map(n=>latticeOf(point,octave+n,u,c)),axes=isPlanar?2:3;return displacement=>[octaveAt(
-fine,displacement,c,axes),octaveAt(coarse,displacement,c,axes)]}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+{here:add(rest,point,inverse2),inverse:inverse2,key}}function sparse(even,c){let bright=even>=(1-2*c.SPARSE_SHARE[0])*c.
+MOST_GRAIN[0];return c.MOST_GRAIN[0]*(bright?c.SPARSE_HIGH[0]:-c.SPARSE_LOW[0])}function octaveAt({here,inverse:inverse2,
+key},displacement,c,axes,isSparse2){let[toKey,toGrain]=c.HASH_FACTORS,sides=add(here,displacement,inverse2).slice(0,axes).
+map((x,axis)=>{let low=Math.floor(x),hash=n=>{let k=key[axis]+Math.imul(n,c.AXIS_PRIMES[axis])>>>0;return Math.imul(k^k>>>
+c.HASH_SHIFT[0],toKey)};return{hashes:[hash(low),hash(low+1)],shares:[1-x+low,x-low]}}),sum=0;for(let corner=0;corner<2**
+axes;corner+=1){let side=axis=>corner>>axis&1,hash=sides.reduce((all,{hashes},axis)=>all^hashes[side(axis)],0),share=sides.
+reduce((all,{shares:shares2},axis)=>all*shares2[side(axis)],1),grain=Math.imul(hash,toGrain);sum+=share*(isSparse2?sparse(
+grain,c):grain)}let spread=(all,{shares:[a,b]})=>all*(1-2*a*b);return sum/Math.sqrt(sides.reduce(spread,1)*c.GRAIN_VARIANCE[0])}
+function noiseAround(local,octave,isPlanar,isSparse2,u,c){let point=add(local,scale2(u.u_noiseOrigin,-1)),[fine,coarse]=[
+0,1].map(n=>latticeOf(point,octave+n,u,c)),axes=isPlanar?2:3;return displacement=>[octaveAt(fine,displacement,c,axes,isSparse2),
+octaveAt(coarse,displacement,c,axes,isSparse2)]}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
@@ -115,33 +117,35 @@ this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return
 let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
 end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
-subtract2(view.eye,scale2(geometry.center,w))),kernel=signFree&&s.kernel==="ramp"?"hann":s.kernel;return{u_eye:[...subtract2(
-eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.columns.size,geometry.rows.size],u_deepest:geometry.
-levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||signFree?slices.sides:1,u_unit:slices.unit,
-u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,
-u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,
-u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,
-finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,...header.paper&&noiseShape?paperUniforms(header.paper,
-s,noiseShape,view.density):{}}}function isMoving(header,settings){let streams=settings.motion!=="off"&&!isSignFree(header);
-return!header.paper&&(header.slices.steps>1||streams)}function isNear(header,settings,view){let{geometry,slices,constants}=header,
+subtract2(view.eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2?"ramp":s.kernel,kernel=signFree&&
+chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[
+geometry.columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.
+two_sided||signFree||sparse2?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(
+header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(
+kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,
+...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,
+...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):{}}}function isMoving(header,settings){
+let streams=settings.motion!=="off"&&!isSignFree(header);return!header.paper&&(header.slices.steps>1||streams)}function isSparse(header,settings){
+return!header.paper&&settings.texture==="streaklets"}function isNear(header,settings,view){let{geometry,slices,constants}=header,
 s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.
 hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;
-return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}var modulo=(value,by)=>value-by*Math.floor(
-value/by);function motionUniforms(header,s,view){let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&
-s.speed_in==="pixels",turns=varies?modulo((view.time-slices.times[0])/(geometry.extent/slices.pace),constants.mostTurns):
-modulo(view.clock/s.period,1),travel=varies?geometry.extent:s.speed*s.period,coarse=Math.floor(turns/constants.clockStep)*
-constants.clockStep;return{u_clock:[coarse,turns-coarse],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,
-u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*view.density}}function noiseOrigin(header,view,finest){
-let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,
-center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/
-cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.
-map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}
-function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?s.tiles:1,[rows,columns]=noiseShape;return{
-u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.deviations,u_noiseCorrected:paper.
-corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(paper.repeat[1]),Number(paper.
-repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){if(times2.length<2)return[
-0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/(times2[step+1]-
-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelOf(scene,step){
+return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose){
+let chosen={FLOWTEX_CELLS:isClose,FLOWTEX_MOVING:isMoving(header,settings),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.
+entries(chosen).flatMap(([name,holds])=>holds?[name]:[])}var modulo=(value,by)=>value-by*Math.floor(value/by);function motionUniforms(header,s,view){
+let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?modulo(
+(view.time-slices.times[0])/(geometry.extent/slices.pace),constants.mostTurns):modulo(view.clock/s.period,1),travel=varies?
+geometry.extent:s.speed*s.period,coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,
+turns-coarse],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="sp\
+eed",u_wave:constants.wavePixels*view.density}}function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.
+constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-
+1,cells=2**clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.
+SQRT2),whole=odd.map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,
+u_noiseOriginOdd:whole,u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.
+noise==="image"?s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,
+u_noiseDeviation:paper.deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],
+u_pictureRound:[Number(paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
+if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
+(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelOf(scene,step){
 let{slices,geometry}=scene.header,data=scene.part(`slices/${step}`).data,extra=scene.parts.get(`extra/${step}`)?.data,count=geometry.
 rows.size*geometry.columns.size,{channels}=slices;return(layer,texel)=>{let first=(layer*count+texel)*channels,at=n=>n<channels?
 fromHalf(data[first+n]):0,place=slices.extra.indexOf(layer),fourth=channels===4||!extra||place<0?at(3):fromHalf(extra[place*
@@ -206,14 +210,14 @@ at),sides=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0]?[...Array(Number(u.u_si
 map(side=>sideSteps(layers,side,spacing,u,c)),own=Math.max(kernelAt(0,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{
 displacement:[0,0,0],weight:own},...ahead],octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),
 octave=Math.floor(octaves),late=octaves-octave,local=toFrame(geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(
-local,octave,geometry.planar,u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.map(weight=>weight**2)),
-pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(u.u_spacing)*2**(late/
-2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*Math.SQRT1_2**n,near,
-c)),gain=alone*total(weights2)/Math.sqrt(squares*total(variance)),moved=mover(at),samples=steps.map(({displacement,weight})=>{
-let[fine,coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(displacement)??
-at.position,weight:weight/total(weights2),noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.weight*
-sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*mean,
-Number(settings.contrast),c)}}var SVG="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacing",
+local,octave,geometry.planar,isSparse(header,settings),u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.
+map(weight=>weight**2)),pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(
+u.u_spacing)*2**(late/2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*
+Math.SQRT1_2**n,near,c)),gain=alone*total(weights2)/Math.sqrt(squares*total(variance)),moved=mover(at),samples=steps.map(
+({displacement,weight})=>{let[fine,coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(
+displacement)??at.position,weight:weight/total(weights2),noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.
+weight*sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*
+mean,Number(settings.contrast),c)}}var SVG="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacing",
 "Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Another noise",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
 hann:"smooth",box:"even",ramp:"falling"},ROW=40;function row(name,count,marks){let svg=document.createElementNS(SVG,"svg");
 svg.setAttribute("viewBox",`0 0 ${count} ${ROW}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute("aria-\
@@ -1394,19 +1398,19 @@ missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(th
 requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.
 graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(
 now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(
-error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,defines=isMoving(header,this.settings)?
-["FLOWTEX_MOVING"]:[];return isClose&&defines.push("FLOWTEX_CELLS"),this.graphics.programs.get(vertex,fragment,...defines)}isClose(header){
-if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??
-[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.
-available(until);if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.program(
-header);if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}
-if(!program.ready||!this.scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,
-until)&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),programs.get(header.shaders.vertex,header.
-shaders.pick),header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){
-let{player,options}=this,isMade=steps=>this.ask(steps)&&!!this.scene?.make(steps,now);!player.playing||!player.advance(now,
-isMade)||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),
-this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there i\
-s nothing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(
+error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(header,this.
+settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){if(!this.camera)return!1;
+let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?
+tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);if(this.
+camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.program(header);if(program.error){
+this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||!this.
+scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.root.
+dataset.frames=String(this.renderer.frames),this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),header.
+slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,
+options}=this,isMade=steps=>this.ask(steps)&&!!this.scene?.make(steps,now);!player.playing||!player.advance(now,isMade)||
+(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.
+setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is not\
+hing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(
 focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.
 abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,
 between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*

@@ -46,6 +46,11 @@ const uint FLOWTEX_SEED_PRIME = 0x85ebca6bu;
 const uint FLOWTEX_HASH_SHIFT = 15u;
 const uvec2 FLOWTEX_HASH_FACTORS = uvec2(0x2c1b3c6du, 0x297a2d39u);
 const float FLOWTEX_MOST_GRAIN = 2147483648.0; // 2^31, the largest value of a grain
+// Streaklets: the share of grains that are bright, and what they and the others have in units of the
+// largest value of a dense one, so that mean and variance are the same.
+const float FLOWTEX_SPARSE_SHARE = 0.008;
+const float FLOWTEX_SPARSE_HIGH = 6.429101;
+const float FLOWTEX_SPARSE_LOW = 0.05184759;
 const float FLOWTEX_GRAIN_VARIANCE = 1.537228672809129e18; // a third of its square
 
 // Shading: the lightness that black and white are drawn to, and how far the texture goes from it.

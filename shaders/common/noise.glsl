@@ -48,6 +48,15 @@ uvec3 flowtexScatter(uvec3 key)
   return (key ^ (key >> FLOWTEX_HASH_SHIFT)) * FLOWTEX_HASH_FACTORS.x;
 }
 
+#ifdef FLOWTEX_SPARSE
+// Values that are even from -1 to 1 as those of sparse grains.
+vec4 flowtexSparse(vec4 even)
+{
+  return mix(vec4(-FLOWTEX_SPARSE_LOW), vec4(FLOWTEX_SPARSE_HIGH),
+             step(vec4(1.0 - 2.0 * FLOWTEX_SPARSE_SHARE), even));
+}
+#endif
+
 // Values of four lattice points from their scattered keys, even over all whole numbers with a sign
 // at every moment. In motion each is a mixture of two triangle waves with phases of their own.
 vec4 flowtexGrains(uvec4 key, vec2 turns)
@@ -56,7 +65,13 @@ vec4 flowtexGrains(uvec4 key, vec2 turns)
 #ifdef FLOWTEX_MOVING
   vec4 slow = abs(fract(grains * flowtexMotion.phases.x + turns.x) * 4.0 - 2.0) - 1.0;
   vec4 fast = abs(fract(grains * flowtexMotion.phases.y + turns.y) * 4.0 - 2.0) - 1.0;
+#ifdef FLOWTEX_SPARSE
+  slow = flowtexSparse(slow);
+  fast = flowtexSparse(fast);
+#endif
   grains = slow * flowtexMotion.shares.x + fast * flowtexMotion.shares.y;
+#elif defined(FLOWTEX_SPARSE)
+  grains = flowtexSparse(grains / FLOWTEX_MOST_GRAIN) * FLOWTEX_MOST_GRAIN;
 #endif
   return grains;
 }

@@ -66,6 +66,7 @@ VIEWS: dict[str, tuple[Any, Any, float, dict[str, Any]]] = {
     "image": (gyre, WHOLE, 1.0, {"noise": "image", "tiles": 3}),
     "streaming": (gyre, WHOLE, 1.0, {"motion": "uniform", "period": 3.0}),
     "without a sign": (lines, WHOLE, 1.0, {"kernel": "ramp", "two_sided": False}),
+    "streaklets": (gyre, WHOLE, 1.0, {"texture": "streaklets", "two_sided": False}),
     "finer": (gyre, WHOLE, 2.0, {"motion": "speed", "kernel": "box"}),
     "finer paper": (gyre, WHOLE, 2.0, {"noise": "texture", "resolution": 64}),
     "finer image": (gyre, WHOLE, 2.0, {"noise": "image", "tiles": 3}),
@@ -101,6 +102,7 @@ def uniforms_of(name: str) -> dict[str, Any]:
         "noise": noise,
         "moving": values.pop("moving"),
         "near": values.pop("near"),
+        "sparse": values.pop("sparse"),
         "uniforms": plain(values),
     }
 
@@ -440,6 +442,7 @@ SAMPLED: dict[str, tuple[tuple[float, float], Camera, dict[str, Any]]] = {
     "whole": ((2.3, 5.6), WHOLE, {"samples": 9}),
     "near": ((2.4, 2.7), straight(30), {"samples": 15, "seed": 7, "contrast": 2.0}),
     "one side": ((1.2, 6.1), WHOLE, {"kernel": "ramp", "two_sided": False, "samples": 6}),
+    "streaklets": ((1.2, 6.1), WHOLE, {"texture": "streaklets", "samples": 31}),
     "ramp": ((1.2, 6.1), WHOLE, {"kernel": "ramp", "grain": 2.0, "spacing": 0.5}),
     "box to the border": ((0.4, 6.1), WHOLE, {"kernel": "box", "samples": 31}),
     "no level of detail": ((2.3, 5.6), straight(4), {"lod": False, "samples": 7}),

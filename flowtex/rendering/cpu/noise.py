@@ -85,17 +85,24 @@ def scatter(key: Hashes) -> Hashes:
     return np.asarray((key ^ (key >> const.HASH_SHIFT)) * const.HASH_FACTORS[0], np.uint32)
 
 
-def grains(key: Hashes, motion: Motion | None) -> Floats:
+def grains(key: Hashes, motion: Motion | None, *, sparse: bool) -> Floats:
     """Values of lattice points from their scattered keys (N, 4), even over all signed numbers."""
     values = (key * const.HASH_FACTORS[1]).view(np.int32).astype(float)
     if motion is None:
+        if sparse:
+            values = const.MOST_GRAIN * _sparse(values / const.MOST_GRAIN)
         return np.asarray(values)
-    slow, fast = (
-        motion.shares[:, k, None]
-        * _triangle(values * motion.phases[:, k, None] + motion.clock[:, k, None])
-        for k in range(2)
+    waves = (
+        _triangle(values * motion.phases[:, k, None] + motion.clock[:, k, None]) for k in range(2)
     )
-    return np.asarray(slow + fast)
+    slow, fast = (_sparse(wave) if sparse else wave for wave in waves)
+    return np.asarray(slow * motion.shares[:, :1] + fast * motion.shares[:, 1:])
+
+
+def _sparse(even: Floats) -> Floats:
+    """Values that are even from -1 to 1 as those of sparse grains."""
+    bright = even >= 1.0 - 2.0 * const.SPARSE_SHARE
+    return np.where(bright, const.SPARSE_HIGH, -const.SPARSE_LOW)
 
 
 def _triangle(turn: Floats) -> Floats:
@@ -103,7 +110,12 @@ def _triangle(turn: Floats) -> Floats:
 
 
 def octave(
-    lattice: NoiseLattice, displacement: Floats, motion: Motion | None, *, planar: bool
+    lattice: NoiseLattice,
+    displacement: Floats,
+    motion: Motion | None,
+    *,
+    planar: bool,
+    sparse: bool = False,
 ) -> Floats:
     """One octave at displacements (N, 3), of variance 1 everywhere between the lattice points."""
     q = lattice.here + displacement * lattice.inverse[:, None]
@@ -115,9 +127,9 @@ def octave(
     x, y = (np.stack([low[:, n], high[:, n]], axis=-1) for n in range(2))
     corners = (x[:, None, :] ^ y[:, :, None]).reshape(-1, 4)
     if planar:
-        values, variance = grains(corners, motion), spread[:, :2].prod(axis=-1)
+        values, variance = grains(corners, motion, sparse=sparse), spread[:, :2].prod(axis=-1)
     else:
-        below, above = (grains(corners ^ z[:, 2:], motion) for z in (low, high))
+        below, above = (grains(corners ^ z[:, 2:], motion, sparse=sparse) for z in (low, high))
         values, variance = mix(below, above, w[:, 2:]), spread.prod(axis=-1)
     rows = mix(values[:, 0::2], values[:, 1::2], w[:, :1])
     return np.asarray(
@@ -182,7 +194,7 @@ class SpaceNoise(Lookup):
         """Both octaves, (N, 2)."""
         motion = None if self._motion is None else self._motion.after(length)
         two = (
-            octave(at, displacement, motion, planar=self._planar)
+            octave(at, displacement, motion, planar=self._planar, sparse=self._values["sparse"])
             for at in (self._fine, self._coarse)
         )
         return np.stack(list(two), axis=-1)

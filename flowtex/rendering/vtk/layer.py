@@ -33,6 +33,7 @@ from flowtex.rendering.uniforms import (
     ViewState,
     is_moving,
     is_near,
+    is_sparse,
     uniforms,
     variants,
 )
@@ -189,7 +190,10 @@ class FlowLayer:
         unsteady = self._textures.store.steps > 1
         moving = is_moving(self._textures, self._settings)
         near = is_near(self._textures, self._settings, self.view)
-        variant = variants(self._textures, unsteady=unsteady, moving=moving, near=near)
+        sparse = is_sparse(self._textures, self._settings)
+        variant = variants(
+            self._textures, unsteady=unsteady, moving=moving, near=near, sparse=sparse
+        )
         if variant == self._variant:
             return
         self._variant = variant

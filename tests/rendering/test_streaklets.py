@@ -1,0 +1,93 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from flows import gyre, lines, swinging
+from scipy import ndimage
+
+from flowtex import FlowField
+from flowtex._util.array_types import Floats
+from flowtex.camera import Camera
+from flowtex.field.locate import locator
+from flowtex.rendering import constants as const
+from flowtex.rendering.cpu import Picture, render
+from flowtex.rendering.uniforms import is_sparse
+from flowtex.scene import Scene
+from flowtex.settings import Settings
+
+SIZE = (240, 160)
+#: Pixels over which a still is judged around each of its pixels.
+WINDOW = 29
+
+
+def picture(field: FlowField, zoom: float) -> Picture:
+    scene = Scene(field, Settings(texture="streaklets"))
+    x, y, _ = field.surface.center + 0.11 * field.surface.extent
+    camera = Camera((x, y, 5), (x, y, 0), (0, 1, 0), parallel=True, parallel_scale=0.6 / zoom)
+    return render(scene.textures, scene.settings, camera, SIZE)
+
+
+def sense(drawn: Picture, velocity: Floats) -> float:
+    """Share of the strokes' pixels whose sense is that of the flow, by the picture alone.
+
+    A stroke brightens slowly towards its head and ends there, so along the way that the flow goes
+    a picture has few large steps downward: the cube of the derivative is negative in the mean.
+    """
+    way = velocity[..., :2] * (1, -1)
+    way /= np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-30)
+    value = np.where(drawn.covered, drawn.value, 0.0)
+    by_y, by_x = np.gradient(value)
+    along = by_x * way[..., 0] + by_y * way[..., 1]
+    inside = ndimage.binary_erosion(drawn.covered, iterations=2)
+    cubes = ndimage.uniform_filter(np.where(inside, along**3, 0.0), WINDOW)
+    strokes = inside & (value > np.nanpercentile(drawn.value, 80))
+    border = WINDOW // 2
+    strokes[:border] = strokes[-border:] = strokes[:, :border] = strokes[:, -border:] = False
+    return float((cubes[strokes] < 0).mean())
+
+
+def velocity_of(field: FlowField, drawn: Picture) -> Floats:
+    index, _ = locator(field).nearest(np.nan_to_num(drawn.position).reshape(-1, 3))
+    components = (
+        ndimage.map_coordinates(part, index.T, order=1)
+        for part in np.moveaxis(field.velocity[0], -1, 0)
+    )
+    return np.stack(list(components), axis=-1).reshape(*drawn.covered.shape, 3)
+
+
+@pytest.mark.parametrize(("make", "zoom"), [(gyre, 1), (gyre, 1024), (swinging, 32)])
+def test_a_still_tells_which_way_the_flow_goes(make: Callable[[], FlowField], zoom: float) -> None:
+    field = make().at_step(0)
+    drawn = picture(field, zoom)
+    velocity = velocity_of(field, drawn)
+    assert sense(drawn, velocity) > 0.95
+    if zoom == 32:
+        turned = FlowField.from_arrays(field.points, -field.velocity[0])
+        assert sense(picture(turned, zoom), velocity) < 0.05
+
+
+def test_streaklets_are_sparse_and_bright() -> None:
+    dense = Scene(gyre(), Settings())
+    drawn = picture(gyre(), 1)
+    value = drawn.value[drawn.covered]
+    assert value.mean() == pytest.approx(0.0, abs=0.2)
+    assert value.std() == pytest.approx(1.0, abs=0.2)
+    # Most of the picture is ground, and a few strokes are far brighter than it.
+    assert np.median(value) < -0.3
+    assert np.percentile(value, 99) > 3.0
+    assert not is_sparse(dense.textures, dense.settings)
+
+
+def test_the_numbers_of_sparse_grains_keep_mean_and_variance() -> None:
+    p, high, low = const.SPARSE_SHARE, const.SPARSE_HIGH, const.SPARSE_LOW
+    assert p * high - (1 - p) * low == pytest.approx(0.0, abs=1e-6)
+    assert p * high**2 + (1 - p) * low**2 == pytest.approx(1 / 3, abs=1e-6)
+
+
+def test_a_field_without_a_sign_has_strokes_without_a_head() -> None:
+    field = lines()
+    drawn = picture(field, 1)
+    share = sense(drawn, velocity_of(field, drawn))
+    assert 0.2 < share < 0.8
