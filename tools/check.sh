@@ -24,14 +24,15 @@ check() {
     "$bin/$@" || failed="$failed, $name"
 }
 
-# tests NAME ARGUMENT...; pytest says with 5 that there was none to run.
+# A shell lets what runs aside ignore Ctrl-C, which tests send to the processes that they start.
+unignored='import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); os.execv(sys.argv[1], sys.argv[1:])'
+
+# tests ARGUMENT...; pytest says with 5 that there was none to run.
 tests() {
-    name=$1
-    shift
     say "pytest $*"
-    "$bin/pytest" --dist loadfile --no-loadscope-reorder "$@"
+    "$bin/python" -c "$unignored" "$bin/pytest" --dist loadfile --no-loadscope-reorder "$@"
     code=$?
-    [ $code -eq 0 ] || [ $code -eq 5 ] || failed="$failed, $name"
+    [ $code -eq 0 ] || [ $code -eq 5 ]
 }
 
 # ended PID NAME LOG: wait for what runs aside, and show what it said.
@@ -52,15 +53,22 @@ aside="$types $client"
 fast="not browser and not slow"
 case $which in
 all)
-    tests tests -n "$(workers "$bin")" -m "not browser" "$@"
-    # Tests with a browser wait for what a person would see, so few of them share the machine.
-    tests "tests with a browser" -n auto --maxprocesses 2 -m browser "$@"
+    # Tests with a browser mostly wait for what a person would see, so they share the cores with the others.
+    (tests -n auto --maxprocesses 2 -m browser "$@") >"$logs/browser" 2>&1 &
+    browser=$!
+    aside="$aside $browser"
+    tests -n auto --maxprocesses 4 -m "not browser" "$@" || failed="$failed, tests"
+    ended $browser "tests with a browser" browser
     ;;
-fast) tests tests -n "$(workers "$bin")" -m "$fast" "$@" ;;
+fast) tests -n "$(workers "$bin")" -m "$fast" "$@" || failed="$failed, tests" ;;
 changed)
     files=$("$bin/python" "$here/changed_tests.py") || failed="$failed, choice of tests"
     # shellcheck disable=SC2086 # a list of files
-    if [ -n "$files" ]; then tests tests -n "$(workers "$bin")" -m "$fast" "$@" $files; else say "no tests"; fi
+    if [ -z "$files" ]; then
+        say "no tests"
+    else
+        tests -n "$(workers "$bin")" -m "$fast" "$@" $files || failed="$failed, tests"
+    fi
     ;;
 esac
 ended $types types types
