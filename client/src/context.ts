@@ -8,6 +8,8 @@ import type { Tracing } from "./tracer.ts";
 const OUTLINE_SAMPLES = 4;
 /** Milliseconds that all viewers may draw in one frame of the page. */
 export const FRAME_MS = 45;
+/** Pixels of whole numbers that can be drawn: texels around a place, and layers of slices. */
+const MOST_NUMBERS: [number, number] = [4, 68];
 /** Key of what all copies of this module on a page share. */
 const SHARED = Symbol.for("flowtex.gl/3");
 
@@ -199,19 +201,19 @@ export class Graphics {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
-  /** Draw into a pixel of whole numbers, and read it. */
-  pixel(draw: () => void): Uint32Array<ArrayBuffer> {
+  /** Draw into a few pixels of whole numbers, and read them. */
+  numbers(draw: () => void, width = 1, height = 1): Uint32Array<ArrayBuffer> {
     const gl = this.context;
-    this.picker ??= this.target(gl.RGBA32UI, 1, 1, 0);
+    this.picker ??= this.target(gl.RGBA32UI, ...MOST_NUMBERS, 0);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.picker.frame);
-    gl.viewport(0, 0, 1, 1);
+    gl.viewport(0, 0, width, height);
     gl.disable(gl.SCISSOR_TEST);
     gl.enable(gl.DEPTH_TEST);
     gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.clear(gl.DEPTH_BUFFER_BIT);
     draw();
-    const bits = new Uint32Array(4);
-    gl.readPixels(0, 0, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, bits);
+    const bits = new Uint32Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, bits);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     return bits;
   }

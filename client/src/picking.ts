@@ -39,11 +39,11 @@ export interface PickContext {
 export function pickedPoint(context: PickContext, x: number, y: number): Found | null {
   const { layers, camera, moment, anchor, canvas } = context;
   const { graphics, header } = layers[0].scene;
-  const program = graphics.programs.get(header.shaders.vertex, header.shaders.pick);
+  const [program] = layers[0].scene.pickers;
   const whole = projection(header.geometry, camera, anchor);
   const matrix = atPixel(whole, [x, y], [canvas.width, canvas.height]);
   const [before, after, between] = moment;
-  const bits = graphics.pixel(() => {
+  const bits = graphics.numbers(() => {
     layers.forEach(({ scene }, n) => {
       graphics.programs.use(program, { u_matrix: matrix, u_between: between, u_part: n });
       scene.draw(before, after, anchor, false);

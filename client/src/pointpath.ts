@@ -2,10 +2,9 @@
 // It is what shaders/common/path.glsl does at the finest level, in double precision.
 
 import type { Camera } from "./camera.ts";
-import { fromHalf } from "./half.ts";
 import { interpolated, type Corners } from "./mesh.ts";
 import { isSignFree, type Settings } from "./protocol.ts";
-import type { Scene } from "./scene.ts";
+import type { Four, Scene } from "./scene.ts";
 import { placeIn } from "./trianglemesh.ts";
 import { isMoving, type Moment } from "./uniforms.ts";
 import { add, clamp, cross, dot, fromFrame, length, scale, subtract, unit, type Vector } from "./vectors.ts";
@@ -42,24 +41,7 @@ export interface PathPlace {
   position: Vector;
 }
 
-type Four = [number, number, number, number];
 type Layers = (layer: number) => Four;
-
-/** Channels of a layer at a texel, as the graphics card has them. */
-function texelOf(scene: Scene, step: number): (layer: number, texel: number) => Four {
-  const { slices, geometry } = scene.header;
-  const data = scene.part(`slices/${step}`).data;
-  const extra = scene.parts.get(`extra/${step}`)?.data;
-  const count = geometry.rows.size * geometry.columns.size;
-  const { channels } = slices;
-  return (layer, texel) => {
-    const first = (layer * count + texel) * channels;
-    const at = (n: number) => (n < channels ? fromHalf(data[first + n]) : 0);
-    const place = slices.extra.indexOf(layer);
-    const fourth = channels === 4 || !extra || place < 0 ? at(3) : fromHalf(extra[place * count + texel]);
-    return [at(0), at(1), at(2), fourth];
-  };
-}
 
 /** The texels around a place, and their shares: four, or those of a triangle's nodes. */
 function texelsAt({ scene, place }: PathPlace): Corners {
@@ -80,20 +62,21 @@ export function layersAt(at: PathPlace): Layers {
   const { slices } = scene.header;
   const texels = texelsAt(at);
   const [before, after, late] = moment;
-  const steps = [before, after].map((step) => texelOf(scene, step));
-  const shares = [1 - late, late];
+  const numbers = texels.map(([texel]) => texel);
+  const steps = (before === after ? [before] : [before, after]).map((step) => scene.texels(step, numbers));
+  const shares = before === after ? [1] : [1 - late, late];
   const signs = isSignFree(scene.header)
-    ? signsOf(texels.map(([texel]) => steps[0](0, texel)))
+    ? signsOf(texels.map((_, n) => steps[0](0, n)))
     : texels.map(() => 1);
   return (layer) => {
     const sum: Four = [0, 0, 0, 0];
-    texels.forEach(([texel, weight], n) => {
+    texels.forEach(([, weight], n) => {
       // Of a node that is turned over the two sides change places.
       const other = layer + (layer > slices.lags.length ? -1 : 1) * slices.lags.length;
       const from = signs[n] < 0 && layer > 0 ? other : layer;
       steps.forEach((step, k) => {
         if (!shares[k]) return;
-        step(from, texel).forEach((value, c) => {
+        step(from, n).forEach((value, c) => {
           sum[c] += weight * shares[k] * value * (c < 3 ? signs[n] : 1);
         });
       });

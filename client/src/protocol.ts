@@ -194,15 +194,22 @@ export interface TraceHeader {
   /** Change of a position with a period, along j and i, and the point that positions are relative to. */
   offset: number[];
   middle: number[];
-  /** Typical length of a unit of lag, and nominal length of one. */
+  /** Length that the part "unit" is measured in, and nominal length of a unit of lag. */
   unit: number;
   pace: number;
+  /** Where lags are times, that of a unit of lag, and the typical speed. */
+  timed: { unit: number; speed: number } | null;
+  /** Whether paths are followed through the steps around, and not in the flow of one alone. */
+  pathlines: boolean;
+  /** Cells in a unit of lag: a slower particle rests. */
+  rest: number;
 }
 
 type ShaderName =
-  "vertex" | "fragment" | "pick" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment";
+  "vertex" | "fragment" | "pick" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment"
+  | "fullVertex" | "probe";
 /** Those of a client that traces. */
-type TraceShaderName = "fullVertex" | "trace" | "layers";
+type TraceShaderName = "trace" | "layers";
 
 export interface Header {
   format: number;

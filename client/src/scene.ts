@@ -2,12 +2,12 @@
 
 import type { Graphics, Resource } from "./context.ts";
 import { EarthLayer } from "./earthlayer.ts";
-import { halved } from "./half.ts";
+import { makeLayers, sendLayer, type LayersSize } from "./layers.ts";
 import { coordinates, cornersAt, noiseCoordinates, positions, shares, type Corners } from "./mesh.ts";
 import { MeshLevels, type Sight } from "./meshlevels.ts";
-import { SAMPLERS } from "./programs.ts";
+import { SAMPLERS, type Program } from "./programs.ts";
 import { stepOf, type Data, type Header, type Part } from "./protocol.ts";
-import { normalOf, positionOf, Tracing, type Made } from "./tracer.ts";
+import { flowsOf, normalOf, positionOf, Tracing, type Made } from "./tracer.ts";
 import {
   atVertices,
   cornersOf,
@@ -36,13 +36,8 @@ const SOURCES = ["padded", "unit", "open", "nearest"];
 
 type Scalar = Pick<Header["scalars"], "name" | "steps" | "number">;
 
-interface TextureSize {
-  width: number;
-  height: number;
-  layers: number;
-  channels: number;
-  levels: number;
-}
+/** The channels of a texel. */
+export type Four = [number, number, number, number];
 
 export class Scene {
   readonly graphics: Graphics;
@@ -73,13 +68,20 @@ export class Scene {
     if (pyramid) names.push("places");
     if (geometry.triangles) names.push("triangles", "blocks");
     for (const step of new Set([before, after])) {
-      names.push(`${trace ? "flow" : "slices"}/${step}`);
+      if (trace) names.push(...flowsOf(this.header, step).map((n) => `flow/${n}`));
+      else names.push(`slices/${step}`);
       if (slices.channels === 2) names.push(`extra/${step}`);
     }
     names.push(...this.scalarParts(before, after));
     if (scalars.name !== null) names.push("cmap");
     if (paper) names.push("noise", "step");
     return [...new Set(names)].filter((name) => !this.fits(name));
+  }
+
+  /** Steps that have to come before a step can be shown: it, or those that paths to it lead through. */
+  lacking(step: number): number[] {
+    const steps = this.missing(step, step).map((name) => (name.startsWith("flow/") ? stepOf(name) : step));
+    return [...new Set(steps)];
   }
 
   /** Names of the parts with the nodal values of a moment, of what colours say or of another scalar. */
@@ -131,22 +133,22 @@ export class Scene {
   private trace(step: number, until: number): boolean {
     const { graphics, header } = this;
     const { trace, lags, sides } = header.slices;
-    if (!trace) return true;
     const name = `slices/${step}`;
-    const digest = this.key([`flow/${step}`, ...SOURCES], trace, lags, sides);
+    if (!trace || this.resources.has(name)) return true;
+    const flows = flowsOf(header, step).map((n) => `flow/${n}`);
+    const key = this.key([...flows, ...SOURCES], step, trace, lags, sides, header.geometry.levels);
     const { tracings } = graphics;
-    if (this.parts.get(name)?.digest === digest) return true;
-    let made: Made | null = graphics.stock.get(digest)?.part ?? null;
-    if (!made) {
-      if (this.tracing !== digest) this.stopTracing();
+    if (!graphics.common.has(`slices ${key}`)) {
+      if (this.tracing !== key) this.stopTracing();
       const find = (part: string) => this.parts.get(part);
-      const tracing = tracings.get(digest) ?? new Tracing(graphics, header, trace, find, step);
-      tracings.set((this.tracing = digest), tracing);
-      made = tracing.advance(until);
-      if (!made) return false;
+      const tracing = tracings.get(key) ?? new Tracing(graphics, header, trace, find, step);
+      tracings.set((this.tracing = key), tracing);
+      const texture = tracing.advance(until);
+      if (!texture) return false;
       this.stopTracing();
+      graphics.common.set(`slices ${key}`, { kind: "Texture", object: texture, count: 0, key: `slices ${key}`, users: 0 });
     }
-    this.put(name, digest, () => made);
+    this.texture(name, key, () => undefined);
     return true;
   }
 
@@ -163,7 +165,7 @@ export class Scene {
   /** Whether all is there that shows some steps. */
   isMade(steps: number[]): boolean {
     const isWhole = !this.missing(steps[0], steps[steps.length - 1]).length;
-    return isWhole && steps.every((step) => this.parts.has(`slices/${step}`));
+    return isWhole && (!this.header.slices.trace || this.isLoaded(steps));
   }
 
   private stopTracing(): void {
@@ -182,9 +184,10 @@ export class Scene {
   forget(name: string): void {
     const [kind, step] = name.split("/");
     if (USERS[kind]?.includes("index")) this.meshLevels = this.drawn = null;
-    const sliced = kind === "slices" || kind === "extra";
+    const sliced = ["slices", "extra", "flow"].includes(kind);
     if (!sliced && kind !== "scalars") this.earth.forget(name);
     for (const user of sliced ? [`slices/${step}`] : (USERS[kind] ?? [])) this.drop(user);
+    if (SOURCES.includes(kind)) this.dropSlices(NaN, NaN);
     this.drop("array");
   }
 
@@ -382,6 +385,36 @@ export class Scene {
     });
   }
 
+  /** Programs that find a point, and what the slices have there; they may not be ready yet. */
+  get pickers(): [place: Program, texels: Program] {
+    const { programs } = this.graphics;
+    const { vertex, pick, fullVertex, probe } = this.header.shaders;
+    return [programs.get(vertex, pick), programs.get(fullVertex, probe)];
+  }
+
+  /** What the slices of a step have at some texels, four at most: channels by layer, and by texel. */
+  texels(step: number, texels: number[]): (layer: number, n: number) => Four {
+    const { graphics, header } = this;
+    const gl = graphics.context;
+    const { slices, geometry } = header;
+    const width = geometry.columns.size;
+    const texture = this.slices(step);
+    const draw = () => {
+      gl.activeTexture(gl.TEXTURE0);
+      gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
+      gl.bindVertexArray(null);
+      const places = texels.flatMap((n) => [n % width, Math.floor(n / width)]);
+      graphics.programs.use(this.pickers[1], { u_texels: places });
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    };
+    const bits = graphics.numbers(draw, texels.length, slices.count);
+    const numbers = new Float32Array(bits.buffer);
+    return (layer, n) => {
+      const [x, y, z, w] = numbers.subarray(4 * (layer * texels.length + n));
+      return [x, y, z, w];
+    };
+  }
+
   /** An image that is repeated along (v, u). */
   private image(name: string, repeat: [boolean, boolean]): WebGLTexture {
     const gl = this.graphics.context;
@@ -397,42 +430,12 @@ export class Scene {
     });
   }
 
-  /** Send the layers of a half-precision texture array, and make its mip levels. */
-  private fill(texture: WebGLTexture, size: TextureSize, layer: (n: number) => Uint16Array): void {
-    const gl = this.graphics.context;
-    const { width, height, layers, channels, levels } = size;
-    const target = gl.TEXTURE_2D_ARRAY;
-    this.checkSize(size);
-    const [format, inner] = channels === 1 ? [gl.RED, gl.R16F] : [gl.RGBA, gl.RGBA16F];
-    gl.bindTexture(target, texture);
-    gl.texStorage3D(target, levels + 1, inner, width, height, layers);
-    gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
-    gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
-    gl.texParameteri(target, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
-    gl.texParameteri(target, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
-    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    const { floats } = this.graphics;
-    for (let n = 0; n < layers; n += 1) {
-      let texels = layer(n);
-      let [w, h] = [width, height];
-      gl.texSubImage3D(target, 0, 0, 0, n, w, h, 1, format, gl.HALF_FLOAT, texels);
-      for (let level = 1; level <= levels && !floats; level += 1) {
-        [texels, w, h] = halved(texels, w, h, channels);
-        gl.texSubImage3D(target, level, 0, 0, n, w, h, 1, format, gl.HALF_FLOAT, texels);
-      }
-    }
-    if (floats && levels) gl.generateMipmap(target);
-  }
-
-  private checkSize({ width, height, layers }: TextureSize): void {
-    const gl = this.graphics.context;
-    const most = gl.getParameter(gl.MAX_TEXTURE_SIZE) as number;
-    const mostLayers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) as number;
-    if (Math.max(width, height) <= most && layers <= mostLayers) return;
-    throw new Error(
-      `a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics ` +
-        `card has ${most} x ${most} in ${mostLayers}; show fewer nodes`,
-    );
+  /** Send the layers of a texture, and make its mip levels. */
+  private fill(texture: WebGLTexture, size: LayersSize, layer: (n: number) => Uint16Array): void {
+    const { context: gl, floats } = this.graphics;
+    makeLayers(gl, texture, size);
+    for (let n = 0; n < size.layers; n += 1) sendLayer(gl, floats ? { ...size, levels: 0 } : size, n, layer(n));
+    if (floats && size.levels) gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
   }
 
   private colourMap(): WebGLTexture {

@@ -88,7 +88,8 @@ function checkHeader(own: TileHeader, { geometry: whole, slices: all }: Header):
         areWhole([...trace.first, ...trace.drawn], 4) &&
         trace.drawn.every((n) => n >= 0) &&
         areNumbers(trace.closed.map(Number), 2) &&
-        areNumbers([...trace.offset, ...trace.middle, trace.unit, trace.pace], 11))) &&
+        areNumbers([...trace.offset, ...trace.middle, trace.unit, trace.pace, trace.rest], 12) &&
+        (!trace.timed || areNumbers([trace.timed.unit, trace.timed.speed], 2)))) &&
     Object.values(ranges ?? {}).every((range) => areNumbers(range, 2));
   if (!fits) throw new Error("what is told of a tile does not fit the page");
 }

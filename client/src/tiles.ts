@@ -30,6 +30,7 @@ import {
   type TileKey,
 } from "./tilechoice.ts";
 import { Failures } from "./tilequeue.ts";
+import { flowsOf } from "./tracer.ts";
 import type { Moment } from "./uniforms.ts";
 
 /** Milliseconds from a change of what is wanted to the request, and after which a request counts as lost. */
@@ -317,7 +318,8 @@ export class Tiles {
   private ask(all: number[]): void {
     const { options, lifetime } = this.host;
     const isLacking = (step: number) => this.missing.some((name) => !this.isHere(name, [step]));
-    const steps = all.filter(isLacking);
+    // Those that paths lead through are needed too.
+    const steps = [...new Set(all.filter(isLacking).flatMap((step) => flowsOf(this.root.header, step)))];
     const open = this.asked.names.filter((name) => !this.isHere(name, this.asked.steps));
     const isAsked =
       performance.now() - this.lastCame < LOST_MS &&

@@ -1,11 +1,13 @@
-// Slices of a scene, traced on the graphics card from the velocity at its nodes. Python follows the
-// paths alike, and lays out the texels alike: flowtex/rendering/webgl/velocity.py has what comes here.
+// Slices of a scene, traced on the graphics card from the velocity at its nodes, into the texture that is
+// drawn from. Python follows the paths alike, and lays out the texels alike:
+// flowtex/rendering/webgl/velocity.py has what comes here.
 
 import { fromHalf } from "./half.ts";
+import { makeLayers, sendLayer, type LayersSize } from "./layers.ts";
 import type { Program, ProgramContext, Programs } from "./programs.ts";
 import type { Data, Header, Part, TraceHeader } from "./protocol.ts";
 import type { Uniform } from "./uniforms.ts";
-import { cross, length, type Vector } from "./vectors.ts";
+import { clamp, cross, length, type Vector } from "./vectors.ts";
 
 type Traced = Pick<Header, "geometry" | "slices" | "shaders">;
 
@@ -17,10 +19,16 @@ const NORMAL_MAX = 32767;
 /** Numbers by the bits of their half precision. */
 const HALVES = Float32Array.from({ length: 1 << 16 }, (_, bits) => fromHalf(bits));
 /** What the fourth channel of a layer has, as shaders/webgl2/layers.glsl knows it. */
-const [NOTHING, UNIT, REACH, SPEED] = [0, 1, 2, 3];
-const [TANGENTS, SLOPES, VELOCITY] = [0, 1, 2];
+const [NOTHING, SPEED, REACH] = [0, 1, 2];
 /** Units of the textures that a pass has. */
-const UNITS = 6;
+const UNITS = 7;
+/** Lag up to which paths of a steady flow are followed; longer ones are composed. */
+const DIRECT_LAG = 4;
+/** Steps whose flow is held on the graphics card while paths through it are followed. */
+const FLOWS_HELD = 4;
+/** Cells that the fastest particle goes in a pass, at most: a pass is never long. */
+const PASS_CELLS = 64;
+const MOST_PARTS = 64;
 
 /** Positions of the nodes that are drawn. */
 export function positionOf(padded: Part, trace: TraceHeader, shape: [number, number]): Made {
@@ -57,10 +65,55 @@ export function normalOf(padded: Part, trace: TraceHeader, shape: [number, numbe
 /** The context that paths are traced in. */
 interface TraceContext extends ProgramContext {
   readonly programs: Programs;
+  /** Whether textures of floats can be drawn into. */
+  readonly floats: boolean;
 }
 
 /** Parts by their names, of which some may be missing. */
 export type FindPart = (name: string) => Part | undefined;
+
+/** Numbers of the steps whose flow the slices of a step are traced from. */
+export function flowsOf({ slices }: Pick<Header, "slices">, step: number): number[] {
+  const { trace, times, lags } = slices;
+  if (!trace?.pathlines || !trace.timed) return [step];
+  const reach = lags[lags.length - 1] * trace.timed.unit;
+  const near = times.map((time) => Math.abs(time - times[step]) < reach);
+  const isNeeded = (n: number) => near[n] || near[n - 1] || near[n + 1];
+  return [...times.keys()].filter(isNeeded);
+}
+
+/** A part of a path in which the flow changes evenly from that of one step to that of another. */
+interface Stretch {
+  from: number;
+  to: number;
+  /** The steps, and the lags at which the flow is theirs. */
+  steps: [near: number, far: number];
+  between: [near: number, far: number];
+}
+
+/** The stretches of paths to a step, on one side, from a lag to another. */
+export function stretches(
+  { slices }: Pick<Header, "slices">,
+  step: number,
+  side: number,
+  from: number,
+  to: number,
+): Stretch[] {
+  const { trace, times } = slices;
+  if (!trace?.pathlines || !trace.timed) return [{ from, to, steps: [step, step], between: [0, 1] }];
+  const result: Stretch[] = [];
+  const { unit } = trace.timed;
+  const lagOf = (n: number) => (side * (times[n] - times[step])) / unit;
+  for (let n = step; from < to; n += side) {
+    const isLast = !(n + side in times);
+    const end = isLast ? to : lagOf(n + side);
+    if (end <= from) continue;
+    const between: [number, number] = isLast ? [0, 1] : [lagOf(n), end];
+    result.push({ from, to: Math.min(end, to), steps: [n, isLast ? n : n + side], between });
+    from = end;
+  }
+  return result;
+}
 
 /** The slices of one time while they are traced, some passes in each frame. */
 export class Tracing {
@@ -68,29 +121,35 @@ export class Tracing {
   private readonly header: Traced;
   private readonly trace: TraceHeader;
   private readonly find: FindPart;
-  private readonly textures: WebGLTexture[] = [];
+  private readonly textures = new Set<WebGLTexture>();
   private readonly frames: WebGLFramebuffer[] = [];
-  private readonly passes: Generator<void, Made>;
+  private readonly passes: Generator<void, WebGLTexture>;
+  /** Those of the flow at steps, by which paths are followed. */
+  private readonly flows = new Map<number, WebGLTexture>();
+  /** Most cells that a particle goes in a unit of lag. */
+  private fastest = 1;
 
   constructor(graphics: TraceContext, header: Traced, trace: TraceHeader, find: FindPart, step: number) {
     this.graphics = graphics;
     this.header = header;
     this.trace = trace;
     this.find = find;
-    this.passes = this.slices(`flow/${step}`);
+    this.passes = this.slices(step);
   }
 
-  /** Go on until a time; gives the slices when they are whole. */
-  advance(until: number): Made | null {
-    const programs = [this.program("trace"), this.program("layers")];
-    if (!programs.every(({ ready }) => ready)) return null;
+  /** Go on until a time; gives the texture of the slices, which is the caller's, when it is whole. */
+  advance(until: number): WebGLTexture | null {
+    if (!Object.values(this.programs).every((program) => program?.ready ?? true)) return null;
     const gl = this.graphics.context;
     try {
       do {
         const { done, value } = this.passes.next();
-        // What was read of a card that is lost is nothing.
+        // What was made on a card that is lost is nothing.
         if (gl.isContextLost()) return null;
-        if (done) return value;
+        if (done) {
+          this.textures.delete(value);
+          return value;
+        }
       } while (performance.now() < until);
       return null;
     } finally {
@@ -101,14 +160,28 @@ export class Tracing {
   dispose(): void {
     for (const texture of this.textures) this.graphics.free("Texture", texture);
     for (const frame of this.frames) this.graphics.free("Framebuffer", frame);
-    this.textures.length = this.frames.length = 0;
+    this.textures.clear();
+    this.frames.length = 0;
   }
 
-  private program(fragment: "trace" | "layers"): Program {
-    const { fullVertex = "", [fragment]: text = "" } = this.header.shaders;
-    const program = this.graphics.programs.get(fullVertex, text);
+  private program(fragment: "trace" | "layers", ...variant: string[]): Program {
+    const { graphics, header } = this;
+    const { fullVertex, [fragment]: text = "" } = header.shaders;
+    const program = graphics.programs.get(fullVertex, text, ...variant);
     if (program.error) throw new Error(`the tracer cannot be built: ${program.error}`);
     return program;
+  }
+
+  /** Programs that follow paths, put long ones together, and lay out texels. */
+  private get programs() {
+    const { pathlines } = this.trace;
+    const floats = this.graphics.floats ? ["FLOWTEX_FLOATS"] : [];
+    return {
+      follow: this.program("trace", ...(pathlines ? ["FLOWTEX_PATHLINES"] : [])),
+      compose: pathlines ? null : this.program("trace", "FLOWTEX_COMPOSED"),
+      slopes: this.program("layers", "FLOWTEX_SLOPES", ...floats),
+      tangents: this.program("layers", ...floats),
+    };
   }
 
   private data(name: string): Data {
@@ -120,7 +193,8 @@ export class Tracing {
   private texture(width: number, height: number, inner: number, data: Float32Array | null) {
     const gl = this.graphics.context;
     const texture = this.graphics.counted(gl.createTexture());
-    this.textures.push(texture);
+    this.textures.add(texture);
+    gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.texStorage2D(gl.TEXTURE_2D, 1, inner, width, height);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
@@ -129,12 +203,18 @@ export class Tracing {
     return texture;
   }
 
-  private target(width: number, height: number): [WebGLTexture, WebGLFramebuffer] {
+  private frame(): WebGLFramebuffer {
     const gl = this.graphics.context;
-    const texture = this.texture(width, height, gl.RGBA32UI, null);
     const frame = this.graphics.counted(gl.createFramebuffer());
     this.frames.push(frame);
     gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    return frame;
+  }
+
+  private target(width: number, height: number): [WebGLTexture, WebGLFramebuffer] {
+    const gl = this.graphics.context;
+    const texture = this.texture(width, height, gl.RGBA32UI, null);
+    const frame = this.frame();
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
     return [texture, frame];
   }
@@ -144,27 +224,41 @@ export class Tracing {
     for (let n = 0; n < UNITS; n += 1) {
       gl.activeTexture(gl.TEXTURE0 + n);
       gl.bindTexture(gl.TEXTURE_2D, null);
+      gl.bindTexture(gl.TEXTURE_2D_ARRAY, null);
     }
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
-  /** Velocity of the nodes as the shaders ask for it, and the whole speed. */
-  private flow(name: string): [Float32Array, Float32Array] {
-    const data = this.data(name);
+  /** Velocity of the nodes as the shaders ask for it; notes the most cells in a unit of lag. */
+  private flow(step: number): Float32Array {
+    const { trace } = this;
+    const data = this.data(`flow/${step}`);
     const unit = this.data("unit");
     const channels = data.length / unit.length;
     const flow = new Float32Array(4 * unit.length);
-    const whole = new Float32Array(4 * unit.length);
+    let most = 0;
     for (let n = 0, at = 0; n < unit.length; n += 1, at += channels) {
       const speed = HALVES[data[at + 2]];
-      const size = HALVES[unit[n]] * this.trace.unit;
-      flow[4 * n] = (HALVES[data[at]] * speed) / size;
-      flow[4 * n + 1] = (HALVES[data[at + 1]] * speed) / size;
+      const size = HALVES[unit[n]] * trace.unit;
+      const i = (HALVES[data[at]] * speed) / size;
+      const j = (HALVES[data[at + 1]] * speed) / size;
+      flow[4 * n] = i;
+      flow[4 * n + 1] = j;
       flow[4 * n + 2] = speed;
-      flow[4 * n + 3] = size;
-      whole[4 * n] = HALVES[data[at + channels - 1]];
+      flow[4 * n + 3] = trace.timed ? trace.timed.unit : size;
+      most = Math.max(most, Math.abs(i), Math.abs(j));
     }
-    return [flow, whole];
+    if (trace.timed) this.fastest = Math.max(this.fastest, most * trace.timed.speed * trace.timed.unit);
+    return flow;
+  }
+
+  private wholeSpeed(step: number): Float32Array {
+    const data = this.data(`flow/${step}`);
+    const nodes = this.data("unit").length;
+    const channels = data.length / nodes;
+    const whole = new Float32Array(4 * nodes);
+    for (let n = 0; n < nodes; n += 1) whole[4 * n] = HALVES[data[(n + 1) * channels - 1]];
+    return whole;
   }
 
   private cells(): Float32Array {
@@ -187,52 +281,122 @@ export class Tracing {
     return result;
   }
 
+  /** The flow of a step on the graphics card, with that of the last one that was asked for. */
+  private flowTexture(step: number): WebGLTexture {
+    const [rows, columns] = this.trace.nodes;
+    const gl = this.graphics.context;
+    const known = this.flows.get(step);
+    const texture = known ?? this.texture(columns, rows, gl.RGBA32F, this.flow(step));
+    this.flows.delete(step);
+    this.flows.set(step, texture);
+    for (const [other, old] of this.flows) {
+      if (this.flows.size <= FLOWS_HELD) break;
+      this.flows.delete(other);
+      this.textures.delete(old);
+      this.graphics.free("Texture", old);
+    }
+    return texture;
+  }
+
+  /** Parts of a stretch, none of which has more steps than a pass may take. */
+  private partsOf({ from, to }: Stretch): [from: number, to: number][] {
+    const count = clamp(Math.ceil(((to - from) * this.fastest) / PASS_CELLS), 1, MOST_PARTS);
+    const at = (n: number) => (n === count ? to : from + ((to - from) * n) / count);
+    return Array.from({ length: count }, (_, n) => [at(n), at(n + 1)]);
+  }
+
+  /** What layers are drawn into: the texture itself, or whole numbers that are read and sent there. */
+  private layerTarget(result: WebGLTexture, size: LayersSize) {
+    const gl = this.graphics.context;
+    const { width, height } = size;
+    if (this.graphics.floats) {
+      const frame = this.frame();
+      return {
+        begin: (n: number): [number, number] => {
+          gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+          gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, result, 0, n);
+          return [width, height];
+        },
+        end: () => undefined,
+        finish: () => {
+          gl.activeTexture(gl.TEXTURE0);
+          gl.bindTexture(gl.TEXTURE_2D_ARRAY, result);
+          if (size.levels) gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
+        },
+      };
+    }
+    const pairs = Math.ceil(width / 2);
+    const [, frame] = this.target(pairs, height);
+    const read = new Uint32Array(pairs * height * 4);
+    const halves = new Uint16Array(read.buffer);
+    const texels = new Uint16Array(4 * width * height);
+    return {
+      begin: (): [number, number] => {
+        gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+        return [pairs, height];
+      },
+      end: (n: number) => {
+        gl.readPixels(0, 0, pairs, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, read);
+        for (let row = 0; row < height; row += 1) {
+          const first = 8 * pairs * row;
+          texels.set(halves.subarray(first, first + 4 * width), 4 * width * row);
+        }
+        gl.activeTexture(gl.TEXTURE0);
+        gl.bindTexture(gl.TEXTURE_2D_ARRAY, result);
+        sendLayer(gl, size, n, texels);
+      },
+      finish: () => undefined,
+    };
+  }
+
   /** Make one layer after the other. */
-  private *slices(name: string): Generator<void, Made> {
+  private *slices(step: number): Generator<void, WebGLTexture> {
     const { graphics, trace, header } = this;
     const gl = graphics.context;
     const { geometry, slices } = header;
     const [rows, columns] = trace.nodes;
     const [height, width] = [geometry.rows.size, geometry.columns.size];
-    const pairs = Math.ceil(width / 2);
-    const [flow, whole] = this.flow(name);
+    const size = { width, height, layers: slices.count, channels: 4, levels: geometry.levels };
+    const result = graphics.counted(gl.createTexture());
+    this.textures.add(result);
     gl.activeTexture(gl.TEXTURE0);
-    const inputs = [
-      this.texture(columns, rows, gl.RGBA32F, flow),
+    makeLayers(gl, result, size);
+    const own = this.texture(columns, rows, gl.RGBA32F, this.flow(step));
+    const constant = [
       this.texture(columns, rows, gl.RGBA32F, this.cells()),
       this.texture(columns + 2, rows + 2, gl.RGBA32F, this.padded()),
-      this.texture(columns, rows, gl.RGBA32F, whole),
+      this.texture(columns, rows, gl.RGBA32F, this.wholeSpeed(step)),
     ];
-    // The first slices are laid out last, as they have the reach.
-    const [first, ...paths] = [0, 1, 2, 3].map(() => this.target(columns, rows));
-    const [, texels] = this.target(pairs, height);
+    // Paths at the first lag, at the last two, where they are now, and where they are put next.
+    const pool = [0, 1, 2, 3, 4].map(() => this.target(columns, rows));
+    const { lags, sides, count } = slices;
     const uniforms: Record<string, Uniform> = {
       ...{ u_flow: 0, u_cells: 1, u_padded: 2, u_speed: 3, u_before: 4, u_last: 5, u_earlier: 5 },
+      u_flowNext: 6,
       u_nodes: [columns, rows],
       u_closed: [Number(trace.closed[1]), Number(trace.closed[0])],
       u_first: [trace.first[1], trace.first[0]],
       u_offsetJ: trace.offset.slice(0, 3),
       u_offsetI: trace.offset.slice(3, 6),
+      u_timed: trace.timed?.speed ?? 0,
+      u_rest: trace.rest,
       u_pace: trace.pace,
       u_unit: slices.unit,
       u_cell: slices.cell / slices.unit,
       u_planar: Number(geometry.planar),
-      u_mostReach: 2 * slices.lags[slices.lags.length - 1],
+      u_mostReach: 2 * lags[lags.length - 1],
     };
     const draw = (
-      frame: WebGLFramebuffer,
-      size: [number, number],
-      before: WebGLTexture,
-      last: WebGLTexture,
+      [w, h]: [number, number],
+      textures: WebGLTexture[],
       pass: Program,
       values: Record<string, Uniform>,
     ) => {
-      gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-      gl.viewport(0, 0, ...size);
+      gl.viewport(0, 0, w, h);
       for (const ability of [gl.SCISSOR_TEST, gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE]) {
         gl.disable(ability);
       }
-      [...inputs, before, last].forEach((texture, n) => {
+      textures.forEach((texture, n) => {
         gl.activeTexture(gl.TEXTURE0 + n);
         gl.bindTexture(gl.TEXTURE_2D, texture);
       });
@@ -240,48 +404,49 @@ export class Tracing {
       graphics.programs.use(pass, { ...uniforms, ...values });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     };
-    const data = new Uint16Array(slices.count * height * width * 4);
-    const read = new Uint32Array(pairs * height * 4);
-    const halves = new Uint16Array(read.buffer);
-    const layer = (
-      n: number,
-      at: WebGLTexture,
-      last: WebGLTexture,
-      values: Record<string, Uniform>,
-    ) => {
-      draw(texels, [pairs, height], at, last, this.program("layers"), { u_lag: 1, ...values });
-      gl.readPixels(0, 0, pairs, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, read);
-      for (let row = 0; row < height; row += 1) {
-        const texelsOfRow = halves.subarray(8 * pairs * row, 8 * pairs * row + 4 * width);
-        data.set(texelsOfRow, 4 * width * (n * height + row));
-      }
+    const layers = this.layerTarget(result, size);
+    const layer = (n: number, pass: Program, textures: WebGLTexture[], values: Record<string, Uniform>) => {
+      draw(layers.begin(n), [own, ...constant, ...textures], pass, values);
+      layers.end(n);
     };
-    const { lags, sides, count } = slices;
-    const [none] = first;
-    layer(0, none, none, { u_kind: TANGENTS, u_fourth: UNIT });
-    if (count > 1 + sides * lags.length) {
-      layer(count - 1, none, none, { u_kind: VELOCITY, u_fourth: SPEED });
-    }
+    const { follow, compose, slopes, tangents } = this.programs;
+    layer(0, tangents, [], { u_inCells: 0 });
+    if (count > 1 + sides * lags.length) layer(count - 1, tangents, [], { u_inCells: 1 });
     for (let side = 0; side < sides; side += 1) {
       const sign = side ? 1 : -1;
       const start = 1 + side * lags.length;
-      const [unused] = paths[0];
-      let [last] = first;
-      let before = last;
+      let [first, before, now] = [pool[0], pool[0], pool[0]];
       for (const [m, lag] of lags.entries()) {
-        const [at, frame] = m ? paths[m % 3] : first;
         const [from, earlier] = [lags[m - 1] ?? 0, lags[m - 2] ?? 0];
-        const steps = { u_lagEarlier: earlier, u_from: from, u_to: lag, u_side: sign };
-        const pass = this.program("trace");
-        draw(frame, [columns, rows], m ? last : unused, m > 1 ? before : unused, pass, steps);
+        const composer = lag > DIRECT_LAG && earlier > 0 ? compose : null;
+        let at = now;
+        for (const stretch of stretches(header, step, sign, from, lag)) {
+          const [near, far] = stretch.steps.map((n) => this.flowTexture(n));
+          const parts = composer ? [[from, lag]] : this.partsOf(stretch);
+          for (const [begin, end] of parts) {
+            const next = pool.find((each) => ![first, before, now, at].includes(each)) ?? pool[0];
+            gl.bindFramebuffer(gl.FRAMEBUFFER, next[1]);
+            draw([columns, rows], [near, ...constant, at[0], before[0], far], composer ?? follow, {
+              u_lagEarlier: earlier,
+              u_from: begin,
+              u_to: end,
+              u_side: sign,
+              u_between: stretch.between,
+            });
+            // Waits until it is drawn, or a frame would have more passes than there is time for.
+            gl.readPixels(0, 0, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, new Uint32Array(4));
+            at = next;
+            yield;
+          }
+        }
+        [before, now] = [now, at];
+        if (!m) first = now;
         const fourth = m === 1 && !side ? SPEED : NOTHING;
-        const values = { u_kind: SLOPES, u_fourth: fourth, u_lag: sign * lag };
-        if (m) layer(start + m, at, at, values);
-        [before, last] = [last, at];
-        yield;
+        if (m) layer(start + m, slopes, [now[0], now[0]], { u_fourth: fourth, u_lag: sign * lag });
       }
-      layer(start, none, last, { u_kind: SLOPES, u_fourth: REACH, u_lag: sign * lags[0] });
+      layer(start, slopes, [first[0], now[0]], { u_fourth: REACH, u_lag: sign * lags[0] });
     }
-    return { data, shape: [count, height, width, 4] };
+    layers.finish();
+    return result;
   }
 }

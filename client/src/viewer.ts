@@ -31,6 +31,7 @@ import {
 import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
 import { Tiles } from "./tiles.ts";
+import { flowsOf } from "./tracer.ts";
 import type { Program } from "./programs.ts";
 import { isNear, variantOf, type Moment, type ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
@@ -40,9 +41,7 @@ const STILL_MS = 160;
 /** Milliseconds after which a request for a step counts as lost. */
 const LOST_MS = 5000;
 /** Time steps that are held where the host can send the others again, and where memory is short. */
-const STEPS_HELD = 12;
-const FEW_STEPS_HELD = 4;
-const FLOWS_HELD = 100;
+const STEPS_HELD = { slices: [12, 4], flow: [100, 24] };
 
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
 
@@ -217,14 +216,14 @@ export class Viewer implements User {
   /** Hold a few time steps where the others can be traced, or sent by the host, again. */
   private trim(): void {
     const { header, options } = this;
-    if (!header || (!options.onNeed && !header.slices.trace)) return;
-    const named = (kind: string) => [...this.parts.keys()].filter((name) => name.startsWith(kind));
-    const flows = options.onNeed && named("flow/").length > FLOWS_HELD ? ["flow"] : [];
-    const held = options.memory ? FEW_STEPS_HELD : STEPS_HELD;
-    for (const name of named("slices/").slice(0, -held)) {
+    if (!header || !options.onNeed) return;
+    const kind = header.slices.trace ? "flow" : "slices";
+    const named = (some: string) => [...this.parts.keys()].filter((name) => name.startsWith(some));
+    const needed = this.player.moment.slice(0, 2).flatMap((step) => flowsOf(header, step));
+    for (const name of named(`${kind}/`).slice(0, -STEPS_HELD[kind][Number(!!options.memory)])) {
       const step = stepOf(name);
-      if (this.player.moment.slice(0, 2).includes(step)) continue;
-      for (const kind of ["slices", "extra", ...flows]) this.remove(`${kind}/${step}`);
+      if (needed.includes(step)) continue;
+      for (const of of [kind, "extra"]) this.remove(`${of}/${step}`);
       const values = options.memory ? named("scalars/") : [];
       for (const other of values) if (isOfStep(other, step, header)) this.remove(other);
     }
@@ -475,7 +474,7 @@ export class Viewer implements User {
   /** Ask for the steps that are not there; tells whether all are. */
   private ask(steps: number[]): boolean {
     const now = performance.now();
-    const lacking = [...new Set(steps)].filter((step) => this.scene?.missing(step, step).length);
+    const lacking = [...new Set(steps.flatMap((step) => this.scene?.lacking(step) ?? []))];
     for (const step of lacking) {
       // A request that was lost is sent again.
       if (!this.options.onNeed || now - (this.requests.get(step) ?? -Infinity) < LOST_MS) continue;
@@ -516,9 +515,8 @@ export class Viewer implements User {
   private drawPicture(header: Header, until: number): void {
     const shown = this.available(until);
     if (!this.camera) this.place();
+    const program = this.program(header); // is built while the slices are made
     if (!shown || !this.camera) return;
-    const { programs } = this.graphics;
-    const program = this.program(header);
     if (program.error) {
       this.panel.fail("The shader does not compile with this graphics driver.", program.error);
       return;
@@ -527,7 +525,7 @@ export class Viewer implements User {
     if (!this.sharp && this.renderer.draw(program, shown, this.isBusy, until)) {
       this.root.dataset.frames = String(this.renderer.frames);
       this.panel.clear();
-      programs.get(header.shaders.vertex, header.shaders.pick); // the pointer asks for it next,
+      void this.scene.pickers; // the pointer asks for them next,
       if (header.slices.critical) this.program(header, true); // and the wheel for this
       this.setSharp(!this.playing);
     }
@@ -569,13 +567,12 @@ export class Viewer implements User {
     };
   }
 
-  // --- what is under the pointer ---
+  // --- under the pointer ---
 
-  /** Whether the program that finds points is built. */
+  /** Whether the programs that find points are built. */
   get canPick(): boolean {
-    const { header, graphics } = this;
-    if (!header || graphics.isLost || !graphics.gl) return false;
-    return graphics.programs.get(header.shaders.vertex, header.shaders.pick).ready;
+    const { scene, graphics } = this;
+    return !!scene && !graphics.isLost && !!graphics.gl && scene.pickers.every(({ ready }) => ready);
   }
 
   /** Point of the surface at (x, y), from -1 to 1, right and up. */

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,9 @@ def write_tile(here: Any, pyramid: Pyramid, key: TileKey, steps: Sequence[int], 
     textures = _textures(pyramid, key)
     data, at = None, key[1:]
     if textures is not None:
-        data = ClientData(textures, _colours(pyramid, textures.geometry.field), traces=True)
+        data = ClientData(textures, _colours(pyramid, textures.geometry.field))
+        # A page of a store may have some of its steps, which pathlines lead through.
+        data = replace(data, traces=textures.store.streamlines)
     if 0 in steps and key.level < pyramid.depth:  # a page has the surface of the root
         _write(here[SURFACE], at, of, _surface(pyramid, key, data))
     prefix = f"tile/{key.level}/{key.row}/{key.column}"
@@ -63,7 +66,7 @@ def _textures(pyramid: Pyramid, key: TileKey) -> TextureSet | None:
         store = SliceStore(pyramid.root, parameter=pyramid.parameter, lines=pyramid.lines)
         return pyramid.root_textures(store)
     textures = pyramid.textures(key)
-    if textures is None or can_trace(textures):
+    if textures is None or (textures.store.streamlines and can_trace(textures)):
         return textures
     return pyramid.tile(key, typical_steps(len(pyramid.root.times)))
 

@@ -86,7 +86,9 @@ def linked_data(view: WebView) -> ClientData:
         warnings.warn(
             "the store has not been built to its end; what is missing is shown coarse", stacklevel=2
         )
-    return replace(data, pyramid=stored if stored.depth else None, traces=True)
+    return replace(
+        data, pyramid=stored if stored.depth else None, traces=data.textures.store.streamlines
+    )
 
 
 def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:

@@ -91,12 +91,10 @@ const mat3 FLOWTEX_FROM_CONES = mat3(
 // Tracing.
 const float FLOWTEX_ENDLESS = 1e30;        // reach of a path that has not ended
 const float FLOWTEX_STEP_CELLS = 0.5;      // longest step
-const float FLOWTEX_DIRECT_LAG = 4.0;     // in units: up to it paths are followed, then composed
 const int FLOWTEX_PIECES = 16;             // of a path that is composed, at most
 const float FLOWTEX_MANY_LAGS = 1e4;       // reach of a path that does not end, in lags
 const int FLOWTEX_MOST_STEPS = 512;        // after which a path ends
 const int FLOWTEX_BISECTIONS = 12;         // that find where in a step it does
 const float FLOWTEX_BORDER_CELLS = 1e-2;   // that rounding may carry a path beyond a border
-const float FLOWTEX_RESTING_CELLS = 1e-3;  // in a unit of lag: a slower particle rests
 const float FLOWTEX_LAG_ROUNDING = 1e-5;
 const float FLOWTEX_HALF_MAX = 65504.0;

@@ -2,9 +2,11 @@
 // the nodes, along the direction of the flow, ended where the surface or the flow does.
 //
 // Wrappers supply
-//   vec4 flowtexNode(ivec2 node)
-// which is the rate along i and j in cells in a length, times the speed; the speed; and the length of a
-// unit of lag;
+//   vec4 flowtexNode(ivec2 node, float lag)
+// which is at a lag the rate along i and j in cells in a length, times the speed; the speed; and the length
+// of a unit of lag, or its time;
+//   vec2 flowtexPace(vec3 flow)
+// which is the rate of that in cells in a length, none where the flow has stopped, or in a time;
 //   bool flowtexOpen(ivec2 cell)
 // which tells whether a cell is not blanked.
 
@@ -30,15 +32,15 @@ ivec2 flowtexCellOf(vec2 at, out vec2 inside)
   return ivec2(cell);
 }
 
-// Rate in cells in a length; none where the flow has stopped.
-vec2 flowtexRate(vec2 at)
+// The same at a position.
+vec2 flowtexRate(vec2 at, float lag)
 {
   vec2 inside;
   ivec2 cell = flowtexCellOf(at, inside);
-  vec3 low = mix(flowtexNode(cell).xyz, flowtexNode(cell + ivec2(1, 0)).xyz, inside.x);
-  vec3 high = mix(flowtexNode(cell + ivec2(0, 1)).xyz, flowtexNode(cell + ivec2(1, 1)).xyz, inside.x);
-  vec3 flow = mix(low, high, inside.y);
-  return flow.z > 0.0 ? flow.xy / flow.z : vec2(0.0);
+  vec3 low = mix(flowtexNode(cell, lag).xyz, flowtexNode(cell + ivec2(1, 0), lag).xyz, inside.x);
+  vec3 high =
+    mix(flowtexNode(cell + ivec2(0, 1), lag).xyz, flowtexNode(cell + ivec2(1, 1), lag).xyz, inside.x);
+  return flowtexPace(mix(low, high, inside.y));
 }
 
 bool flowtexAlive(vec2 at)
@@ -48,6 +50,23 @@ bool flowtexAlive(vec2 at)
   return max(beyond.x, beyond.y) <= FLOWTEX_BORDER_CELLS && flowtexOpen(flowtexCellOf(at, inside));
 }
 
+// How far along first * x + bend * x * x a path is inside, by bisection; all of ``piece`` where it does not leave.
+float flowtexInside(vec2 at, vec2 first, vec2 bend, float piece)
+{
+  float low = 0.0;
+  float high = piece;
+  for (int n = 0; n < FLOWTEX_BISECTIONS; ++n)
+  {
+    float middle = n == 0 ? piece : 0.5 * (low + high);
+    if (flowtexAlive(at + middle * (first + bend * middle)))
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+#ifndef FLOWTEX_COMPOSED
 // Follows a path from ``start`` on, from a lag to another one in units of ``unit``, by the midpoint rule.
 void flowtexFollow(inout FlowtexPath path, vec2 start, float unit, float side, float from, float to)
 {
@@ -58,42 +77,32 @@ void flowtexFollow(inout FlowtexPath path, vec2 start, float unit, float side, f
   }
   float lag = from;
   int steps = 0;
+  float h = 0.0;
+  vec2 next = vec2(0.0);
+  bool ended = false;
   do
   {
-    vec2 at = start + path.moved;
-    vec2 rate = side * unit * flowtexRate(at);
-    float speed = max(abs(rate.x), abs(rate.y));
-    if (speed < FLOWTEX_RESTING_CELLS)
-    {
-      path.reach = lag;
-      path.ahead = vec2(0.0);
-      return;
-    }
-    float h = min(FLOWTEX_STEP_CELLS / speed, to - lag);
-    vec2 next = h * side * unit * flowtexRate(at + 0.5 * h * rate);
-    if (++steps >= FLOWTEX_MOST_STEPS || !flowtexAlive(at + next))
-    {
-      float low = 0.0;
-      float high = 1.0;
-      for (int n = 0; n < FLOWTEX_BISECTIONS; ++n)
-      {
-        float middle = 0.5 * (low + high);
-        if (flowtexAlive(at + middle * next))
-          low = middle;
-        else
-          high = middle;
-      }
-      path.reach = lag + low * h;
-      path.ahead = next / h;
-      path.moved += next + path.ahead * (to - lag - h);
-      return;
-    }
     path.moved += next;
     lag += h;
+    vec2 at = start + path.moved;
+    vec2 rate = side * unit * flowtexRate(at, lag);
+    float speed = max(abs(rate.x), abs(rate.y));
+    h = speed < u_rest ? 0.0 : min(FLOWTEX_STEP_CELLS / max(speed, FLOWTEX_LEAST_SPEED), to - lag);
+    next = h * side * unit * flowtexRate(at + 0.5 * h * rate, lag + 0.5 * h);
+    ended = h == 0.0 || ++steps >= FLOWTEX_MOST_STEPS || !flowtexAlive(at + next);
   }
-  while (lag < to * (1.0 - FLOWTEX_LAG_ROUNDING));
+  while (!ended && lag + h < to * (1.0 - FLOWTEX_LAG_ROUNDING));
+  // Without a graphics card what stands in a loop is run each time, whoever needs it.
+  if (ended)
+  {
+    float low = flowtexInside(start + path.moved, next, vec2(0.0), 1.0);
+    path.reach = lag + low * h;
+    path.ahead = h > 0.0 ? next / h : vec2(0.0);
+    next = path.ahead * (to - lag);
+  }
+  path.moved += next;
 }
-
+#else
 // Paths around a position, at two lags: mean displacements in a unit of lag, the reach, and the unit.
 struct FlowtexNear
 {
@@ -118,7 +127,7 @@ FlowtexNear flowtexNearOf(vec2 at, float lag, float earlier)
     near.earlier += weight / earlier * flowtexPathOf(cell + corner, true).moved;
     // A path ends only between nodes whose paths all end.
     near.reach += weight * min(path.reach, FLOWTEX_MANY_LAGS * lag);
-    near.unit += weight * flowtexNode(cell + corner).w;
+    near.unit += weight * flowtexNode(cell + corner, 0.0).w;
   }
   return near;
 }
@@ -133,40 +142,33 @@ void flowtexCompose(inout FlowtexPath path, vec2 start, float unit, float earlie
   }
   float lag = from;
   int pieces = 0;
+  float piece = 0.0;
+  float scale = 1.0;
+  float ends = 0.0;
+  bool ended = false;
+  vec2 first = vec2(0.0);
+  vec2 bend = vec2(0.0);
   do
   {
-    FlowtexNear near = flowtexNearOf(start + path.moved, from, earlier);
-    float scale = unit / near.unit; // of a lag, to the units there
-    float piece = min((to - lag) * scale, from);
-    vec2 bend = (near.slope - near.earlier) / (from - earlier);
-    vec2 first = near.slope - bend * from;
-    vec2 next = piece * (first + bend * piece);
-    float ends = near.reach;
-    if (++pieces > FLOWTEX_PIECES)
-      ends = 0.0;
-    if (!flowtexAlive(start + path.moved + next))
-    {
-      float low = 0.0;
-      float high = piece;
-      for (int n = 0; n < FLOWTEX_BISECTIONS; ++n)
-      {
-        float middle = 0.5 * (low + high);
-        if (flowtexAlive(start + path.moved + middle * (first + bend * middle)))
-          low = middle;
-        else
-          high = middle;
-      }
-      ends = min(ends, low);
-    }
-    if (ends < piece)
-    {
-      path.reach = lag + ends / scale;
-      path.ahead = (first + 2.0 * bend * ends) * scale;
-      path.moved += ends * (first + bend * ends) + path.ahead * (to - path.reach);
-      return;
-    }
-    path.moved += next;
+    path.moved += piece * (first + bend * piece);
     lag += piece / scale;
+    FlowtexNear near = flowtexNearOf(start + path.moved, from, earlier);
+    scale = unit / near.unit; // of a lag, to the units there
+    piece = min((to - lag) * scale, from);
+    bend = (near.slope - near.earlier) / (from - earlier);
+    first = near.slope - bend * from;
+    ends = ++pieces > FLOWTEX_PIECES ? 0.0 : near.reach;
+    ended = ends < piece || !flowtexAlive(start + path.moved + piece * (first + bend * piece));
   }
-  while (lag < to * (1.0 - FLOWTEX_LAG_ROUNDING));
+  while (!ended && lag + piece / scale < to * (1.0 - FLOWTEX_LAG_ROUNDING));
+  if (ended)
+  {
+    ends = min(ends, flowtexInside(start + path.moved, first, bend, piece));
+    path.reach = lag + ends / scale;
+    path.ahead = (first + 2.0 * bend * ends) * scale;
+    path.moved += ends * (first + bend * ends) + path.ahead * (to - path.reach);
+  }
+  else
+    path.moved += piece * (first + bend * piece);
 }
+#endif

@@ -1,5 +1,5 @@
-// Texels of a layer of the slices, two in a fragment, in half precision: flowtex/textures/texture_set.py
-// has what they are.
+// Texels of a layer of the slices, FLOWTEX_SLOPES or those without a lag: flowtex/textures/texture_set.py has what they are. Where floats cannot be
+// drawn, two in a fragment, in half precision.
 
 //#include common/constants.glsl
 //#include webgl2/nodes.glsl
@@ -11,31 +11,34 @@ uniform highp sampler2D u_speed;    // whole speed of the flow
 uniform vec2 u_first;               // node that the first texel would hold
 uniform vec3 u_offsetI;             // change of a position with a period
 uniform vec3 u_offsetJ;
-uniform float u_kind;    // 0 tangents, 1 slopes, 2 velocity in cells
-uniform float u_fourth;  // 0 nothing, 1 unit, 2 reach, 3 speed
+uniform float u_inCells; // 1 for the velocity in cells, and not the tangents
+uniform float u_fourth;  // 0 nothing, 1 speed, 2 reach
 uniform float u_lag;     // with the sign of the side
 uniform float u_mostReach;
 uniform float u_pace;
 uniform float u_unit;    // that of the texels
 uniform float u_cell;    // cells of the last layer, in units
 uniform float u_planar;
+#ifdef FLOWTEX_FLOATS
+out vec4 flowtexOut;
+#else
 out uvec4 flowtexOut;
+#endif
 
 vec3 flowtexPadded(ivec2 node)
 {
   return texelFetch(u_padded, node + 1, 0).xyz;
 }
 
-vec4 flowtexCubic(float t)
+#ifdef FLOWTEX_SLOPES
+// Weights of the nodes around a place between two, and straight on beyond it.
+vec4 flowtexCubic(float t, float beyond)
 {
-  return vec4(((-0.5 * t + 1.0) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1.0,
-              ((-1.5 * t + 2.0) * t + 0.5) * t, (0.5 * t - 0.5) * t * t);
-}
-
-void flowtexTangents(ivec2 node, out vec3 alongI, out vec3 alongJ)
-{
-  alongI = 0.5 * (flowtexPadded(node + ivec2(1, 0)) - flowtexPadded(node - ivec2(1, 0)));
-  alongJ = 0.5 * (flowtexPadded(node + ivec2(0, 1)) - flowtexPadded(node - ivec2(0, 1)));
+  vec4 weights = vec4(((-0.5 * t + 1.0) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1.0,
+                      ((-1.5 * t + 2.0) * t + 0.5) * t, (0.5 * t - 0.5) * t * t);
+  vec4 change = vec4((-1.5 * t + 2.0) * t - 0.5, (4.5 * t - 5.0) * t,
+                     (-4.5 * t + 4.0) * t + 0.5, (1.5 * t - 1.0) * t);
+  return weights + beyond * change;
 }
 
 // Position between the nodes, straight on beyond the border.
@@ -48,8 +51,8 @@ vec3 flowtexPosition(vec2 at)
   vec2 beyond = (at - inside) * (1.0 - u_closed);
   vec2 cell = min(floor(inside), cells - 1.0);
   vec2 f = inside - cell;
-  vec4 wi = flowtexCubic(f.x);
-  vec4 wj = flowtexCubic(f.y);
+  vec4 wi = flowtexCubic(f.x, beyond.x);
+  vec4 wj = flowtexCubic(f.y, beyond.y);
   vec3 result = vec3(0.0);
   for (int b = 0; b < 4; ++b)
   {
@@ -58,15 +61,9 @@ vec3 flowtexPosition(vec2 at)
       + wi[2] * flowtexPadded(node + ivec2(2, 0)) + wi[3] * flowtexPadded(node + ivec2(3, 0));
     result += wj[b] * row;
   }
-  if (beyond != vec2(0.0))
-  {
-    vec3 alongI;
-    vec3 alongJ;
-    flowtexTangents(ivec2(inside + 0.5), alongI, alongJ);
-    result += beyond.x * alongI + beyond.y * alongJ;
-  }
   return result + turns.x * u_offsetI + turns.y * u_offsetJ;
 }
+#endif
 
 vec4 flowtexTexel(vec2 texel)
 {
@@ -74,44 +71,47 @@ vec4 flowtexTexel(vec2 texel)
   vec2 cells = u_nodes - 1.0;
   ivec2 node = ivec2(mix(clamp(at, vec2(0.0), cells), at - floor(at / cells) * cells, u_closed) + 0.5);
   node += ivec2(round(texelFetch(u_cells, node, 0).yz));
-  vec4 flow = flowtexNode(node);
+  vec4 flow = flowtexNode(node, 0.0);
   float unit = flow.w * u_pace;
-  vec2 rate = flow.z > 0.0 ? flow.w * flow.xy / flow.z : vec2(0.0);
+  vec2 rate = flow.w * flowtexPace(flow.xyz);
   vec4 result = vec4(0.0);
+#ifdef FLOWTEX_SLOPES
+  vec2 moved = uintBitsToFloat(texelFetch(u_before, node, 0).xy);
   float reach = uintBitsToFloat(texelFetch(u_last, node, 0).z);
-  uvec4 path = texelFetch(u_before, node, 0);
-  if (u_kind < 0.5)
-  {
-    vec3 alongI;
-    vec3 alongJ;
-    flowtexTangents(node, alongI, alongJ);
-    result.xyz = (rate.x * alongI + rate.y * alongJ) / unit;
-  }
-  else if (u_kind < 1.5)
-  {
-    vec2 moved = uintBitsToFloat(path.xy);
-    result.xyz = (flowtexPosition(vec2(node) + moved) - flowtexPadded(node)) / (u_lag * unit);
-  }
-  else
-    result.xy = rate * u_cell;
-  if (u_planar > 0.5)
-    result.z = 0.0;
-  if (u_fourth > 2.5)
-    result.w = texelFetch(u_speed, node, 0).x;
-  else if (u_fourth > 1.5)
+  result.xyz = (flowtexPosition(vec2(node) + moved) - flowtexPadded(node)) / (u_lag * unit);
+  if (u_fourth > 1.5)
     // Where nothing moves, the neighbours alone decide.
     result.w = rate == vec2(0.0) ? u_mostReach : min(reach, u_mostReach);
   else if (u_fourth > 0.5)
-    result.w = unit / u_unit;
+    result.w = texelFetch(u_speed, node, 0).x;
+#else
+  if (u_inCells > 0.5)
+  {
+    result.xy = rate * u_cell;
+    result.w = u_timed > 0.0 ? 1.0 : texelFetch(u_speed, node, 0).x;
+  }
+  else
+  {
+    vec3 alongI = flowtexPadded(node + ivec2(1, 0)) - flowtexPadded(node - ivec2(1, 0));
+    vec3 alongJ = flowtexPadded(node + ivec2(0, 1)) - flowtexPadded(node - ivec2(0, 1));
+    result = vec4(0.5 * (rate.x * alongI + rate.y * alongJ), unit * unit / u_unit) / unit;
+  }
+#endif
+  if (u_planar > 0.5)
+    result.z = 0.0;
   return clamp(result, -FLOWTEX_HALF_MAX, FLOWTEX_HALF_MAX);
 }
 
 void main()
 {
   vec2 texel = floor(gl_FragCoord.xy);
+#ifdef FLOWTEX_FLOATS
+  flowtexOut = flowtexTexel(texel);
+#else
   texel.x *= 2.0;
   vec4 one = flowtexTexel(texel);
   vec4 two = flowtexTexel(texel + vec2(1.0, 0.0));
   flowtexOut = uvec4(packHalf2x16(one.xy), packHalf2x16(one.zw), packHalf2x16(two.xy),
                      packHalf2x16(two.zw));
+#endif
 }

@@ -23,13 +23,14 @@ FlowtexPath flowtexPathOf(ivec2 node, bool earlier)
 void main()
 {
   ivec2 node = ivec2(gl_FragCoord.xy);
-  float unit = flowtexNode(node).w;
+  float unit = flowtexNode(node, 0.0).w;
   FlowtexPath path = FlowtexPath(vec2(0.0), FLOWTEX_ENDLESS, vec2(0.0));
   if (u_from > 0.0)
     path = flowtexPathOf(node, false);
-  if (u_to > FLOWTEX_DIRECT_LAG && u_lagEarlier > 0.0)
-    flowtexCompose(path, vec2(node), unit, u_lagEarlier, u_from, u_to);
-  else
-    flowtexFollow(path, vec2(node), unit, u_side, u_from, u_to);
+#ifdef FLOWTEX_COMPOSED
+  flowtexCompose(path, vec2(node), unit, u_lagEarlier, u_from, u_to);
+#else
+  flowtexFollow(path, vec2(node), unit, u_side, u_from, u_to);
+#endif
   flowtexOut = uvec4(floatBitsToUint(path.moved), floatBitsToUint(path.reach), packHalf2x16(path.ahead));
 }

@@ -48,10 +48,11 @@ SHADERS = {
     "lineFragment": "webgl2/line_fragment.glsl",
     "groundVertex": "webgl2/ground_vertex.glsl",
     "groundFragment": "webgl2/ground_fragment.glsl",
+    "fullVertex": "webgl2/full_vertex.glsl",
+    "probe": "webgl2/probe.glsl",
 }
 #: Those of a client that traces.
 TRACE_SHADERS = {
-    "fullVertex": "webgl2/full_vertex.glsl",
     "trace": "webgl2/trace.glsl",
     "layers": "webgl2/layers.glsl",
 }
@@ -151,7 +152,9 @@ class ClientData:
     @cached_property
     def traced(self) -> bool:
         """Whether the client traces the slices."""
-        return self.traces and velocity.can_trace(self.textures)
+        # Pathlines lead through all steps, and not only through those that are handed over.
+        is_whole = not self.chosen or self.textures.store.streamlines
+        return self.traces and is_whole and velocity.can_trace(self.textures)
 
     @cached_property
     def packing(self) -> Packing:
@@ -340,7 +343,11 @@ class ClientData:
     def moment(self, time: float) -> tuple[int, ...]:
         """Return the steps that are needed to show a time, one or two."""
         before, after, _ = steps_around(self.times, time)
-        return (before,) if before == after else (before, after)
+        shown = (before,) if before == after else (before, after)
+        if not self.traced or self.textures.store.streamlines:
+            return shown
+        around = (velocity.steps_around(self.textures, step) for step in shown)
+        return tuple(sorted(set().union(*around)))
 
     @property
     def nbytes_of_step(self) -> int:

@@ -2,24 +2,26 @@
 
 It takes a fraction of the bytes of slices, and of the time. What travels is the velocity in index
 space, the nodes' positions with a ghost line around them, and what is blanked, of all nodes that
-paths of the drawn ones may reach. ``shaders/webgl2/trace.glsl`` follows the paths, the first cells
-with steps of half a cell, and composes longer ones; ``shaders/webgl2/layers.glsl`` makes texels of
-them as :class:`~flowtex.textures.TextureSet` does.
+paths of the drawn ones may reach. It is the same for paths by length and by time, streamlines and
+pathlines. ``shaders/webgl2/trace.glsl`` follows the paths with steps of half a cell, and composes
+longer ones of a flow that stands still; ``shaders/webgl2/layers.glsl`` makes texels of them as
+:class:`~flowtex.textures.TextureSet` does.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Bools
+from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.vectors import norm
 from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.rendering.webgl.packing import HALF_MAX, half
 from flowtex.rendering.webgl.protocol import Header, Parts, plain_list
 from flowtex.textures import SurfaceGeometry, TextureSet
-from flowtex.trace.sampler import STOPPED_SPEED
+from flowtex.trace.lags import drawn_lags
+from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
 
-__all__ = ["can_trace", "surface_parts", "trace_header", "velocity_part"]
+__all__ = ["can_trace", "steps_around", "surface_parts", "trace_header", "velocity_part"]
 
 #: Share of the typical speed by which that along the surface may differ from the whole one.
 SAME_SPEED_SHARE = 1e-3
@@ -29,31 +31,59 @@ LEAST_SIZE = 1e-4
 CELL_SHARE, SMALL_CELLS = 2**-11, 1.0
 #: Bytes of a node at one time, about.
 NODE_BYTES = 4
+#: Steps whose flow a client holds to follow the paths to one of them, at most.
+MOST_STEPS = 64
 
 
 def can_trace(textures: TextureSet) -> bool:
-    """Whether a client can trace a flow: along streamlines by length, without poles, with signs.
+    """Whether a client can trace a flow: on a structured surface without poles, with signs.
 
-    Half precision has to hold the sizes of its cells.
+    Half precision has to hold the sizes of its cells, and a client the steps of pathlines.
     """
     field, store = textures.geometry.field, textures.store
-    sizes = store.unit / np.median(store.unit)
-    return (
-        bool(sizes.min() > LEAST_SIZE and sizes.max() < HALF_MAX)
-        and isinstance(textures.geometry, SurfaceGeometry)
-        and textures.paper is None
-        and field.surface.poles is None
-        and not field.sign_free
-        and not store.given
-        and store.streamlines
-        and store.parameter == "arclength"
-    )
+    if (
+        not isinstance(textures.geometry, SurfaceGeometry)
+        or textures.paper is not None
+        or field.surface.poles is not None
+        or field.sign_free
+        or store.given
+    ):
+        return False
+    sizes = _sizes(textures) / _size(textures)
+    if not (sizes.min() > LEAST_SIZE and sizes.max() < HALF_MAX):
+        return False
+    return store.streamlines or len(steps_around(textures, len(field.times) // 2)) <= MOST_STEPS
+
+
+def steps_around(textures: TextureSet, step: int) -> list[int]:
+    """Return the steps whose flow a client traces the slices of a step from."""
+    store, times = textures.store, textures.geometry.field.times
+    if store.streamlines:
+        return [step]
+    reach = float(store.lags[-1] * store.unit.flat[0])
+    near = np.abs(times - times[step]) < reach
+    one_more = np.pad(near, 1)
+    return [int(n) for n in np.flatnonzero(near | one_more[:-2] | one_more[2:])]
+
+
+def _sizes(textures: TextureSet) -> Floats:
+    """Lengths of cells in which velocities are measured, (J, I)."""
+    store = textures.store
+    if store.parameter == "arclength":
+        return store.unit
+    return drawn_lags(textures.geometry.field, "arclength")[1]
+
+
+def _size(textures: TextureSet) -> float:
+    return float(np.median(_sizes(textures)))
 
 
 def trace_header(textures: TextureSet) -> Header:
     """Return the numbers of tracing and of laying out the texels."""
     geometry = textures.grid
-    surface = geometry.field.surface
+    surface, store = geometry.field.surface, textures.store
+    timed, last = store.parameter == "time", float(store.lags[-1])
+    rest = (STILL_CELLS / last if store.streamlines else 0.0) if timed else RESTING_CELLS
     rows, columns = geometry.rows, geometry.columns
     valid, parts = geometry.field.valid, ["padded", "unit"]
     if _is_blanked(valid):
@@ -70,17 +100,22 @@ def trace_header(textures: TextureSet) -> Header:
         # By how much a position grows with a period.
         "offset": plain_list(surface.offset @ geometry.frame.T),
         "middle": plain_list(geometry.frame @ (surface.center - geometry.center)),
-        "unit": float(np.median(textures.store.unit)),
+        "unit": _size(textures),
         "pace": float(textures.pace),
+        "timed": {"unit": float(store.unit.flat[0]), "speed": textures.typical_speed}
+        if timed
+        else None,
+        "pathlines": not store.streamlines,
+        "rest": rest,
     }
 
 
 def surface_parts(textures: TextureSet) -> Parts:
     """Return the arrays of the nodes that are the same at all times."""
     geometry = textures.grid
-    surface, unit = geometry.field.surface, textures.store.unit
+    surface = geometry.field.surface
     padded = (surface.padded - surface.center) @ geometry.frame.T
-    parts: Parts = {"unit": half(unit / np.median(unit))}
+    parts: Parts = {"unit": half(_sizes(textures) / _size(textures))}
     # Multiples of a power of two are packed well, if they are much smaller than a cell.
     small = float(np.percentile(norm(surface.tangents), SMALL_CELLS))
     least = np.ldexp(1.0, int(np.floor(np.log2(max(small, 1e-30) * CELL_SHARE))))
@@ -103,8 +138,8 @@ def _is_blanked(valid: Bools) -> bool:
 def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     """Return the velocity of one time, (J, I, 3 or 4).
 
-    It is the rate along i and j in cells in a unit of lag, the speed along the surface in multiples
-    of the typical one, and the whole speed where that is another.
+    It is the rate along i and j in cells in the length of a cell, the speed along the surface in
+    multiples of the typical one, and the whole speed where that is another.
     """
     field = textures.geometry.field.at_step(step)
     flow, valid, typical = field.index_velocity, field.valid, textures.typical_speed
@@ -112,7 +147,7 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     components = fill_blanked(np.asarray(flow.components[0]), valid)
     rate = np.zeros_like(components)
     moves = speed > STOPPED_SPEED * speed.max()
-    cells = components * textures.store.unit[..., None]
+    cells = components * _sizes(textures)[..., None]
     np.divide(cells, speed[..., None], out=rate, where=moves[..., None])
     channels = [rate[..., 0], rate[..., 1], speed / typical]
     whole = np.asarray(field.speed[0])
