@@ -29,6 +29,8 @@ const FLOWS_HELD = 4;
 /** Cells that the fastest particle goes in a pass, at most: a pass is never long. */
 const PASS_CELLS = 64;
 const MOST_PARTS = 64;
+/** Share of a lag by which rounding may miss a step. */
+const LAG_ROUNDING = 1e-5;
 
 /** Positions of the nodes that are drawn. */
 export function positionOf(padded: Part, trace: TraceHeader, shape: [number, number]): Made {
@@ -107,10 +109,11 @@ export function stretches(
   for (let n = step; from < to; n += side) {
     const isLast = !(n + side in times);
     const end = isLast ? to : lagOf(n + side);
-    if (end <= from) continue;
+    if (end <= from + LAG_ROUNDING * to) continue;
     const between: [number, number] = isLast ? [0, 1] : [lagOf(n), end];
-    result.push({ from, to: Math.min(end, to), steps: [n, isLast ? n : n + side], between });
-    from = end;
+    const isWhole = end >= to - LAG_ROUNDING * to;
+    result.push({ from, to: isWhole ? to : end, steps: [n, isLast ? n : n + side], between });
+    from = isWhole ? to : end;
   }
   return result;
 }

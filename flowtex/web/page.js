@@ -1036,20 +1036,21 @@ own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(
 place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.
 max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=
 values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=7,
-DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64;function positionOf(padded,trace,shape){let[rows,columns]=shape,width=padded.
-shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1){let first=3*((j+top+1)*
-width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%3]}return{data,shape:[rows,columns,
-3]}}function normalOf(padded,trace,shape){let[rows,columns]=shape,width=3*padded.shape[1],[top,left]=trace.drawn,data=new Int16Array(
-rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3){let at=width*(j+top+1)+3*(i+left+1),along=step=>[
-0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(along(3),along(width)),size=length2(normal)||
-1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}return{data,shape:[rows,columns,3]}}function flowsOf({
-slices},step){let{trace,times:times2,lags}=slices;if(!trace?.pathlines||!trace.timed)return[step];let reach=lags[lags.length-
-1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-times2[step])<reach),isNeeded=n=>near[n]||near[n-1]||near[n+1];return[
-...times2.keys()].filter(isNeeded)}function stretches({slices},step,side,from,to){let{trace,times:times2}=slices;if(!trace?.
-pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,1]}];let result2=[],{unit:unit2}=trace.timed,lagOf=n=>side*
-(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in times2),end=isLast?to:lagOf(n+side);
-if(end<=from)continue;let between2=isLast?[0,1]:[lagOf(n),end];result2.push({from,to:Math.min(end,to),steps:[n,isLast?n:
-n+side],between:between2}),from=end}return result2}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];passes;flows=new Map;fastest=1;constructor(graphics,header,trace,find,step){
+DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape){let[rows,
+columns]=shape,width=padded.shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=
+1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%3]}return{
+data,shape:[rows,columns,3]}}function normalOf(padded,trace,shape){let[rows,columns]=shape,width=3*padded.shape[1],[top,
+left]=trace.drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3){let at=width*
+(j+top+1)+3*(i+left+1),along=step=>[0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(along(3),
+along(width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}return{data,shape:[
+rows,columns,3]}}function flowsOf({slices},step){let{trace,times:times2,lags}=slices;if(!trace?.pathlines||!trace.timed)
+return[step];let reach=lags[lags.length-1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-times2[step])<reach),isNeeded=n=>near[n]||
+near[n-1]||near[n+1];return[...times2.keys()].filter(isNeeded)}function stretches({slices},step,side,from,to){let{trace,
+times:times2}=slices;if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,1]}];let result2=[],
+{unit:unit2}=trace.timed,lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in
+times2),end=isLast?to:lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between2=isLast?[0,1]:[lagOf(n),end],isWhole=end>=
+to-LAG_ROUNDING*to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between2}),from=isWhole?to:end}
+return result2}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];passes;flows=new Map;fastest=1;constructor(graphics,header,trace,find,step){
 this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.passes=this.slices(step)}advance(until){if(!Object.
 values(this.programs).every(program=>program?.ready??!0))return null;let gl=this.graphics.context;try{do{let{done,value}=this.
 passes.next();if(gl.isContextLost())return null;if(done)return this.textures.delete(value),value}while(performance.now()<

@@ -87,9 +87,10 @@ void flowtexFollow(inout FlowtexPath path, vec2 start, float unit, float side, f
     vec2 at = start + path.moved;
     vec2 rate = side * unit * flowtexRate(at, lag);
     float speed = max(abs(rate.x), abs(rate.y));
-    h = speed < u_rest ? 0.0 : min(FLOWTEX_STEP_CELLS / max(speed, FLOWTEX_LEAST_SPEED), to - lag);
+    bool rests = speed < u_rest;
+    h = rests ? 0.0 : min(FLOWTEX_STEP_CELLS / max(speed, FLOWTEX_LEAST_SPEED), to - lag);
     next = h * side * unit * flowtexRate(at + 0.5 * h * rate, lag + 0.5 * h);
-    ended = h == 0.0 || ++steps >= FLOWTEX_MOST_STEPS || !flowtexAlive(at + next);
+    ended = rests || ++steps >= FLOWTEX_MOST_STEPS || !flowtexAlive(at + next);
   }
   while (!ended && lag + h < to * (1.0 - FLOWTEX_LAG_ROUNDING));
   // Without a graphics card what stands in a loop is run each time, whoever needs it.
