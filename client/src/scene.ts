@@ -39,6 +39,11 @@ type Scalar = Pick<Header["scalars"], "name" | "steps" | "number">;
 /** The channels of a texel. */
 export type Four = [number, number, number, number];
 
+/** Bytes of four numbers in half precision, with those of the mip levels. */
+const TEXEL_BYTES = 8 * (4 / 3);
+/** Number of all scenes. */
+let count = 0;
+
 export class Scene {
   readonly graphics: Graphics;
   readonly header: Header;
@@ -50,8 +55,9 @@ export class Scene {
   /** Levels of the mesh's blocks, and of their borders. */
   private drawn: { levels: Int8Array; joins: Int8Array } | null = null;
   private meshLevels: MeshLevels | TriangleMesh | null = null;
-  /** Slices that are being traced, by their digest. */
+  /** Slices that are being traced, by their key, and what stands in it for parts without a digest. */
   private tracing = "";
+  private readonly number = (count += 1);
 
   constructor(graphics: Graphics, header: Header, parts: Map<string, Part>) {
     this.graphics = graphics;
@@ -137,18 +143,19 @@ export class Scene {
     if (!trace || this.resources.has(name)) return true;
     const flows = flowsOf(header, step).map((n) => `flow/${n}`);
     const key = this.key([...flows, ...SOURCES], step, trace, lags, sides, header.geometry.levels);
-    const { tracings } = graphics;
-    if (!graphics.common.has(`slices ${key}`)) {
-      if (this.tracing !== key) this.stopTracing();
+    let texture: WebGLTexture | null = null;
+    if (!key || !graphics.common.has(`slices ${key}`)) {
+      const { tracings } = graphics;
+      const tracked = key || `${this.number} ${step}`;
+      if (this.tracing !== tracked) this.stopTracing();
       const find = (part: string) => this.parts.get(part);
-      const tracing = tracings.get(key) ?? new Tracing(graphics, header, trace, find, step);
-      tracings.set((this.tracing = key), tracing);
-      const texture = tracing.advance(until);
+      const tracing = tracings.get(tracked) ?? new Tracing(graphics, header, trace, find, step);
+      tracings.set((this.tracing = tracked), tracing);
+      texture = tracing.advance(until);
       if (!texture) return false;
       this.stopTracing();
-      graphics.common.set(`slices ${key}`, { kind: "Texture", object: texture, count: 0, key: `slices ${key}`, users: 0 });
     }
-    this.texture(name, key, () => undefined);
+    this.take(name, "Texture", key, () => texture, () => undefined);
     return true;
   }
 
@@ -289,6 +296,14 @@ export class Scene {
   /** Whether the slices of some steps are on the graphics card. */
   isLoaded(steps: number[]): boolean {
     return steps.every((step) => this.resources.has(`slices/${step}`));
+  }
+
+  /** Bytes of the slices that were traced, about. */
+  get tracedBytes(): number {
+    const { slices, geometry } = this.header;
+    if (!slices.trace) return 0;
+    const steps = [...this.resources.keys()].filter((name) => name.startsWith("slices/")).length;
+    return steps * TEXEL_BYTES * slices.count * geometry.rows.size * geometry.columns.size;
   }
 
   load(steps: number[]): void {

@@ -42,7 +42,7 @@ const LOAD_MS = 25;
 const BUDGET_BYTES = 900e6;
 const BYTES_HELD = 3.5;
 /** Time steps of a tile that are held. */
-const STEPS_HELD = 4;
+const STEPS_HELD = { slices: 4, flow: 24 };
 
 /** Asks for tiles in the order of need; what was asked for before is not needed any more. */
 export type AskTiles = (keys: TileKey[], steps: number[]) => void;
@@ -355,16 +355,19 @@ export class Tiles {
   private trim(steps: number[]): void {
     let bytes = 0;
     for (const [name, tile] of [...this.tiles].sort(([, a], [, b]) => b.used - a.used)) {
-      const { parts, used } = tile;
-      const slices = [...parts.keys()].filter((part) => part.startsWith("slices/"));
-      for (const part of slices.slice(0, Math.max(slices.length - STEPS_HELD, 0))) {
+      const { parts, scene, used } = tile;
+      const kind = scene?.header.slices.trace ? "flow" : "slices";
+      const held = [...parts.keys()].filter((part) => part.startsWith(`${kind}/`));
+      const needed = scene ? steps.flatMap((step) => flowsOf(scene.header, step)) : steps;
+      for (const part of held.slice(0, Math.max(held.length - STEPS_HELD[kind], 0))) {
         const step = stepOf(part);
-        if (steps.includes(step)) continue;
-        for (const kind of ["slices", "extra", "flow"]) this.release(tile, `${kind}/${step}`);
+        if (needed.includes(step)) continue;
+        for (const each of [kind, "extra"]) this.release(tile, `${each}/${step}`);
         const values = [...parts.keys()].filter((each) => isOfStep(each, step, this.root.header));
         for (const each of values) this.release(tile, each);
       }
       for (const { data } of parts.values()) bytes += BYTES_HELD * data.byteLength;
+      bytes += scene?.tracedBytes ?? 0;
       if (bytes > (this.host.options.memory ?? BUDGET_BYTES) && used < this.count) this.drop(name);
     }
   }

@@ -126,6 +126,8 @@ export class Tracing {
   private readonly find: FindPart;
   private readonly textures = new Set<WebGLTexture>();
   private readonly frames: WebGLFramebuffer[] = [];
+  /** What is traced into, which who takes it counts. */
+  private result: WebGLTexture | null = null;
   private readonly passes: Generator<void, WebGLTexture>;
   /** Those of the flow at steps, by which paths are followed. */
   private readonly flows = new Map<number, WebGLTexture>();
@@ -150,7 +152,7 @@ export class Tracing {
         // What was made on a card that is lost is nothing.
         if (gl.isContextLost()) return null;
         if (done) {
-          this.textures.delete(value);
+          this.result = null;
           return value;
         }
       } while (performance.now() < until);
@@ -163,6 +165,8 @@ export class Tracing {
   dispose(): void {
     for (const texture of this.textures) this.graphics.free("Texture", texture);
     for (const frame of this.frames) this.graphics.free("Framebuffer", frame);
+    if (this.result && !this.graphics.context.isContextLost()) this.graphics.context.deleteTexture(this.result);
+    this.result = null;
     this.textures.clear();
     this.frames.length = 0;
   }
@@ -360,8 +364,8 @@ export class Tracing {
     const [rows, columns] = trace.nodes;
     const [height, width] = [geometry.rows.size, geometry.columns.size];
     const size = { width, height, layers: slices.count, channels: 4, levels: geometry.levels };
-    const result = graphics.counted(gl.createTexture());
-    this.textures.add(result);
+    const result = gl.createTexture();
+    this.result = result;
     gl.activeTexture(gl.TEXTURE0);
     makeLayers(gl, result, size);
     const own = this.texture(columns, rows, gl.RGBA32F, this.flow(step));

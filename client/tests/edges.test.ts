@@ -14,6 +14,7 @@ import type { Scene } from "../src/scene.ts";
 import { vertexNormals } from "../src/trianglemesh.ts";
 import { rotated, type Vector } from "../src/vectors.ts";
 import { assertClose } from "./close.ts";
+import { texelsOf } from "./texels.ts";
 
 interface Example {
   geometry: Geometry;
@@ -148,7 +149,9 @@ function placed(speed: number, more: object = {}, flip: number[] = []): PathPlac
   };
   const cornersAt = ([i, j]: [number, number]) =>
     [(1 - i) * (1 - j), i * (1 - j), (1 - i) * j, i * j].map((share, node) => [node, share]);
-  const scene = { header, parts: new Map(), part: (name: string) => parts[name], cornersAt };
+  const part = (name: string) => parts[name];
+  const texels = texelsOf(header as unknown as Header, part as unknown as Parameters<typeof texelsOf>[1]);
+  const scene = { header, parts: new Map(), part, texels, cornersAt };
   return { scene: scene as unknown as Scene, moment: [0, 0, 0], place: [0.5, 0.5], position: [0.5, 0.5, 0] };
 }
 

@@ -12,6 +12,7 @@ import type { Scene } from "../src/scene.ts";
 import type { Uniform } from "../src/uniforms.ts";
 import type { Vector } from "../src/vectors.ts";
 import { assertClose } from "./close.ts";
+import { texelsOf } from "./texels.ts";
 
 interface Case {
   header: Header;
@@ -66,6 +67,7 @@ for (const [name, each] of Object.entries(cases.sums)) {
       header,
       parts,
       part: (part: string) => parts.get(part),
+      texels: texelsOf(header, (part) => parts.get(part)),
       cornersAt: (at: [number, number]) => cornersAt(header.geometry.shape, at),
     } as unknown as Scene;
     const camera = new Camera(each.camera, header.limits, true, size[0] / size[1]);

@@ -11,9 +11,8 @@ import numpy as np
 
 from flowtex.textures.paper import HALF_LEVELS
 from flowtex.textures.texture_set import AGREED, HALF_MAX, MOST_LAGS
-from flowtex.trace.sampler import RESTING_CELLS
 
-__all__ = ["AGREED", "HALF_LEVELS", "HALF_MAX", "KERNELS", "MOST_LAGS", "RESTING_CELLS"]
+__all__ = ["AGREED", "HALF_LEVELS", "HALF_MAX", "KERNELS", "MOST_LAGS"]
 
 KERNELS = ("hann", "box", "ramp")
 KERNEL_HANN, KERNEL_BOX, KERNEL_RAMP = range(len(KERNELS))
@@ -47,7 +46,7 @@ MEAN_VALUES = np.array([NormalDist().inv_cdf((n + 0.5) / 16) for n in range(16)]
 AMBIENT_LIGHT, DIFFUSE_LIGHT = 0.3, 0.8
 
 ENDLESS, STEP_CELLS, MOST_STEPS, BISECTIONS = 1e30, 0.5, 512, 12
-DIRECT_LAG, PIECES, MANY_LAGS = 4.0, 16, 1e4
+PIECES, MANY_LAGS = 16, 1e4
 BORDER_CELLS, LAG_ROUNDING = 1e-2, 1e-5
 
 SRGB_SLOPE, SRGB_OFFSET, SRGB_SCALE, SRGB_POWER = 12.92, 0.055, 1.055, 2.4

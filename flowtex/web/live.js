@@ -43,9 +43,9 @@ a[0]+b[0]*scale3,out[1]=a[1]+b[1]*scale3,out[2]=a[2]+b[2]*scale3,out}function no
 out[1]=a[1]*len,out[2]=a[2]*len,out}function dot(a,b){return a[0]*b[0]+a[1]*b[1]+a[2]*b[2]}function cross(out,a,b){var ax=a[0],
 ay=a[1],az=a[2],bx=b[0],by=b[1],bz=b[2];return out[0]=ay*bz-az*by,out[1]=az*bx-ax*bz,out[2]=ax*by-ay*bx,out}function transformMat4(out,a,m){var x=a[0],y=a[1],z=a[2],w=m[3]*x+m[7]*y+m[11]*z+m[15];return w=w||1,out[0]=(m[0]*x+m[4]*
 y+m[8]*z+m[12])/w,out[1]=(m[1]*x+m[5]*y+m[9]*z+m[13])/w,out[2]=(m[2]*x+m[6]*y+m[10]*z+m[14])/w,out}function transformMat3(out,a,m){
-var x=a[0],y=a[1],z=a[2];return out[0]=x*m[0]+y*m[3]+z*m[6],out[1]=x*m[1]+y*m[4]+z*m[7],out[2]=x*m[2]+y*m[5]+z*m[8],out}var forEach=(function(){var vec=create();return function(a,stride,offset,count,fn,arg){var i,l;for(stride||(stride=3),offset||
-(offset=0),count?l=Math.min(count*stride+offset,a.length):l=a.length,i=offset;i<l;i+=stride)vec[0]=a[i],vec[1]=a[i+1],vec[2]=
-a[i+2],fn(vec,vec,arg),a[i]=vec[0],a[i+1]=vec[1],a[i+2]=vec[2];return a}})();var v=a=>a,result=()=>[0,0,0],zeros=n=>new Array(n).fill(0),dot2=(a,b)=>dot(v(a),v(b)),length2=a=>length(v(a)),subtract2=(a,b)=>subtract(
+var x=a[0],y=a[1],z=a[2];return out[0]=x*m[0]+y*m[3]+z*m[6],out[1]=x*m[1]+y*m[4]+z*m[7],out[2]=x*m[2]+y*m[5]+z*m[8],out}var forEach=(function(){var vec=create();return function(a,stride,offset,count2,fn,arg){var i,l;for(stride||(stride=3),offset||
+(offset=0),count2?l=Math.min(count2*stride+offset,a.length):l=a.length,i=offset;i<l;i+=stride)vec[0]=a[i],vec[1]=a[i+1],
+vec[2]=a[i+2],fn(vec,vec,arg),a[i]=vec[0],a[i+1]=vec[1],a[i+2]=vec[2];return a}})();var v=a=>a,result=()=>[0,0,0],zeros=n=>new Array(n).fill(0),dot2=(a,b)=>dot(v(a),v(b)),length2=a=>length(v(a)),subtract2=(a,b)=>subtract(
 result(),v(a),v(b)),scale2=(a,by)=>scale(result(),v(a),by),cross2=(a,b)=>cross(result(),v(a),v(b)),unit=a=>normalize(result(),
 v(a)),add=(a,b,t=1)=>scaleAndAdd(result(),v(a),v(b),t);function rotated(a,axis,degrees){let turn=fromRotation(zeros(16),
 degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),v(a),turn)}function toFrame(frame,a){let columns=transpose(
@@ -79,8 +79,8 @@ let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,
 keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}async function partOfText(info,text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=
 1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
 return partOfPlanes(info,new Uint8Array(await new Response(unpacked).arrayBuffer()))}function partOfPlanes(info,planes){
-let count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,{stride=1}=info,steps=count/stride;
-if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed as it tells`);let bytes=new Uint8Array(
+let count2=info.shape.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:1,{stride=1}=info,steps=count2/
+stride;if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed as it tells`);let bytes=new Uint8Array(
 planes.length);for(let n=0,from=0;n<width*stride;n+=1){let[plane,channel]=[Math.floor(n/stride),n%stride];for(let k=0;k<
 steps;k+=1)bytes[(k*stride+channel)*width+plane]=planes[from++]}return decoded(info,summed(info,bytes,width))}var UNSIGNED={
 1:Uint8Array,2:Uint16Array,4:Uint32Array};function summed(info,bytes,width){let{differences=0,stride=1,scale:scale3=null}=info,
@@ -88,16 +88,16 @@ numbers=new UNSIGNED[width](bytes.buffer);for(let order=0;order<differences;orde
 1)numbers[n]+=numbers[n-stride];return scale3===null?bytes.buffer:Float32Array.from(new Int32Array(bytes.buffer),n=>n*2**
 scale3).buffer}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
 let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
-return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
-before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
-return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
-return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
-share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.
-min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+
-(a>=b?1:columns);return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){
+return result2}function coordinates({shape,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},
+(_,n)=>(n+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,
+alongJ}){return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(
+scalars);return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(
+share)?share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-
+2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],
+aside=corner+(a>=b?1:columns);return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){
 return corners.reduce((sum,[node,share])=>sum+share*value(node),0)}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
 size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
-function vertexShares(count){return Float32Array.from({length:SHARES.length*count},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
+function vertexShares(count2){return Float32Array.from({length:SHARES.length*count2},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
 let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
 length;n+=3){let[a,b,c]=[0,1,2].map(k=>at(positions2,triangles[n+k])),own=unit(cross2(subtract2(b,a),subtract2(c,a)));for(let k=n;k<
 n+3;k+=1){let normal=at(result2,k),scale3=length2(normal),alike=dot2(own,normal);Math.abs(alike)<SHARP*scale3&&result2.set(
@@ -177,17 +177,17 @@ directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]
 position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
 sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
 layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
-points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===
+points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count2=sides===
 2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
 ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
-Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(count*step),directed,velocity}}function kernelAt(x,u,c){return u.u_kernel===c.KERNEL_BOX[0]?1:u.u_kernel===c.KERNEL_RAMP[0]?u.u_sides===2?.5*(1-x):1-Math.
+Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity}}function kernelAt(x,u,c){return u.u_kernel===c.KERNEL_BOX[0]?1:u.u_kernel===c.KERNEL_RAMP[0]?u.u_sides===2?.5*(1-x):1-Math.
 abs(x):.5+.5*Math.cos(Math.PI*x)}function sideSteps(layers,side,spacing,u,c){let lags=u.u_lags,slope=layer=>layers(layer).
 slice(0,3),by=layers(0)[3]*Number(u.u_unit),first=side*lags.length,end=Math.min(layers(first+1)[3],lags[lags.length-1]),
-sign=side?1:-1,set=Number(u.u_samples),count=u.u_sides===2?Math.floor(set/2):set-1,stepAt=along=>spacing/by/Math.max(length2(
+sign=side?1:-1,set=Number(u.u_samples),count2=u.u_sides===2?Math.floor(set/2):set-1,stepAt=along=>spacing/by/Math.max(length2(
 along),c.LEAST_SPEED[0]),[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],[lag,step]=[0,stepAt(before)],result2=[];
-for(let k=1;k<=count;k+=1){lag+=step;let alive=clamp((end-lag)/step+1,0,1);if(!alive)break;for(;lag>lags[m]&&m<lags.length-
+for(let k=1;k<=count2;k+=1){lag+=step;let alive=clamp((end-lag)/step+1,0,1);if(!alive)break;for(;lag>lags[m]&&m<lags.length-
 1;m+=1)[before,from]=[after,lags[m]],after=slope(first+m+2);let bend=scale2(subtract2(after,before),1/(lags[m]-from)),at=lateness=>before.
-map((x,n)=>x+bend[n]*lateness),weight=alive*kernelAt(sign*k/(count+1),u,c);result2.push({displacement:scale2(at(lag-from),
+map((x,n)=>x+bend[n]*lateness),weight=alive*kernelAt(sign*k/(count2+1),u,c);result2.push({displacement:scale2(at(lag-from),
 lag*sign*by),weight}),step=stepAt(at(2*lag-from))}return result2}function shared(apart,near,c){let total2=1;for(let m=1;m<=
 c.SHARED_TERMS[0];m+=1){let d=m*m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*(c.BELL[0]+c.BELL_BEND[0]*
 d))}return total2}var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+
@@ -208,10 +208,10 @@ displacement)??at.position,weight:weight/total(weights2),noise:value,grey:greyOf
 weight*sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*
 mean,Number(settings.contrast),c)}}var SVG="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacing",
 "Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Another noise",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
-hann:"smooth",box:"even",ramp:"falling"},ROW=40;function row(name,count,marks){let svg=document.createElementNS(SVG,"svg");
-svg.setAttribute("viewBox",`0 0 ${count} ${ROW}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute("aria-\
-hidden","true");for(let{at,y,height,fill,title}of marks){let rect=document.createElementNS(SVG,"rect"),shape={x:at+.04,y,
-width:.92,height:Math.max(height,.4),fill};for(let[key,value]of Object.entries(shape))rect.setAttribute(key,`${value}`);
+hann:"smooth",box:"even",ramp:"falling"},ROW=40;function row(name,count2,marks){let svg=document.createElementNS(SVG,"sv\
+g");svg.setAttribute("viewBox",`0 0 ${count2} ${ROW}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute("\
+aria-hidden","true");for(let{at,y,height,fill,title}of marks){let rect=document.createElementNS(SVG,"rect"),shape={x:at+
+.04,y,width:.92,height:Math.max(height,.4),fill};for(let[key,value]of Object.entries(shape))rect.setAttribute(key,`${value}`);
 let words=document.createElementNS(SVG,"title");words.textContent=title,rect.append(words),svg.append(rect)}return dom("\
 div",{class:"explained-row"},[dom("span",{},[name]),svg])}var greyText=grey=>`rgb(${Array(3).fill(Math.round(255*grey)).
 join()})`,signed=value=>`${value<0?"−":"+"}${Math.abs(value).toFixed(2)}`,Explanation=class{options;controls=dom("div",
@@ -282,8 +282,8 @@ try{let parts=await this.load(key,steps,controller.signal);controller.signal.abo
 controller.signal.aborted||this.fail(key,error,steps)}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
 colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
 let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
-Math.min(share,1)}}function mapOf(header,maps,name){let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
-4*count).fill(255);for(let n=0;n<count;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
+Math.min(share,1)}}function mapOf(header,maps,name){let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
+4*count2).fill(255);for(let n=0;n<count2;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
 let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
 choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
 unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.
@@ -392,7 +392,7 @@ shaders,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:FIRST_PRICE_MS}}}fi
 program,gl.LINK_STATUS)){if(gl.isContextLost())return;let log=[...entry.shaders.map(shader=>gl.getShaderInfoLog(shader)),
 gl.getProgramInfoLog(program)].filter(Boolean).join(`
 `);entry.error=log||"the driver gave no reason";return}for(let shader of entry.shaders)this.graphics.free("Shader",shader);
-entry.shaders=[];let count=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count;n+=1){let info=gl.getActiveUniform(
+entry.shaders=[];let count2=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count2;n+=1){let info=gl.getActiveUniform(
 program,n),location=info&&gl.getUniformLocation(program,info.name);!info||!location||entry.uniforms.set(info.name.replace(
 /\[0\]$/,""),{location,type:info.type})}gl.useProgram(program),SAMPLERS.forEach((name,n)=>{let sampler=entry.uniforms.get(
 name);sampler&&gl.uniform1i(sampler.location,n)}),entry.ready=!0}use(entry,values){let gl=this.graphics.context;gl.useProgram(
@@ -437,14 +437,15 @@ let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&65535,low[k]+place[k]/6
 point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along=0,kept=line.filter((point,n)=>{
 let before=along;return n&&(along+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along/spacing)>Math.floor(
 before/spacing)||n===0||n===line.length-1});return along<spacing?[]:[kept]}):lines}function linePoints(lines,anchor){let size=lines.
-reduce((count,line)=>count+line.length+1,0),points=new Float32Array(3*size).fill(1e30),n=0;for(let line of lines){n+=3;for(let point of line)
-for(let k=0;k<3;k+=1)points[n++]=point[k]-anchor[k]}return points}function pieceGroups(points){let groups=[],pieces=points.
-length/3-1;for(let first=0;first<pieces;first+=256){let count=Math.min(256,pieces-first),[low,high]=[[1/0,1/0,1/0],[-1/0,
--1/0,-1/0]];for(let n=3*first;n<3*(first+count+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(low[n%3],points[n]),
-high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-
-least)/2));groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{
-first,count,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(
-isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
+reduce((count2,line)=>count2+line.length+1,0),points=new Float32Array(3*size).fill(1e30),n=0;for(let line of lines){n+=3;
+for(let point of line)for(let k=0;k<3;k+=1)points[n++]=point[k]-anchor[k]}return points}function pieceGroups(points){let groups=[],
+pieces=points.length/3-1;for(let first=0;first<pieces;first+=256){let count2=Math.min(256,pieces-first),[low,high]=[[1/0,
+1/0,1/0],[-1/0,-1/0,-1/0]];for(let n=3*first;n<3*(first+count2+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(
+low[n%3],points[n]),high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.
+hypot(...low.map((least,k)=>(high[k]-least)/2));groups.push({first,count:count2,middle,radius})}return groups}function visibleRuns(groups,planes){
+let runs=[];for(let{first,count:count2,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.
+hypot(a,b,c);if(planes.some(isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count2:runs.
+push([first,count2])}return runs}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
 ray(x,y);if(earth.map){let across=fromFrame(geometry.frame,[0,0,1]),depth2=dot2(subtract2(geometry.center,start),across)/
 dot2(along,across),place=add(start,along,depth2),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&
 place[1]<=y1?place:null}let nearest=dot2(start,along),square=nearest**2-dot2(start,start)+earth.radius**2,depth=-nearest-
@@ -463,9 +464,9 @@ spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}
 option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.linesOf(option,anchor,spacing),
 spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),u_picture:[width,height],u_width:thickness*
 wider*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:[0,0,0,1]}),gl.bindVertexArray(drawn.
-array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(drawn.groups,local)){for(let n=0;n<
+array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count2]of visibleRuns(drawn.groups,local)){for(let n=0;n<
 PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);gl.drawArraysInstanced(gl.TRIANGLE_STRIP,
-0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(gl.BLEND)}get isReady(){let{lineVertex,
+0,4,count2)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(gl.BLEND)}get isReady(){let{lineVertex,
 lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.get(lineVertex,lineFragment).ready}drawGround({
 camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;if(!earth?.land)return;let globe=earth.map===null;
 if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.
@@ -565,8 +566,8 @@ STOPS2),this.mark.hidden=!0;let ends=legendLimits(header.scalars).map(value=>dom
 replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
 this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
 header.scalars)(value),0,1)}%`)}};var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
-t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count){let at=share*(count-1),first=clamp(Math.
-floor(at)-1,0,count-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
+t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count2){let at=share*(count2-1),first=clamp(Math.
+floor(at)-1,0,count2-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
 [i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
 forEach((v2,n)=>{across.forEach((u,m)=>{for(let k=0;k<3;k+=1)way[k]+=u*v2*data[3*((j+n)*columns+i+m)+k]})}),way}function lonLatOf(earth,position,places){
 if(earth.map&&!places)return null;let[x,y,z]=earth.map&&places?wayOn(earth.map,places,position):position,lonLat=[Math.atan2(
@@ -1073,51 +1074,51 @@ gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target
 texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE)}function sendLayer(gl,{width,height,channels,levels},layer,texels){
 let format=channels===1?gl.RED:gl.RGBA;gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);for(let[level,w,h]=[0,width,height];;level+=
 1){if(gl.texSubImage3D(gl.TEXTURE_2D_ARRAY,level,0,0,layer,w,h,1,format,gl.HALF_FLOAT,texels),level===levels)return;[texels,
-w,h]=halved(texels,w,h,channels)}}var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
+w,h]=halved(texels,w,h,channels)}}var PLACE2=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
-{blocks}=this.mesh,count=this.rows.length*this.columns.length,size=blocks.length/count,last=(size-PLACE2)/2-1;return Int8Array.
-from({length:count},(_,block)=>{let record=blocks.subarray(size*block,size*(block+1)),[x,y,z,radius,cell]=record.subarray(
+{blocks}=this.mesh,count2=this.rows.length*this.columns.length,size=blocks.length/count2,last=(size-PLACE2)/2-1;return Int8Array.
+from({length:count2},(_,block)=>{let record=blocks.subarray(size*block,size*(block+1)),[x,y,z,radius,cell]=record.subarray(
 size-PLACE2),near=limits.leastDistance*radius,away=eye?Math.max(length2(subtract2(eye,[x,y,z]))-radius,near):1,scale3=.5*
 pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;level+=1){let error=record[level+1],colourError=record[last+
 2+level],side=cell*scale3*2**(level+1);if(!(error*scale3<=limits.maxErrorPixels&&colourError<=limits.maxColourError||Number.
 isFinite(error)&&side<=1)||side>limits.maxSideHeights*pixels)break}return level})}triangles(levels,joins){let sizes=Array.
 from(levels,level=>level<0?0:this.limits.tileCells>>level),index=new Uint32Array(6*sizes.reduce((sum,size)=>sum+size*size,
 0)),end=0;return levels.forEach((level,block)=>{level>=0&&(end=this.add(index,end,level,joins,block))}),index.slice(0,end)}add(index,start,level,joins,block){
-let{rows,columns,limits}=this,{shape,cells}=this.mesh,step=1<<level,count=limits.tileCells/step+1,row2=rows[Math.floor(block/
-columns.length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+side]),
-snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count*count);for(let b=0;b<count;b+=
-1){let y=Math.min(b*step,row2.cells);for(let a=0;a<count;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===0||b===
-count-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count-1)&&(py=snapped(py,row2.cells,a?right:left)),nodes[b*
-count+a]=(row2.first+py)*shape[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=p,index[end++]=
-q,index[end++]=r)};for(let b=0;b<count-1;b+=1){let y=Math.min(row2.first+Math.min(b*step,row2.cells),shape[0]-2);for(let a=0;a<
-count-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape[1]-2);if(cells&&!cells[y*(shape[1]-1)+x])continue;
-let at=b*count+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count+1],nodes[at+count]];put(p,q,r),put(p,r,s)}}return end}},
-NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,this.width]=axis?[columns+
-1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(this.count*this.width)}at(line,along){
-return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=1){let[first,last]=[this.at(0,n),this.
-at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=this.values[last]=most}}};function eachBlock({
-step,row:row2,column,shape},[rows,columns],call){let bottom=Math.min(row2+(shape[0]<<step),rows),right=Math.min(column+(shape[1]<<
-step),columns);for(let j=row2;j<bottom;j+=1){let own=(j-row2>>step)*shape[1];for(let i=column;i<right;i+=1)call(j*columns+
-i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around2=(n,by,count,closed)=>closed?(n+
-by+count)%count:clamp(n+by,0,count-1);return nodes.map((own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],
-least=own;for(let by of[-1,1]){let row2=around2(j,by,rows,periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.
-min(least,nodes[row2*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(
-blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{part.levels[own]>=0&&(target[block]=
-value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(nodes,blocks,periodic),
-strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,blocks,(block,own)=>{levels[own]=
-Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+step)}let lines=[new Lines(blocks,0),new Lines(
-blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%blocks[1]];[[j,i],[i,j]].forEach(
-([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(line+far,along);values[at]=Math.
-max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());let joined=parts.map(part=>bordersOf(
-part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}function bordersOf({step,row:row2,
-column,shape,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;for(let side of[0,1,2,3]){
-let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[Math.floor(own/shape[1]),
-own%shape[1]],[first,start]=axis?[column,row2]:[row2,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+
-place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.
-max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=
-values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=7,
+let{rows,columns,limits}=this,{shape,cells}=this.mesh,step=1<<level,count2=limits.tileCells/step+1,row2=rows[Math.floor(
+block/columns.length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+side]),
+snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count2*count2);for(let b=0;b<
+count2;b+=1){let y=Math.min(b*step,row2.cells);for(let a=0;a<count2;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===
+0||b===count2-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count2-1)&&(py=snapped(py,row2.cells,a?right:left)),
+nodes[b*count2+a]=(row2.first+py)*shape[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=
+p,index[end++]=q,index[end++]=r)};for(let b=0;b<count2-1;b+=1){let y=Math.min(row2.first+Math.min(b*step,row2.cells),shape[0]-
+2);for(let a=0;a<count2-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape[1]-2);if(cells&&!cells[y*
+(shape[1]-1)+x])continue;let at=b*count2+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count2+1],nodes[at+count2]];put(p,q,
+r),put(p,r,s)}}return end}},NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,
+this.width]=axis?[columns+1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(
+this.count*this.width)}at(line,along){return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=
+1){let[first,last]=[this.at(0,n),this.at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=
+this.values[last]=most}}};function eachBlock({step,row:row2,column,shape},[rows,columns],call){let bottom=Math.min(row2+
+(shape[0]<<step),rows),right=Math.min(column+(shape[1]<<step),columns);for(let j=row2;j<bottom;j+=1){let own=(j-row2>>step)*
+shape[1];for(let i=column;i<right;i+=1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){
+let around2=(n,by,count2,closed)=>closed?(n+by+count2)%count2:clamp(n+by,0,count2-1);return nodes.map((own,block)=>{let[
+j,i]=[Math.floor(block/columns),block%columns],least=own;for(let by of[-1,1]){let row2=around2(j,by,rows,periodic[0]),column=around2(
+i,by,columns,periodic[1]);least=Math.min(least,nodes[row2*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){
+let nodes=new Int16Array(blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{
+part.levels[own]>=0&&(target[block]=value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(
+nodes,blocks,periodic),strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,
+blocks,(block,own)=>{levels[own]=Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+step)}let lines=[
+new Lines(blocks,0),new Lines(blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%
+blocks[1]];[[j,i],[i,j]].forEach(([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(
+line+far,along);values[at]=Math.max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());
+let joined=parts.map(part=>bordersOf(part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}
+function bordersOf({step,row:row2,column,shape,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;
+for(let side of[0,1,2,3]){let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[
+Math.floor(own/shape[1]),own%shape[1]],[first,start]=axis?[column,row2]:[row2,column],pick=Math.min(first+(place[axis]+far)*
+size,line.count-1),from=start+place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<
+end;n+=1)coarsest=Math.max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<
+end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=7,
 DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape){let[rows,
 columns]=shape,width=padded.shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=
 1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%3]}return{
@@ -1132,22 +1133,23 @@ times:times2}=slices;if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[s
 {unit:unit2}=trace.timed,lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in
 times2),end=isLast?to:lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between2=isLast?[0,1]:[lagOf(n),end],isWhole=end>=
 to-LAG_ROUNDING*to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between2}),from=isWhole?to:end}
-return result2}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];passes;flows=new Map;fastest=1;constructor(graphics,header,trace,find,step){
+return result2}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;constructor(graphics,header,trace,find,step){
 this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.passes=this.slices(step)}advance(until){if(!Object.
 values(this.programs).every(program=>program?.ready??!0))return null;let gl=this.graphics.context;try{do{let{done,value}=this.
-passes.next();if(gl.isContextLost())return null;if(done)return this.textures.delete(value),value}while(performance.now()<
-until);return null}finally{this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",texture);
-for(let frame of this.frames)this.graphics.free("Framebuffer",frame);this.textures.clear(),this.frames.length=0}program(fragment,...variant){
-let{graphics,header}=this,{fullVertex,[fragment]:text=""}=header.shaders,program=graphics.programs.get(fullVertex,text,...variant);
-if(program.error)throw new Error(`the tracer cannot be built: ${program.error}`);return program}get programs(){let{pathlines}=this.
-trace,floats=this.graphics.floats?["FLOWTEX_FLOATS"]:[];return{follow:this.program("trace",...pathlines?["FLOWTEX_PATHLI\
-NES"]:[]),compose:pathlines?null:this.program("trace","FLOWTEX_COMPOSED"),slopes:this.program("layers","FLOWTEX_SLOPES",
-...floats),tangents:this.program("layers",...floats)}}data(name){let part=this.find(name);if(!part)throw new Error(`the \
-part "${name}" of the scene is missing`);return part.data}texture(width,height,inner,data){let gl=this.graphics.context,
-texture=this.graphics.counted(gl.createTexture());return this.textures.add(texture),gl.activeTexture(gl.TEXTURE0),gl.bindTexture(
-gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
-gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.texSubImage2D(gl.TEXTURE_2D,0,0,0,
-width,height,gl.RGBA,gl.FLOAT,data),texture}frame(){let gl=this.graphics.context,frame=this.graphics.counted(gl.createFramebuffer());
+passes.next();if(gl.isContextLost())return null;if(done)return this.result=null,value}while(performance.now()<until);return null}finally{
+this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",texture);for(let frame of this.frames)
+this.graphics.free("Framebuffer",frame);this.result&&!this.graphics.context.isContextLost()&&this.graphics.context.deleteTexture(
+this.result),this.result=null,this.textures.clear(),this.frames.length=0}program(fragment,...variant){let{graphics,header}=this,
+{fullVertex,[fragment]:text=""}=header.shaders,program=graphics.programs.get(fullVertex,text,...variant);if(program.error)
+throw new Error(`the tracer cannot be built: ${program.error}`);return program}get programs(){let{pathlines}=this.trace,
+floats=this.graphics.floats?["FLOWTEX_FLOATS"]:[];return{follow:this.program("trace",...pathlines?["FLOWTEX_PATHLINES"]:
+[]),compose:pathlines?null:this.program("trace","FLOWTEX_COMPOSED"),slopes:this.program("layers","FLOWTEX_SLOPES",...floats),
+tangents:this.program("layers",...floats)}}data(name){let part=this.find(name);if(!part)throw new Error(`the part "${name}\
+" of the scene is missing`);return part.data}texture(width,height,inner,data){let gl=this.graphics.context,texture=this.
+graphics.counted(gl.createTexture());return this.textures.add(texture),gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D,
+texture),gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),
+gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.texSubImage2D(gl.TEXTURE_2D,0,0,0,width,height,
+gl.RGBA,gl.FLOAT,data),texture}frame(){let gl=this.graphics.context,frame=this.graphics.counted(gl.createFramebuffer());
 return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,frame),frame}target(width,height){let gl=this.graphics.
 context,texture=this.texture(width,height,gl.RGBA32UI,null),frame=this.frame();return gl.framebufferTexture2D(gl.FRAMEBUFFER,
 gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.graphics.context;for(let n=0;n<UNITS;n+=
@@ -1165,8 +1167,8 @@ data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.leng
 n+k]=data[3*n+k];return result2}flowTexture(step){let[rows,columns]=this.trace.nodes,gl=this.graphics.context,texture=this.
 flows.get(step)??this.texture(columns,rows,gl.RGBA32F,this.flow(step));this.flows.delete(step),this.flows.set(step,texture);
 for(let[other,old]of this.flows){if(this.flows.size<=FLOWS_HELD)break;this.flows.delete(other),this.textures.delete(old),
-this.graphics.free("Texture",old)}return texture}partsOf({from,to}){let count=clamp(Math.ceil((to-from)*this.fastest/PASS_CELLS),
-1,MOST_PARTS),at=n=>n===count?to:from+(to-from)*n/count;return Array.from({length:count},(_,n)=>[at(n),at(n+1)])}layerTarget(result2,size){
+this.graphics.free("Texture",old)}return texture}partsOf({from,to}){let count2=clamp(Math.ceil((to-from)*this.fastest/PASS_CELLS),
+1,MOST_PARTS),at=n=>n===count2?to:from+(to-from)*n/count2;return Array.from({length:count2},(_,n)=>[at(n),at(n+1)])}layerTarget(result2,size){
 let gl=this.graphics.context,{width,height}=size;if(this.graphics.floats){let frame2=this.frame();return{begin:n=>(gl.bindFramebuffer(
 gl.FRAMEBUFFER,frame2),gl.framebufferTextureLayer(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,result2,0,n),[width,height]),end:()=>{},
 finish:()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),size.levels&&gl.generateMipmap(gl.
@@ -1176,31 +1178,31 @@ frame),[pairs,height]),end:n=>{gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,gl
 height;row2+=1){let first=8*pairs*row2;texels.set(halves.subarray(first,first+4*width),4*width*row2)}gl.activeTexture(gl.
 TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),sendLayer(gl,size,n,texels)},finish:()=>{}}}*slices(step){let{graphics,
 trace,header}=this,gl=graphics.context,{geometry,slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.
-size,geometry.columns.size],size={width,height,layers:slices.count,channels:4,levels:geometry.levels},result2=graphics.counted(
-gl.createTexture());this.textures.add(result2),gl.activeTexture(gl.TEXTURE0),makeLayers(gl,result2,size);let own=this.texture(
-columns,rows,gl.RGBA32F,this.flow(step)),constant=[this.texture(columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+
-2,rows+2,gl.RGBA32F,this.padded()),this.texture(columns,rows,gl.RGBA32F,this.wholeSpeed(step))],pool=[0,1,2,3,4].map(()=>this.
-target(columns,rows)),{lags,sides,count}=slices,uniforms2={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,
-u_flowNext:6,u_nodes:[columns,rows],u_closed:[Number(trace.closed[1]),Number(trace.closed[0])],u_first:[trace.first[1],trace.
-first[0]],u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.offset.slice(3,6),u_timed:trace.timed?.speed??0,u_rest:trace.
-rest,u_pace:trace.pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(geometry.planar),u_mostReach:2*
-lags[lags.length-1]},draw=([w,h],textures,pass,values)=>{gl.viewport(0,0,w,h);for(let ability of[gl.SCISSOR_TEST,gl.DEPTH_TEST,
-gl.BLEND,gl.CULL_FACE])gl.disable(ability);textures.forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(
-gl.TEXTURE_2D,texture)}),gl.bindVertexArray(null),graphics.programs.use(pass,{...uniforms2,...values}),gl.drawArrays(gl.
-TRIANGLES,0,3)},layers=this.layerTarget(result2,size),layer=(n,pass,textures,values)=>{draw(layers.begin(n),[own,...constant,
-...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=this.programs;layer(0,tangents,[],{u_inCells:0}),
-count>1+sides*lags.length&&layer(count-1,tangents,[],{u_inCells:1});for(let side=0;side<sides;side+=1){let sign=side?1:-1,
-start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];for(let[m,lag]of lags.entries()){let[from,earlier]=[
-lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:null,at=now;for(let stretch of stretches(header,step,
-sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(n)),parts=composer?[[from,lag]]:this.partsOf(stretch);
-for(let[begin2,end]of parts){let next=pool.find(each=>![first,before,now,at].includes(each))??pool[0];gl.bindFramebuffer(
-gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],before[0],far],composer??follow,{u_lagEarlier:earlier,
-u_from:begin2,u_to:end,u_side:sign,u_between:stretch.between}),gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(
-4)),at=next,yield}}[before,now]=[now,at],m||(first=now);let fourth=m===1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],
-now[0]],{u_fourth:fourth,u_lag:sign*lag})}layer(start,slopes,[first[0],now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.
-finish(),result2}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
+size,geometry.columns.size],size={width,height,layers:slices.count,channels:4,levels:geometry.levels},result2=gl.createTexture();
+this.result=result2,gl.activeTexture(gl.TEXTURE0),makeLayers(gl,result2,size);let own=this.texture(columns,rows,gl.RGBA32F,
+this.flow(step)),constant=[this.texture(columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.
+padded()),this.texture(columns,rows,gl.RGBA32F,this.wholeSpeed(step))],pool=[0,1,2,3,4].map(()=>this.target(columns,rows)),
+{lags,sides,count:count2}=slices,uniforms2={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_flowNext:6,
+u_nodes:[columns,rows],u_closed:[Number(trace.closed[1]),Number(trace.closed[0])],u_first:[trace.first[1],trace.first[0]],
+u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.offset.slice(3,6),u_timed:trace.timed?.speed??0,u_rest:trace.rest,u_pace:trace.
+pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(geometry.planar),u_mostReach:2*lags[lags.length-1]},
+draw=([w,h],textures,pass,values)=>{gl.viewport(0,0,w,h);for(let ability of[gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])
+gl.disable(ability);textures.forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),
+gl.bindVertexArray(null),graphics.programs.use(pass,{...uniforms2,...values}),gl.drawArrays(gl.TRIANGLES,0,3)},layers=this.
+layerTarget(result2,size),layer=(n,pass,textures,values)=>{draw(layers.begin(n),[own,...constant,...textures],pass,values),
+layers.end(n)},{follow,compose,slopes,tangents}=this.programs;layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&
+layer(count2-1,tangents,[],{u_inCells:1});for(let side=0;side<sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,
+[first,before,now]=[pool[0],pool[0],pool[0]];for(let[m,lag]of lags.entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??
+0],composer=lag>DIRECT_LAG&&earlier>0?compose:null,at=now;for(let stretch of stretches(header,step,sign,from,lag)){let[near,
+far]=stretch.steps.map(n=>this.flowTexture(n)),parts=composer?[[from,lag]]:this.partsOf(stretch);for(let[begin2,end]of parts){
+let next=pool.find(each=>![first,before,now,at].includes(each))??pool[0];gl.bindFramebuffer(gl.FRAMEBUFFER,next[1]),draw(
+[columns,rows],[near,...constant,at[0],before[0],far],composer??follow,{u_lagEarlier:earlier,u_from:begin2,u_to:end,u_side:sign,
+u_between:stretch.between}),gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(4)),at=next,yield}}[before,
+now]=[now,at],m||(first=now);let fourth=m===1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],now[0]],{u_fourth:fourth,
+u_lag:sign*lag})}layer(start,slopes,[first[0],now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.finish(),result2}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
-alar"]},SOURCES=["padded","unit","open","nearest"],Scene=class{graphics;header;parts;earth;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";constructor(graphics,header,parts){
+alar"]},SOURCES=["padded","unit","open","nearest"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;anchor=[
+0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts)}missing(before,after){
 let{geometry,slices,scalars,paper,pyramid}=this.header,{trace}=slices,names=["mesh",...trace?.parts??["position",...geometry.
 planar?[]:["normal"]]];pyramid&&names.push("places"),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
@@ -1219,26 +1221,26 @@ digest=name=>this.key(["padded"],name,trace);return this.put("position",digest("
 shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,
 geometry.shape)),steps.every(step=>this.trace(step,until))}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.
 slices,name=`slices/${step}`;if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),
-key=this.key([...flows,...SOURCES],step,trace,lags,sides,header.geometry.levels),{tracings}=graphics;if(!graphics.common.
-has(`slices ${key}`)){this.tracing!==key&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.get(key)??
-new Tracing(graphics,header,trace,find,step);tracings.set(this.tracing=key,tracing);let texture=tracing.advance(until);if(!texture)
-return!1;this.stopTracing(),graphics.common.set(`slices ${key}`,{kind:"Texture",object:texture,count:0,key:`slices ${key}`,
-users:0})}return this.texture(name,key,()=>{}),!0}put(name,digest,make){let{graphics,parts}=this;if(parts.get(name)?.digest===
-digest)return;let part=graphics.stock.get(digest)?.part??{...make(),digest};graphics.release(parts.get(name)),parts.set(
-name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.missing(steps[0],steps[steps.length-1]).length&&(!this.
-header.slices.trace||this.isLoaded(steps))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graphics.
-tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the par\
-t "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.includes("ind\
-ex")&&(this.meshLevels=this.drawn=null);let sliced=["slices","extra","flow"].includes(kind);!sliced&&kind!=="scalars"&&this.
-earth.forget(name);for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);SOURCES.includes(kind)&&this.
-dropSlices(NaN,NaN),this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&
-(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.
-key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.dispose()}key(names,...rest){
-let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify(
-[digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,
-whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?graphics.common.get(whole):void 0,object=shared2?.object??graphics.
-counted(make()),resource=shared2??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,
-resource),shared2||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
+key=this.key([...flows,...SOURCES],step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.
+has(`slices ${key}`)){let{tracings}=graphics,tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();
+let find=part=>this.parts.get(part),tracing=tracings.get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.
+set(this.tracing=tracked,tracing),texture=tracing.advance(until),!texture)return!1;this.stopTracing()}return this.take(name,
+"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){let{graphics,parts}=this;if(parts.get(name)?.digest===digest)
+return;let part=graphics.stock.get(digest)?.part??{...make(),digest};graphics.release(parts.get(name)),parts.set(name,graphics.
+hold(part)),this.forget(name)}isMade(steps){return!this.missing(steps[0],steps[steps.length-1]).length&&(!this.header.slices.
+trace||this.isLoaded(steps))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(
+this.tracing),this.tracing=""}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}" of t\
+he scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=
+this.drawn=null);let sliced=["slices","extra","flow"].includes(kind);!sliced&&kind!=="scalars"&&this.earth.forget(name);
+for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);SOURCES.includes(kind)&&this.dropSlices(NaN,NaN),
+this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.users-=
+1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){
+for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.dispose()}key(names,...rest){let digests=names.
+map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):
+""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&
+`${name.split("/")[0]} ${key}`,shared2=whole?graphics.common.get(whole):void 0,object=shared2?.object??graphics.counted(
+make()),resource=shared2??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),
+shared2||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
 let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
 bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
 take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.
@@ -1248,18 +1250,20 @@ parts={blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};return
 es").data,place):cornersAt(shape,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
 return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String(
 [drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.
-every(step=>this.resources.has(`slices/${step}`))}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){
-let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","arra\
-y"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.
-scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();
-gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,
-{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},
-key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["\
-cells","mesh","blocks"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?
-this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
-positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
-vertexNormals(nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
-map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
+every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.header;return slices.trace?
+[...this.resources.keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.
+columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,
+steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==
+this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=
+anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("\
+array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.
+header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
+key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape,
+[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
+null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("p\
+osition").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(
+nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(
+name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
 shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns,corners?.length]),place=()=>corners?
 vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
 Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
@@ -1297,7 +1301,7 @@ this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTextu
 TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.resources.
 get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,
 after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.
-get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isWatched=!1;isOver=!1;lastCame=0;failed=new Failures;limits;constructor(host,root){
 this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
@@ -1353,13 +1357,14 @@ this.asked.steps));if(!(this.isWaiting||!options.onTiles)){if(isAsked)return thi
 this.missing.map(keyOf),steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||(this.isWatched=
 !0,this.host.lifetime.later(()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.now()-
 this.lastCame)))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,
-used}=tile,slices=[...parts.keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(slices.
-length-STEPS_HELD,0))){let step=stepOf(part);if(steps.includes(step))continue;for(let kind of["slices","extra","flow"])this.
-release(tile,`${kind}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)
-this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>(this.host.options.memory??
-BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[
-...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.
-release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2={slices:[12,4],flow:[100,24]},isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
+scene,used}=tile,kind=scene?.header.slices.trace?"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}\
+/`)),needed=scene?steps.flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-
+STEPS_HELD[kind],0))){let step=stepOf(part);if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(
+tile,`${each}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)
+this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>
+(this.host.options.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.
+scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
+part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2={slices:[12,4],flow:[100,24]},isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
 b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.createElement("d\
 iv");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
@@ -1453,9 +1458,9 @@ clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}
 !graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.find(x,y)?.point??null}ground(x,y){
 let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;
 if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({
-layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
-if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
-"display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count;n+=1){let cell=dom(
+layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count2,options,own=()=>({})){
+if(count2<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
+"display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count2;n+=1){let cell=dom(
 "div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==
 n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(new Viewer(cell,{...options,...own(n),...linked(options,others),
 ...follower}))}for(let viewer of viewers)viewer.together=viewers;return viewers}function linked(options,others){let both=(follow,report)=>(...values)=>{

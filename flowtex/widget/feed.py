@@ -195,9 +195,15 @@ class Feed:
         """Return the scene to begin with: a coarse one of a large field."""
         field = self._view.field
         # The coarse form of triangles is the root of their tiles, which is what comes first anyway.
-        is_small = self._view.scene.pyramid is None and self._nodes <= LARGE_NODES
-        if is_small or field.triangles is not None:
+        is_whole = self._view.scene.pyramid is None
+        if field.triangles is not None or (is_whole and self._nodes <= LARGE_NODES):
             return self._view.data()
+        if is_whole and np.prod(self._view.shape) <= LARGE_NODES:
+            # Where the client traces, no more times are sent than the paths lead through.
+            data = self._view.data()
+            steps = len(data.moment(self._moment()))
+            if data.traced and steps * np.prod(self._view.shape) <= VERY_LARGE_NODES:
+                return data
         return self._view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
 
     @property

@@ -32,7 +32,8 @@ const { generateMipmap, texStorage3D, texSubImage3D } = GL;
 const sizes = new WeakMap();
 const bound = (gl) => gl.getParameter(gl.TEXTURE_BINDING_2D_ARRAY);
 const keep = (layer, width, height, data) => {
-  const letters = Array.from(new Uint8Array(data.buffer), (byte) => String.fromCharCode(byte)).join("");
+  const bytes = new Uint8Array(data.buffer);
+  const letters = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");
   window.kept.push([layer, width, height, data.BYTES_PER_ELEMENT, btoa(letters)]);
 };
 GL.texStorage3D = function (...given) {
@@ -131,7 +132,9 @@ def agree(textures: TextureSet, found: Floats, wanted: Floats, few: float = 0.03
     """Judge slices by those of NumPy; ``few`` paths may part from theirs."""
     assert found.shape == wanted.shape
     # Each node once: those at borders fill all that is beyond.
-    rows, columns = (slice(p.before, p.before + p.nodes) for p in (textures.grid.rows, textures.grid.columns))
+    rows, columns = (
+        slice(p.before, p.before + p.nodes) for p in (textures.grid.rows, textures.grid.columns)
+    )
     found, wanted = found[:, rows, columns], wanted[:, rows, columns]
     # What is not traced has the error of half precision, but where a ring closes in a corner.
     for layer in (0, len(wanted) - 1) if textures.in_cells else (0,):

@@ -96,10 +96,9 @@ def test_tiles_come_with_all_that_draws_them(make: Callable[..., Client]) -> Non
     own = json.loads(client.arrays["tile/0/0/1/header"].tobytes())
     rows, columns = own["geometry"]["shape"]
     assert (rows, columns) == (65, 65)
-    slices = client.arrays["tile/0/0/1/slices/1"]
-    assert slices.shape[0] == own["slices"]["count"]
-    assert slices.shape[1] == own["geometry"]["rows"]["size"]
-    assert client.arrays["tile/0/0/1/position"].shape == (65, 65, 3)
+    nodes = tuple(own["slices"]["trace"]["nodes"])
+    assert client.arrays["tile/0/0/1/flow/1"].shape[:2] == nodes
+    assert client.arrays["tile/0/0/1/padded"].shape == (nodes[0] + 2, nodes[1] + 2, 3)
     speed = swirl(2).speed[1, :65, 64:129]
     np.testing.assert_allclose(client.arrays["tile/0/0/1/scalars/1"], speed, rtol=1e-6)
     # Of a tile without cells there is nothing to draw.
