@@ -1,9 +1,9 @@
 """What is carried to a browser: ``python benchmarks/carried.py``.
 
-Pages of a steady gyre on a crooked grid, with its velocity, which the browser traces, and with its
-slices: bytes of the page and of a node, processor time of writing it, and seconds from opening it
-in headless Chromium until the picture is whole. ``--meshes`` chooses others, as rows x columns.
-Compare within one run.
+Pages of a steady gyre on a crooked grid and of a cylinder's wake at 31 times, with the velocity,
+which the browser traces, and with slices: bytes of the page and of a node at one time, processor
+time of writing it, and seconds from opening it in headless Chromium until the picture is whole.
+``--meshes`` chooses others, as rows x columns or ``wake``. Compare within one run.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-#: Rows and columns of nodes.
-MESHES = ("70x120", "250x500", "500x1000")
+#: Rows and columns of nodes, and the cylinder's wake along pathlines.
+MESHES = ("70x120", "250x500", "500x1000", "wake")
 SIZE = {"width": 800, "height": 600}
 #: Software drawing: Mesa's, which is several times as fast as Chromium's own.
 MESA = ["--use-angle=gl-egl", "--ignore-gpu-blocklist"]
@@ -29,11 +29,12 @@ COMPLETE = '.flowtex[data-sharp="true"][data-tiles="0"]'
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--meshes", nargs="*", default=list(MESHES), help="rows x columns")
+    parser.add_argument("--meshes", nargs="*", default=list(MESHES), help="rows x columns, or wake")
     arguments = parser.parse_args()
     from playwright.sync_api import sync_playwright
     from scenes import gyre_field
 
+    from flowtex.examples import cylinder_field
     from flowtex.options import Options
     from flowtex.web.export import page_data, page_pieces
     from flowtex.web.view import web_views
@@ -43,12 +44,19 @@ def main() -> None:
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=MESA)
         for mesh in arguments.meshes:
-            rows, columns = (int(n) for n in mesh.split("x"))
-            field = gyre_field(columns, rows, crooked=True)
+            options = Options.split(**({"lines": "pathlines"} if mesh == "wake" else {}))
+            if mesh == "wake":
+                field = cylinder_field()
+            else:
+                rows, columns = (int(n) for n in mesh.split("x"))
+                field = gyre_field(columns, rows, crooked=True)
+            name = " × ".join(map(str, field.shape[::-1]))
+            if len(field.times) > 1:
+                name += f", {len(field.times)} times"
             for traces in (True, False):
                 path = Path(folder) / f"{mesh}.html"
                 start = time.process_time()
-                views = web_views(field, Options.split())
+                views = web_views(field, options)
                 scenes = page_data(views, traces=traces)
                 path.write_text("".join(page_pieces(views, scenes)), encoding="utf-8")
                 written = time.process_time() - start
@@ -60,9 +68,9 @@ def main() -> None:
                 page.close()
                 size = path.stat().st_size
                 table.add_row(
-                    f"{columns} × {rows}, {'velocity' if traces else 'slices'}",
+                    f"{name}, {'velocity' if traces else 'slices'}",
                     f"{size / 1e6:.2f}",
-                    f"{size / field.valid.size:.1f}",
+                    f"{size / field.valid.size / len(field.times):.1f}",
                     f"{written:.2f}",
                     f"{drawn:.1f}",
                 )

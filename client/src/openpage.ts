@@ -33,22 +33,15 @@ function packedOf(view: string): { parts: Packed[]; tiles: Map<string, Packed[]>
 }
 
 /** A view as it lies in the page; `known` has what is unpacked, and `texts` what is not, by digests. */
-async function sceneOf(
+function sceneOf(
   header: Header,
-  view: string,
+  tiles: Map<string, Packed[]>,
   known: Map<string, NamedPart>,
   texts: Map<string, string>,
   openStore?: OpenStore,
-): Promise<SceneData> {
-  const { parts, tiles } = packedOf(view);
+): SceneData {
   for (const [{ digest }, text] of [...tiles.values()].flat()) if (text) texts.set(digest, text);
-  const unpacked: NamedPart[] = [];
-  for (const [info, text] of parts) {
-    const part = known.get(info.digest) ?? (await partOfText(info, text));
-    known.set(info.digest, part);
-    unpacked.push({ ...part, name: info.name });
-  }
-  if (openStore) return { header, parts: unpacked, source: openStore(header) };
+  if (openStore) return { header, parts: [], source: openStore(header) };
   const loadTile: SceneData["loadTile"] = (key, steps) => {
     const needed = (tiles.get(nameOf(key)) ?? []).filter(([{ name }]) => {
       const part = tilePart(name)?.[1] ?? "";
@@ -64,7 +57,7 @@ async function sceneOf(
       }),
     );
   };
-  return { header, parts: unpacked, loadTile };
+  return { header, parts: [], loadTile };
 }
 
 /** Unpack the page, and take the preview away once the client has drawn. */
@@ -76,10 +69,10 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
     const headers: Header[] = JSON.parse(document.getElementById("headers")?.textContent ?? "");
     const known = new Map<string, NamedPart>();
     const texts = new Map<string, string>();
-    const scenes: SceneData[] = [];
-    for (const [n, header] of headers.entries()) {
-      scenes.push(await sceneOf({ ...headers[0], ...header }, String(n), known, texts, openStore));
-    }
+    const packed = headers.map((_, n) => packedOf(String(n)));
+    const scenes = headers.map((header, n) =>
+      sceneOf({ ...headers[0], ...header }, packed[n].tiles, known, texts, openStore),
+    );
     const look = () => {
       // The client says why in its own place, which the preview covers.
       status.hidden = !place.querySelector('[data-failed="true"]');
@@ -92,12 +85,23 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
     const watch = new MutationObserver(look);
     const attributeFilter = ["data-sharp", "data-failed"];
     watch.observe(place, { subtree: true, childList: true, attributeFilter });
-    const { root } = mountPage(place, scenes);
+    let isComing = true;
+    const { root, together } = mountPage(place, scenes, { isComing: () => isComing });
     // Keys are the view's from the beginning, without a click.
     document.addEventListener("keydown", (event) => {
       const isFree = event.target === document.body;
       if (isFree && !root.dispatchEvent(new KeyboardEvent("keydown", event))) event.preventDefault();
     });
+    // Meanwhile the shaders are built.
+    for (const [n, viewer] of together.entries()) {
+      for (const [info, text] of packed[n].parts) {
+        const part = known.get(info.digest) ?? (await partOfText(info, text));
+        known.set(info.digest, part);
+        viewer.setPart({ ...part, name: info.name });
+      }
+    }
+    isComing = false;
+    for (const viewer of together) viewer.change();
   } catch (error) {
     status.hidden = false;
     const reason = error instanceof Error ? error.message : String(error);

@@ -37,6 +37,8 @@ export interface Options {
   onFrame?: () => void;
   onSetting?: (name: string, value: Value) => void;
   /** Colours are chosen, which the host changes. */
+  /** Whether parts are still on their way, which nobody has to ask for. */
+  isComing?: () => boolean;
   onColours?: (choice: ColourChoice) => void;
   onControls?: (shown: boolean) => void;
   /** Memory in bytes that tiles may take, here and on the graphics card. */

@@ -250,7 +250,7 @@ export class Panel {
     const text = missing.length ? "waiting for data …" : traces;
     if (busy.textContent !== text) busy.textContent = text;
     busy.hidden = !text;
-    if (!missing.length || viewer.options.onNeed || this.lateTimer) return;
+    if (!missing.length || viewer.options.onNeed || viewer.options.isComing?.() || this.lateTimer) return;
     // Parts come in any order.
     this.lateTimer = viewer.lifetime.later(() => {
       this.lateTimer = null;

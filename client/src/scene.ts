@@ -7,7 +7,7 @@ import { coordinates, cornersAt, noiseCoordinates, positions, shares, type Corne
 import { MeshLevels, type Sight } from "./meshlevels.ts";
 import { SAMPLERS, type Program } from "./programs.ts";
 import { stepOf, type Data, type Header, type Part } from "./protocol.ts";
-import { flowsOf, normalOf, positionOf, Tracing, type Made } from "./tracer.ts";
+import { flowsOf, normalOf, positionOf, programsOf, Tracing, type Made } from "./tracer.ts";
 import {
   atVertices,
   cornersOf,
@@ -133,6 +133,12 @@ export class Scene {
       this.put("normal", digest("normal"), () => normalOf(padded, trace, geometry.shape));
     }
     return steps.every((step) => this.trace(step, until));
+  }
+
+  /** Have the programs built that trace. */
+  prepare(): void {
+    const { trace } = this.header.slices;
+    if (trace) programsOf(this.graphics, this.header, trace);
   }
 
   /** Trace the slices of a step, or take those that another view has. */

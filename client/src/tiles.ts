@@ -317,9 +317,11 @@ export class Tiles {
   /** Ask for what is missing, once the view has come to rest a little, and again where nothing comes. */
   private ask(all: number[]): void {
     const { options, lifetime } = this.host;
-    const isLacking = (step: number) => this.missing.some((name) => !this.isHere(name, [step]));
     // Those that paths lead through are needed too.
-    const steps = [...new Set(all.filter(isLacking).flatMap((step) => flowsOf(this.root.header, step)))];
+    const lacking = (name: string, step: number) =>
+      this.tiles.get(name)?.scene?.lacking(step) ?? flowsOf(this.root.header, step);
+    const needed = this.missing.flatMap((name) => all.flatMap((step) => lacking(name, step)));
+    const steps = [...new Set(needed)].sort((a, b) => a - b);
     const open = this.asked.names.filter((name) => !this.isHere(name, this.asked.steps));
     const isAsked =
       performance.now() - this.lastCame < LOST_MS &&

@@ -118,6 +118,24 @@ export function stretches(
   return result;
 }
 
+/** Programs that follow paths, put long ones together, and lay out texels; they may not be ready yet. */
+export function programsOf({ programs, floats }: TraceContext, header: Traced, trace: TraceHeader) {
+  const { fullVertex, trace: path = "", layers = "" } = header.shaders;
+  const get = (fragment: string, ...variant: (string | boolean)[]) => {
+    const names = variant.filter((name) => typeof name === "string");
+    const program = programs.get(fullVertex, fragment, ...names);
+    if (program.error) throw new Error(`the tracer cannot be built: ${program.error}`);
+    return program;
+  };
+  const target = floats && "FLOWTEX_FLOATS";
+  return {
+    follow: get(path, trace.pathlines && "FLOWTEX_PATHLINES"),
+    compose: trace.pathlines ? null : get(path, "FLOWTEX_COMPOSED"),
+    slopes: get(layers, "FLOWTEX_SLOPES", target),
+    tangents: get(layers, target),
+  };
+}
+
 /** The slices of one time while they are traced, some passes in each frame. */
 export class Tracing {
   private readonly graphics: TraceContext;
@@ -144,7 +162,7 @@ export class Tracing {
 
   /** Go on until a time; gives the texture of the slices, which is the caller's, when it is whole. */
   advance(until: number): WebGLTexture | null {
-    if (!Object.values(this.programs).every((program) => program?.ready ?? true)) return null;
+    if (!Object.values(programsOf(this.graphics, this.header, this.trace)).every((program) => program?.ready ?? true)) return null;
     const gl = this.graphics.context;
     try {
       do {
@@ -169,26 +187,6 @@ export class Tracing {
     this.result = null;
     this.textures.clear();
     this.frames.length = 0;
-  }
-
-  private program(fragment: "trace" | "layers", ...variant: string[]): Program {
-    const { graphics, header } = this;
-    const { fullVertex, [fragment]: text = "" } = header.shaders;
-    const program = graphics.programs.get(fullVertex, text, ...variant);
-    if (program.error) throw new Error(`the tracer cannot be built: ${program.error}`);
-    return program;
-  }
-
-  /** Programs that follow paths, put long ones together, and lay out texels. */
-  private get programs() {
-    const { pathlines } = this.trace;
-    const floats = this.graphics.floats ? ["FLOWTEX_FLOATS"] : [];
-    return {
-      follow: this.program("trace", ...(pathlines ? ["FLOWTEX_PATHLINES"] : [])),
-      compose: pathlines ? null : this.program("trace", "FLOWTEX_COMPOSED"),
-      slopes: this.program("layers", "FLOWTEX_SLOPES", ...floats),
-      tangents: this.program("layers", ...floats),
-    };
   }
 
   private data(name: string): Data {
@@ -416,7 +414,7 @@ export class Tracing {
       draw(layers.begin(n), [own, ...constant, ...textures], pass, values);
       layers.end(n);
     };
-    const { follow, compose, slopes, tangents } = this.programs;
+    const { follow, compose, slopes, tangents } = programsOf(graphics, header, trace);
     layer(0, tangents, [], { u_inCells: 0 });
     if (count > 1 + sides * lags.length) layer(count - 1, tangents, [], { u_inCells: 1 });
     for (let side = 0; side < sides; side += 1) {

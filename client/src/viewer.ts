@@ -474,12 +474,13 @@ export class Viewer implements User {
   /** Ask for the steps that are not there; tells whether all are. */
   private ask(steps: number[]): boolean {
     const now = performance.now();
+    const { onNeed, isComing } = this.options;
     const lacking = [...new Set(steps.flatMap((step) => this.scene?.lacking(step) ?? []))];
     for (const step of lacking) {
       // A request that was lost is sent again.
-      if (!this.options.onNeed || now - (this.requests.get(step) ?? -Infinity) < LOST_MS) continue;
+      if (!onNeed || isComing?.() || now - (this.requests.get(step) ?? -Infinity) < LOST_MS) continue;
       this.requests.set(step, now);
-      this.options.onNeed(step);
+      onNeed(step);
     }
     return !lacking.length;
   }
@@ -515,7 +516,8 @@ export class Viewer implements User {
   private drawPicture(header: Header, until: number): void {
     const shown = this.available(until);
     if (!this.camera) this.place();
-    const program = this.program(header); // is built while the slices are made
+    const program = this.program(header); // built while parts come and slices are made
+    this.scene?.prepare();
     if (!shown || !this.camera) return;
     if (program.error) {
       this.panel.fail("The shader does not compile with this graphics driver.", program.error);

@@ -847,16 +847,16 @@ isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.is
 owtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade){
 let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},tiles=pending?`${wanted-pending} of ${wanted} tiles …`:"",
 traces=isMade?tiles:"tracing paths …",text=missing.length?"waiting for data …":traces;busy.textContent!==text&&(busy.
-textContent=text),busy.hidden=!text,!(!missing.length||viewer.options.onNeed||this.lateTimer)&&(this.lateTimer=viewer.lifetime.
-later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missin\
-g: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.
-later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),
-this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.root.dataset.
-failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=
-!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(
-".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.
-header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(
-()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+textContent=text),busy.hidden=!text,!(!missing.length||viewer.options.onNeed||viewer.options.isComing?.()||this.lateTimer)&&
+(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The\
+ scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),
+this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(
+text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,
+delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pr\
+e",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.
+viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(
+viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).
+click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -1054,29 +1054,28 @@ times:times2}=slices;if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[s
 {unit:unit2}=trace.timed,lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in
 times2),end=isLast?to:lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between2=isLast?[0,1]:[lagOf(n),end],isWhole=end>=
 to-LAG_ROUNDING*to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between2}),from=isWhole?to:end}
-return result2}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;constructor(graphics,header,trace,find,step){
+return result2}function programsOf({programs,floats},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,
+get=(fragment,...variant)=>{let names=variant.filter(name=>typeof name=="string"),program=programs.get(fullVertex,fragment,
+...names);if(program.error)throw new Error(`the tracer cannot be built: ${program.error}`);return program},target=floats&&
+"FLOWTEX_FLOATS";return{follow:get(path,trace.pathlines&&"FLOWTEX_PATHLINES"),compose:trace.pathlines?null:get(path,"FLO\
+WTEX_COMPOSED"),slopes:get(layers,"FLOWTEX_SLOPES",target),tangents:get(layers,target)}}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;constructor(graphics,header,trace,find,step){
 this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.passes=this.slices(step)}advance(until){if(!Object.
-values(this.programs).every(program=>program?.ready??!0))return null;let gl=this.graphics.context;try{do{let{done,value}=this.
-passes.next();if(gl.isContextLost())return null;if(done)return this.result=null,value}while(performance.now()<until);return null}finally{
-this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",texture);for(let frame of this.frames)
-this.graphics.free("Framebuffer",frame);this.result&&!this.graphics.context.isContextLost()&&this.graphics.context.deleteTexture(
-this.result),this.result=null,this.textures.clear(),this.frames.length=0}program(fragment,...variant){let{graphics,header}=this,
-{fullVertex,[fragment]:text=""}=header.shaders,program=graphics.programs.get(fullVertex,text,...variant);if(program.error)
-throw new Error(`the tracer cannot be built: ${program.error}`);return program}get programs(){let{pathlines}=this.trace,
-floats=this.graphics.floats?["FLOWTEX_FLOATS"]:[];return{follow:this.program("trace",...pathlines?["FLOWTEX_PATHLINES"]:
-[]),compose:pathlines?null:this.program("trace","FLOWTEX_COMPOSED"),slopes:this.program("layers","FLOWTEX_SLOPES",...floats),
-tangents:this.program("layers",...floats)}}data(name){let part=this.find(name);if(!part)throw new Error(`the part "${name}\
-" of the scene is missing`);return part.data}texture(width,height,inner,data){let gl=this.graphics.context,texture=this.
-graphics.counted(gl.createTexture());return this.textures.add(texture),gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D,
-texture),gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),
-gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.texSubImage2D(gl.TEXTURE_2D,0,0,0,width,height,
-gl.RGBA,gl.FLOAT,data),texture}frame(){let gl=this.graphics.context,frame=this.graphics.counted(gl.createFramebuffer());
-return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,frame),frame}target(width,height){let gl=this.graphics.
-context,texture=this.texture(width,height,gl.RGBA32UI,null),frame=this.frame();return gl.framebufferTexture2D(gl.FRAMEBUFFER,
-gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.graphics.context;for(let n=0;n<UNITS;n+=
-1)gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,null),gl.bindTexture(gl.TEXTURE_2D_ARRAY,null);gl.bindFramebuffer(
-gl.FRAMEBUFFER,null)}flow(step){let{trace}=this,data=this.data(`flow/${step}`),unit2=this.data("unit"),channels=data.length/
-unit2.length,flow=new Float32Array(4*unit2.length),most=0;for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=HALVES[data[at+
+values(programsOf(this.graphics,this.header,this.trace)).every(program=>program?.ready??!0))return null;let gl=this.graphics.
+context;try{do{let{done,value}=this.passes.next();if(gl.isContextLost())return null;if(done)return this.result=null,value}while(performance.
+now()<until);return null}finally{this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",
+texture);for(let frame of this.frames)this.graphics.free("Framebuffer",frame);this.result&&!this.graphics.context.isContextLost()&&
+this.graphics.context.deleteTexture(this.result),this.result=null,this.textures.clear(),this.frames.length=0}data(name){
+let part=this.find(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part.data}texture(width,height,inner,data){
+let gl=this.graphics.context,texture=this.graphics.counted(gl.createTexture());return this.textures.add(texture),gl.activeTexture(
+gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(
+gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.
+texSubImage2D(gl.TEXTURE_2D,0,0,0,width,height,gl.RGBA,gl.FLOAT,data),texture}frame(){let gl=this.graphics.context,frame=this.
+graphics.counted(gl.createFramebuffer());return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,frame),frame}target(width,height){
+let gl=this.graphics.context,texture=this.texture(width,height,gl.RGBA32UI,null),frame=this.frame();return gl.framebufferTexture2D(
+gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.graphics.context;for(let n=0;n<
+UNITS;n+=1)gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,null),gl.bindTexture(gl.TEXTURE_2D_ARRAY,null);gl.
+bindFramebuffer(gl.FRAMEBUFFER,null)}flow(step){let{trace}=this,data=this.data(`flow/${step}`),unit2=this.data("unit"),channels=data.
+length/unit2.length,flow=new Float32Array(4*unit2.length),most=0;for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=HALVES[data[at+
 2]],size=HALVES[unit2[n]]*trace.unit,i=HALVES[data[at]]*speed/size,j=HALVES[data[at+1]]*speed/size;flow[4*n]=i,flow[4*n+
 1]=j,flow[4*n+2]=speed,flow[4*n+3]=trace.timed?trace.timed.unit:size,most=Math.max(most,Math.abs(i),Math.abs(j))}return trace.
 timed&&(this.fastest=Math.max(this.fastest,most*trace.timed.speed*trace.timed.unit)),flow}wholeSpeed(step){let data=this.
@@ -1110,17 +1109,17 @@ u_cell:slices.cell/slices.unit,u_planar:Number(geometry.planar),u_mostReach:2*la
 gl.viewport(0,0,w,h);for(let ability of[gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);textures.
 forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(null),graphics.
 programs.use(pass,{...uniforms2,...values}),gl.drawArrays(gl.TRIANGLES,0,3)},layers=this.layerTarget(result2,size),layer=(n,pass,textures,values)=>{
-draw(layers.begin(n),[own,...constant,...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=this.programs;
-layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});for(let side=0;side<
-sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];for(let[m,lag]of lags.
-entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:null,at=now;for(let stretch of stretches(
-header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(n)),parts=composer?[[from,lag]]:this.partsOf(
-stretch);for(let[begin,end]of parts){let next=pool.find(each=>![first,before,now,at].includes(each))??pool[0];gl.bindFramebuffer(
-gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],before[0],far],composer??follow,{u_lagEarlier:earlier,
-u_from:begin,u_to:end,u_side:sign,u_between:stretch.between}),gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(
-4)),at=next,yield}}[before,now]=[now,at],m||(first=now);let fourth=m===1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],
-now[0]],{u_fourth:fourth,u_lag:sign*lag})}layer(start,slopes,[first[0],now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.
-finish(),result2}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
+draw(layers.begin(n),[own,...constant,...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=programsOf(
+graphics,header,trace);layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});
+for(let side=0;side<sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];
+for(let[m,lag]of lags.entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:
+null,at=now;for(let stretch of stretches(header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(
+n)),parts=composer?[[from,lag]]:this.partsOf(stretch);for(let[begin,end]of parts){let next=pool.find(each=>![first,before,
+now,at].includes(each))??pool[0];gl.bindFramebuffer(gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],
+before[0],far],composer??follow,{u_lagEarlier:earlier,u_from:begin,u_to:end,u_side:sign,u_between:stretch.between}),gl.readPixels(
+0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(4)),at=next,yield}}[before,now]=[now,at],m||(first=now);let fourth=m===
+1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],now[0]],{u_fourth:fourth,u_lag:sign*lag})}layer(start,slopes,[first[0],
+now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.finish(),result2}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
 alar"]},SOURCES=["padded","unit","open","nearest"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;anchor=[
 0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts){
@@ -1140,51 +1139,51 @@ part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];
 shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),
 digest=name=>this.key(["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.
 shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,
-geometry.shape)),steps.every(step=>this.trace(step,until))}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.
-slices,name=`slices/${step}`;if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),
-key=this.key([...flows,...SOURCES],step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.
-has(`slices ${key}`)){let{tracings}=graphics,tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();
-let find=part=>this.parts.get(part),tracing=tracings.get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.
-set(this.tracing=tracked,tracing),texture=tracing.advance(until),!texture)return!1;this.stopTracing()}return this.take(name,
-"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){let{graphics,parts}=this;if(parts.get(name)?.digest===digest)
-return;let part=graphics.stock.get(digest)?.part??{...make(),digest};graphics.release(parts.get(name)),parts.set(name,graphics.
-hold(part)),this.forget(name)}isMade(steps){return!this.missing(steps[0],steps[steps.length-1]).length&&(!this.header.slices.
-trace||this.isLoaded(steps))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(
-this.tracing),this.tracing=""}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}" of t\
-he scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=
-this.drawn=null);let sliced=["slices","extra","flow"].includes(kind);!sliced&&kind!=="scalars"&&this.earth.forget(name);
-for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);SOURCES.includes(kind)&&this.dropSlices(NaN,NaN),
-this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.users-=
-1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){
-for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.dispose()}key(names,...rest){let digests=names.
-map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):
-""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&
-`${name.split("/")[0]} ${key}`,shared=whole?graphics.common.get(whole):void 0,object=shared?.object??graphics.counted(make()),
-resource=shared??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||
-(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.
-graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(
-null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"B\
-uffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.
-triangles)return this.meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,parts={
-blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,
-...parts},mesh)}cornersAt(place){let{triangles,shape}=this.header.geometry;return triangles?cornersOf(this.part("triangl\
-es").data,place):cornersAt(shape,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
-return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String(
-[drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.
-every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.header;return slices.trace?
-[...this.resources.keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.
-columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,
-steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==
-this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=
-anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("\
-array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.
-header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
-key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape,
-[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
-null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("p\
-osition").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(
-nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(
-name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
+geometry.shape)),steps.every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.
+graphics,this.header,trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;
+if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],
+step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
+tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
+get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.
+advance(until),!texture)return!1;this.stopTracing()}return this.take(name,"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){
+let{graphics,parts}=this;if(parts.get(name)?.digest===digest)return;let part=graphics.stock.get(digest)?.part??{...make(),
+digest};graphics.release(parts.get(name)),parts.set(name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.
+missing(steps[0],steps[steps.length-1]).length&&(!this.header.slices.trace||this.isLoaded(steps))}stopTracing(){this.graphics.
+tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.
+parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,
+step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=this.drawn=null);let sliced=["slices","extra","fl\
+ow"].includes(kind);!sliced&&kind!=="scalars"&&this.earth.forget(name);for(let user of sliced?[`slices/${step}`]:USERS[kind]??
+[])this.drop(user);SOURCES.includes(kind)&&this.dropSlices(NaN,NaN),this.drop("array")}drop(name){let resource=this.resources.
+get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.
+object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);
+this.stopTracing(),this.earth.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).
+digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.
+resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.
+common.get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole,
+users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.
+common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{let target=elements?
+gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(
+target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.
+meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(
+this.part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,parts={blocks:this.part("mesh").data,cells:this.parts.
+get("cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}cornersAt(place){let{triangles,
+shape}=this.header.geometry;return triangles?cornersOf(this.part("triangles").data,place):cornersAt(shape,place)}levels(sight){
+return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins=new Int8Array){
+let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop(
+"index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){
+let{slices,geometry}=this.header;return slices.trace?[...this.resources.keys()].filter(name=>name.startsWith("slices/")).
+length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.columns.size:0}load(steps){for(let step of steps)this.slices(
+step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==
+this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)
+this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.
+createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.
+graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,
+joins:new Int8Array},key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,
+joins),drawn=key(["cells","mesh","blocks"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.
+triangles?this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
+positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
+vertexNormals(nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
+map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
 shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns,corners?.length]),place=()=>corners?
 vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
 Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
@@ -1269,23 +1268,23 @@ name=>{let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([leve
 let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){
 let scene=this.tiles.get(name)?.scene;return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.
 tiles.get(name)?.scene;return!scene||this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.
-host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.
-isHere(name,[step])),steps=[...new Set(all.filter(isLacking).flatMap(step=>flowsOf(this.root.header,step)))],open=this.asked.
-names.filter(name=>!this.isHere(name,this.asked.steps)),isAsked=performance.now()-this.lastCame<LOST_MS&&String(open.sort())===
-String([...this.missing].sort())&&(!open.length||String(steps)===String(this.asked.steps));if(!(this.isWaiting||!options.
-onTiles)){if(isAsked)return this.watch();this.isWaiting=!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=
-performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(this.missing.map(keyOf),steps),this.watch())},
-REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||(this.isWatched=!0,this.host.lifetime.later(()=>{this.isWatched=
-!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.now()-this.lastCame)))}trim(steps){let bytes=0;for(let[
-name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,scene,used}=tile,kind=scene?.header.slices.trace?
-"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}/`)),needed=scene?steps.flatMap(step=>flowsOf(
-scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-STEPS_HELD[kind],0))){let step=stepOf(part);
-if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(tile,`${each}/${step}`);let values=[...parts.
-keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)this.release(tile,each)}for(let{data}of parts.
-values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>(this.host.options.memory??BUDGET_BYTES)&&
-used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.
-parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(
-tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2={slices:[12,4],flow:[100,24]},isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
+host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,lacking=(name,step)=>this.tiles.get(name)?.
+scene?.lacking(step)??flowsOf(this.root.header,step),needed=this.missing.flatMap(name=>all.flatMap(step=>lacking(name,step))),
+steps=[...new Set(needed)].sort((a,b)=>a-b),open=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps)),isAsked=performance.
+now()-this.lastCame<LOST_MS&&String(open.sort())===String([...this.missing].sort())&&(!open.length||String(steps)===String(
+this.asked.steps));if(!(this.isWaiting||!options.onTiles)){if(isAsked)return this.watch();this.isWaiting=!0,lifetime.later(
+()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(
+this.missing.map(keyOf),steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||(this.isWatched=
+!0,this.host.lifetime.later(()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.now()-
+this.lastCame)))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,
+scene,used}=tile,kind=scene?.header.slices.trace?"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}\
+/`)),needed=scene?steps.flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-
+STEPS_HELD[kind],0))){let step=stepOf(part);if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(
+tile,`${each}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)
+this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>
+(this.host.options.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.
+scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
+part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2={slices:[12,4],flow:[100,24]},isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
 b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.createElement("d\
 iv");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
@@ -1355,31 +1354,31 @@ let{header,scene,player,shown,lacking}=this;if(!header||!scene)return null;let m
 scene.make(moment.slice(0,2),until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,
 isMade),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:
 (lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&
-this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){let now=performance.now(),lacking=[...new Set(steps.flatMap(
-step=>this.scene?.lacking(step)??[]))];for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??-1/0)<
-LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.
-isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{
-this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not b\
-e drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(
-header,this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){if(!this.camera)
-return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.
-length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);
-this.camera||this.place();let program=this.program(header);if(!(!shown||!this.camera)){if(program.error){this.panel.fail(
-"The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||!this.scene?.earth.isReady)
-return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.root.dataset.frames=String(
-this.renderer.frames),this.panel.clear(),this.scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(
-!this.playing)),this.sharp||this.request()}}advance(now){let{player,options}=this,isMade=steps=>this.ask(steps)&&!!this.
-scene?.make(steps,now);!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.
-onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,
-scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
-focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
-range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
-focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
-clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{scene,graphics}=this;return!!scene&&
-!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.find(x,y)?.point??null}ground(x,y){
-let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;
-if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({
-layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count2,options,own=()=>({})){
+this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){let now=performance.now(),{onNeed,isComing}=this.options,
+lacking=[...new Set(steps.flatMap(step=>this.scene?.lacking(step)??[]))];for(let step of lacking)!onNeed||isComing?.()||
+now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),onNeed(step));return!lacking.length}frame(now,until){
+if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
+canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
+ picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
+variant=variantOf(header,this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){
+if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??
+[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.
+available(until);this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!(!shown||!this.camera)){
+if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.
+ready||!this.scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&
+(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.scene.pickers,header.slices.critical&&this.
+program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}}advance(now){let{player,options}=this,isMade=steps=>this.
+ask(steps)&&!!this.scene?.make(steps,now);!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(
+player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
+let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,
+constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.
+anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?
+local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(
+shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{scene,
+graphics}=this;return!!scene&&!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.
+find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
+let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
+view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count2,options,own=()=>({})){
 if(count2<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
 "display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count2;n+=1){let cell=dom(
 "div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==
