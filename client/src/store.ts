@@ -15,6 +15,9 @@ const FAULT = 500;
 /** The polynomial of CRC-32C, its bits turned around, and bytes of a check sum. */
 const CASTAGNOLI = 0x82f63b78;
 const SUM_BYTES = 4;
+/** Bytes of a number, at most, and those of a chunk. */
+const NUMBER_BYTES = 8;
+const MOST_CHUNK_BYTES = 1 << 28;
 
 /** What is wrong: nothing is there, it is not what was written, or nobody answers. */
 export type StoreFault = "missing" | "broken" | "unreachable" | "other";
@@ -57,6 +60,34 @@ export function crc32c(bytes: Uint8Array): number {
   return ~sum >>> 0;
 }
 
+/** All bytes of a stream; `grown` is called with the size so far, and ends it where it throws. */
+async function joined(
+  stream: ReadableStream<Uint8Array> | null,
+  grown: (size: number) => void,
+): Promise<Uint8Array<ArrayBuffer>> {
+  const pieces: Uint8Array[] = [];
+  let size = 0;
+  const reader = stream?.getReader();
+  try {
+    for (;;) {
+      const { done = true, value } = (await reader?.read()) ?? {};
+      if (done || !value) break;
+      pieces.push(value);
+      size += value.length;
+      grown(size);
+    }
+  } catch (error) {
+    reader?.cancel().catch(() => undefined);
+    throw error;
+  }
+  const bytes = new Uint8Array(size);
+  pieces.reduce((at, piece) => {
+    bytes.set(piece, at);
+    return at + piece.length;
+  }, 0);
+  return bytes;
+}
+
 /** The codec of that name: zarrita's leaves the check sum out without a look at it. */
 class CheckSum {
   readonly kind = "bytes_to_bytes" as const;
@@ -84,6 +115,32 @@ class CheckSum {
   }
 }
 
+/** What gzip packs, no longer than its chunk is declared: zarrita's unpacks whatever comes. */
+class Gzip {
+  readonly kind = "bytes_to_bytes" as const;
+  private readonly most: number;
+
+  constructor(most: number) {
+    this.most = most;
+  }
+
+  static fromConfig(_: unknown, { shape }: { shape: readonly number[] }): Gzip {
+    return new Gzip(Math.min(shape.reduce((size, n) => size * n, NUMBER_BYTES), MOST_CHUNK_BYTES));
+  }
+
+  encode(): never {
+    throw new Error("nothing is written");
+  }
+
+  async decode(bytes: Uint8Array): Promise<Uint8Array> {
+    const packed = new Blob([bytes as Uint8Array<ArrayBuffer>]).stream();
+    return joined(packed.pipeThrough(new DecompressionStream("gzip")), (size) => {
+      if (size > this.most) throw new Error(`a chunk unpacks to more than ${this.most} bytes`);
+    });
+  }
+}
+
+zarr.registry.set("gzip", () => Promise.resolve(Gzip));
 zarr.registry.set("crc32c", () => Promise.resolve(CheckSum));
 
 function paused(wait: number, signal: AbortSignal): Promise<void> {
@@ -109,20 +166,10 @@ async function answer(url: string, signal: AbortSignal): Promise<[status: number
   try {
     signal.throwIfAborted();
     const { status, body } = await fetch(url, { signal: controller.signal });
-    const reader = status === OK ? body?.getReader() : null;
-    const pieces: Uint8Array[] = [];
-    for (;;) {
-      const { done = true, value } = (await reader?.read()) ?? {};
-      if (done || !value) break;
+    const bytes = await joined(status === OK ? body : null, () => {
       clearTimeout(timer);
       timer = setTimeout(stop, STALL_MS);
-      pieces.push(value);
-    }
-    const bytes = new Uint8Array(pieces.reduce((size, piece) => size + piece.length, 0));
-    pieces.reduce((at, piece) => {
-      bytes.set(piece, at);
-      return at + piece.length;
-    }, 0);
+    });
     return [status, bytes];
   } finally {
     controller.abort(); // what is not read is not sent

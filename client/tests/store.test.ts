@@ -4,6 +4,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { beforeEach, mock, test } from "node:test";
+import { gzipSync } from "node:zlib";
 import type { Header, NamedPart } from "../src/protocol.ts";
 import { crc32c, StoreError } from "../src/store.ts";
 import { Stream } from "../src/stream.ts";
@@ -159,6 +160,40 @@ test("no shorter object passes", async () => {
       await assert.rejects(stream.tile([0, 0, 0], [0], signal, nothing), failing("broken"));
     }
     files.set(path, whole);
+  }
+});
+
+test("a chunk unpacks to what its array declares, and no further", async () => {
+  const stops: number[] = [];
+  const Packed = globalThis.DecompressionStream;
+  globalThis.DecompressionStream = class extends Packed {
+    constructor(format: CompressionFormat) {
+      super(format);
+      let size = 0;
+      const count = new TransformStream<Uint8Array, Uint8Array>({
+        transform(piece, controller) {
+          size += piece.length;
+          stops[0] = size;
+          controller.enqueue(piece);
+        },
+      });
+      Object.defineProperty(this, "readable", { value: super.readable.pipeThrough(count) });
+    }
+  };
+  try {
+    const size = 100_000_000;
+    const about = JSON.parse(new TextDecoder().decode(files.get("0/flow/zarr.json")));
+    const told = { ...about, codecs: about.codecs[0].configuration.codecs }; // without shards
+    files.set("0/flow/zarr.json", new TextEncoder().encode(JSON.stringify(told)));
+    const packed = gzipSync(new Uint8Array(size));
+    const sum = new Uint8Array(packed.length + 4);
+    sum.set(packed);
+    new DataView(sum.buffer).setUint32(packed.length, crc32c(packed), true);
+    files.set(FLOW, sum);
+    await assert.rejects(streamOf().stream.tile([0, 0, 0], [0], signal, nothing), failing("broken"));
+    assert.ok(stops[0] > 0 && stops[0] < size / 2, `${stops[0]}`);
+  } finally {
+    globalThis.DecompressionStream = Packed;
   }
 });
 

@@ -553,9 +553,9 @@ position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole=[]
 sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
 layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
 points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count2=sides===
-2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
-ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
-Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined2=reach=>{let[back=[],
+ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined2(PATH_LENGTH*
+Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined2(count2*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
 RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.
 length<=UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:
 3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
@@ -1059,7 +1059,7 @@ blocks,(block,own)=>{levels[own]=Math.min(levels[own],finest[block]+most-step)})
 new Lines(blocks,0),new Lines(blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%
 blocks[1]];[[j,i],[i,j]].forEach(([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(
 line+far,along);values[at]=Math.max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());
-let joined=parts.map(part=>bordersOf(part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}
+let joined2=parts.map(part=>bordersOf(part,lines));if(!joined2.some(([,changed])=>changed))return joined2.map(([borders])=>borders)}}
 function bordersOf({step,row,column,shape,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;
 for(let side of[0,1,2,3]){let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[
 Math.floor(own/shape[1]),own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+far)*
@@ -1747,31 +1747,37 @@ Group)return node;let kind=node instanceof Array2?"array":"group";throw new NotF
 versionMax=VERSION_COUNTER.versionMax(store),openPrimary=versionMax==="v2"?open.v2:open.v3,openSecondary=versionMax==="v\
 2"?open.v3:open.v2;return openPrimary(location2,options).catch(err=>(rethrowUnless(err,NotFoundError,InvalidMetadataError),
 openSecondary(location2,options)))}open.v2=openV2;open.v3=openV3;var PAUSES_MS=[300,1e3,3e3],STALL_MS=2e4,ABSENT=[401,403,404,410],OK=200,BUSY=429,FAULT=500,CASTAGNOLI=2197175160,SUM_BYTES=4,
-StoreError=class extends Error{fault;detail;constructor(fault,message,detail=message){super(message),this.fault=fault,this.
-detail=detail}},sums=Array.from({length:4},(_,more)=>Uint32Array.from({length:256},(__,byte)=>{let sum=byte;for(let bit=0;bit<
-8*(more+1);bit+=1)sum=sum>>>1^(sum&1?CASTAGNOLI:0);return sum}));function crc32c(bytes){let[last,third,second,first]=sums,
-whole=bytes.length-bytes.length%4,sum=4294967295;for(let n=0;n<whole;n+=4)sum^=bytes[n]|bytes[n+1]<<8|bytes[n+2]<<16|bytes[n+
-3]<<24,sum=first[sum&255]^second[sum>>>8&255]^third[sum>>>16&255]^last[sum>>>24];for(let n=whole;n<bytes.length;n+=1)sum=
-sum>>>8^last[(sum^bytes[n])&255];return~sum>>>0}var CheckSum=class _CheckSum{kind="bytes_to_bytes";static fromConfig(){return new _CheckSum}encode(){
-throw new Error("nothing is written")}decode(bytes){let end=bytes.byteLength-SUM_BYTES;if(end<0)throw new Error("there i\
-s no check sum");let{buffer,byteOffset}=bytes,told=new DataView(buffer,byteOffset+end,SUM_BYTES).getUint32(0,!0),inside=new Uint8Array(
-buffer,byteOffset,end);if(told!==crc32c(inside))throw new Error("the check sum does not fit");return inside}computeEncodedSize(size){
-return size+SUM_BYTES}};registry.set("crc32c",()=>Promise.resolve(CheckSum));function paused(wait,signal){return new Promise(
-(resolve,reject)=>{let stop=()=>{clearTimeout(timer),reject(signal.reason)},timer=setTimeout(()=>{signal.removeEventListener(
-"abort",stop),resolve()},wait);signal.addEventListener("abort",stop,{once:!0})})}async function answer(url,signal){let controller=new AbortController,
-stop=()=>controller.abort();signal.addEventListener("abort",stop,{once:!0});let timer=setTimeout(stop,STALL_MS);try{signal.
-throwIfAborted();let{status,body}=await fetch(url,{signal:controller.signal}),reader=status===OK?body?.getReader():null,
-pieces=[];for(;;){let{done=!0,value}=await reader?.read()??{};if(done||!value)break;clearTimeout(timer),timer=setTimeout(
-stop,STALL_MS),pieces.push(value)}let bytes=new Uint8Array(pieces.reduce((size,piece)=>size+piece.length,0));return pieces.
-reduce((at,piece)=>(bytes.set(piece,at),at+piece.length),0),[status,bytes]}finally{controller.abort(),clearTimeout(timer),
-signal.removeEventListener("abort",stop)}}async function object(url,signal){for(let trial=0;;trial+=1){let said="nobody \
-answers";try{let[status,bytes]=await answer(url,signal);if(status===OK)return bytes;if(ABSENT.includes(status))return;if(said=
-`the server answers ${status}`,status<FAULT&&status!==BUSY)throw new StoreError("broken",said)}catch(error){if(signal.throwIfAborted(),
-error instanceof StoreError)throw error}if(trial===PAUSES_MS.length)throw new StoreError("unreachable",said);await paused(
-PAUSES_MS[trial],signal)}}var Objects=class{url;described;shards=new Map;constructor(url,described){this.url=url,this.described=
-described}get=async(key,options)=>key.endsWith("/zarr.json")?this.description(key):this.object(key,options?.signal);getRange=async(key,range,options)=>{
-let bytes=this.shards.get(key)??this.object(key,options?.signal);this.shards.set(key,bytes);let all=await bytes;return"s\
-uffixLength"in range?all?.subarray(-range.suffixLength):all?.subarray(range.offset,range.offset+range.length)};async object(key,signal=new AbortController().
+NUMBER_BYTES=8,MOST_CHUNK_BYTES=1<<28,StoreError=class extends Error{fault;detail;constructor(fault,message,detail=message){
+super(message),this.fault=fault,this.detail=detail}},sums=Array.from({length:4},(_,more)=>Uint32Array.from({length:256},
+(__,byte)=>{let sum=byte;for(let bit=0;bit<8*(more+1);bit+=1)sum=sum>>>1^(sum&1?CASTAGNOLI:0);return sum}));function crc32c(bytes){
+let[last,third,second,first]=sums,whole=bytes.length-bytes.length%4,sum=4294967295;for(let n=0;n<whole;n+=4)sum^=bytes[n]|
+bytes[n+1]<<8|bytes[n+2]<<16|bytes[n+3]<<24,sum=first[sum&255]^second[sum>>>8&255]^third[sum>>>16&255]^last[sum>>>24];for(let n=whole;n<
+bytes.length;n+=1)sum=sum>>>8^last[(sum^bytes[n])&255];return~sum>>>0}async function joined(stream,grown){let pieces=[],
+size=0,reader=stream?.getReader();try{for(;;){let{done=!0,value}=await reader?.read()??{};if(done||!value)break;pieces.push(
+value),size+=value.length,grown(size)}}catch(error){throw reader?.cancel().catch(()=>{}),error}let bytes=new Uint8Array(
+size);return pieces.reduce((at,piece)=>(bytes.set(piece,at),at+piece.length),0),bytes}var CheckSum=class _CheckSum{kind="\
+bytes_to_bytes";static fromConfig(){return new _CheckSum}encode(){throw new Error("nothing is written")}decode(bytes){let end=bytes.
+byteLength-SUM_BYTES;if(end<0)throw new Error("there is no check sum");let{buffer,byteOffset}=bytes,told=new DataView(buffer,
+byteOffset+end,SUM_BYTES).getUint32(0,!0),inside=new Uint8Array(buffer,byteOffset,end);if(told!==crc32c(inside))throw new Error(
+"the check sum does not fit");return inside}computeEncodedSize(size){return size+SUM_BYTES}},Gzip=class _Gzip{kind="byte\
+s_to_bytes";most;constructor(most){this.most=most}static fromConfig(_,{shape}){return new _Gzip(Math.min(shape.reduce((size,n)=>size*
+n,NUMBER_BYTES),MOST_CHUNK_BYTES))}encode(){throw new Error("nothing is written")}async decode(bytes){let packed=new Blob(
+[bytes]).stream();return joined(packed.pipeThrough(new DecompressionStream("gzip")),size=>{if(size>this.most)throw new Error(
+`a chunk unpacks to more than ${this.most} bytes`)})}};registry.set("gzip",()=>Promise.resolve(Gzip));registry.set("crc3\
+2c",()=>Promise.resolve(CheckSum));function paused(wait,signal){return new Promise((resolve,reject)=>{let stop=()=>{clearTimeout(
+timer),reject(signal.reason)},timer=setTimeout(()=>{signal.removeEventListener("abort",stop),resolve()},wait);signal.addEventListener(
+"abort",stop,{once:!0})})}async function answer(url,signal){let controller=new AbortController,stop=()=>controller.abort();
+signal.addEventListener("abort",stop,{once:!0});let timer=setTimeout(stop,STALL_MS);try{signal.throwIfAborted();let{status,
+body}=await fetch(url,{signal:controller.signal}),bytes=await joined(status===OK?body:null,()=>{clearTimeout(timer),timer=
+setTimeout(stop,STALL_MS)});return[status,bytes]}finally{controller.abort(),clearTimeout(timer),signal.removeEventListener(
+"abort",stop)}}async function object(url,signal){for(let trial=0;;trial+=1){let said="nobody answers";try{let[status,bytes]=await answer(
+url,signal);if(status===OK)return bytes;if(ABSENT.includes(status))return;if(said=`the server answers ${status}`,status<
+FAULT&&status!==BUSY)throw new StoreError("broken",said)}catch(error){if(signal.throwIfAborted(),error instanceof StoreError)
+throw error}if(trial===PAUSES_MS.length)throw new StoreError("unreachable",said);await paused(PAUSES_MS[trial],signal)}}
+var Objects=class{url;described;shards=new Map;constructor(url,described){this.url=url,this.described=described}get=async(key,options)=>key.
+endsWith("/zarr.json")?this.description(key):this.object(key,options?.signal);getRange=async(key,range,options)=>{let bytes=this.
+shards.get(key)??this.object(key,options?.signal);this.shards.set(key,bytes);let all=await bytes;return"suffixLength"in range?
+all?.subarray(-range.suffixLength):all?.subarray(range.offset,range.offset+range.length)};async object(key,signal=new AbortController().
 signal){let bytes=await object(this.url+key,signal);if(!bytes)throw new StoreError("missing",`${key} is not there`);return bytes}description(key){
 let known=this.described.get(key);if(known)return known;let found=object(this.url+key,new AbortController().signal);return this.
 described.set(key,found),found.catch(()=>this.described.delete(key)),found}};function storeError(error){if(error instanceof

@@ -65,7 +65,7 @@ def check_client(scene: Scene) -> None:
     assert len(levels.triangles(levels.levels(None, 0.1 * field.surface.extent, 100)))
 
 
-@property_test(25)
+@property_test(50)
 @given(field_arguments(), setting_values())
 def test_any_field_is_drawn_with_numpy(arguments: dict[str, Any], values: dict[str, Any]) -> None:
     field = field_of(arguments)

@@ -269,7 +269,7 @@ def test_motion_is_another_shader_and_comes_back(plotter: Any) -> None:
 
 
 def test_a_frame_has_as_many_triangles_as_the_view_needs(plotter: Any) -> None:
-    y, x = np.mgrid[0:2:129j, 0:4:257j]
+    y, x = np.mgrid[0:2:257j, 0:4:513j]
     points, velocity = np.stack([x, y], axis=-1), np.stack([1 + 0 * x, 0.2 * np.sin(y)], axis=-1)
     field = flowtex.FlowField.from_arrays(points, velocity)
     handle = plotter.flowtex.add(field, scalars=False)
@@ -279,14 +279,14 @@ def test_a_frame_has_as_many_triangles_as_the_view_needs(plotter: Any) -> None:
         plotter.screenshot(return_img=True)
         return int(handle.actor.mapper.dataset.n_cells)
 
-    assert cells() == 2 * 2 * 4
+    assert cells() == 2 * 4 * 8
     plain = np.asarray(plotter.screenshot(return_img=True), dtype=float)
     handle.actor.prop.style = "Wireframe"
-    assert cells() == 2 * 128 * 256  # who looks at the mesh sees all of it
+    assert cells() == 2 * 256 * 512  # who looks at the mesh sees all of it
     handle.actor.prop.style = "Surface"
-    assert cells() == 2 * 2 * 4
+    assert cells() == 2 * 4 * 8
     handle._surface._base.mesh_levels.error[1:] = np.inf
-    assert cells() == 2 * 128 * 256
+    assert cells() == 2 * 256 * 512
     every = np.asarray(plotter.screenshot(return_img=True), dtype=float)
     assert np.abs(every - plain).max() <= 2
 

@@ -157,19 +157,32 @@ def _check_solution(layout: Layout, solution: Path) -> None:
     if not layout.binary:
         return
     axes, grids = len(layout.dimensions[0]), layout.dimensions
+    size = solution.stat().st_size
     with solution.open("rb") as file:
-        head = file.read(4 * (axes * len(grids) + 4))
-    order = ">" if layout.big_endian else "<"
-    marks, several = layout.record_marks, layout.multiple
-    found = _binary_header(head, order, axes, marks=marks, several=several)
-    if found and found != grids:
-        msg = f"{solution.name} is of grids of {found[:3]} nodes, and the grid of {grids[:3]}"
-        raise FieldError(msg + "; give the solution of this grid")
-    real, mark = 8 if layout.double else 4, 8 * marks
-    header = 4 * axes * len(grids) + mark + (4 + mark) * several
+        head = file.read(4 * (3 * len(grids) + 4))
+    # A grid of three dimensions that is cut may be as long as one of two.
+    for own in (axes, 5 - axes):
+        found = _binary_header(
+            head,
+            ">" if layout.big_endian else "<",
+            own,
+            marks=layout.record_marks,
+            several=layout.multiple,
+        )
+        fits = own == axes or size == _solution_length(layout, found, own)
+        if found and fits and found != grids:
+            msg = f"{solution.name} is of grids of {found[:3]} nodes, and the grid of {grids[:3]}"
+            raise FieldError(msg + "; the grid is cut short, or the solution is of another one")
+        check_count(size, _solution_length(layout, grids, axes), solution.name)
+        if size == _solution_length(layout, grids, axes):
+            break
+
+
+def _solution_length(layout: Layout, grids: tuple[tuple[int, ...], ...], axes: int) -> int:
+    real, mark = 8 if layout.double else 4, 8 * layout.record_marks
+    header = 4 * axes * len(grids) + mark + (4 + mark) * layout.multiple
     # Four numbers of the flow, then density, momentum and energy at each node.
-    each = sum((4 + (axes + 2) * math.prod(grid)) * real + 2 * mark for grid in grids)
-    check_count(solution.stat().st_size, header + each, solution.name)
+    return header + sum((4 + (axes + 2) * math.prod(grid)) * real + 2 * mark for grid in grids)
 
 
 def read_plot3d(grid: Path, layout: Layout, solution: Path) -> Any:

@@ -9,6 +9,7 @@ from typing import BinaryIO
 
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection import grib, hdf5, netcdf, vtk_legacy, vtk_xml
+from flowtex.field.io.inspection.ensight import check_ensight
 from flowtex.field.io.inspection.surfaces import check_obj, check_ply, check_stl
 from flowtex.field.io.inspection.zarr_folder import DOCUMENTS, check_zarr
 
@@ -20,7 +21,11 @@ GRIB_SUFFIXES = (".grib", ".grb")
 #: Files of a series or of several blocks that are looked into, at most.
 MOST_MEMBERS = 100_000
 #: Texts that say nothing of what they are.
-BY_SUFFIX: dict[str, Callable[[Path], None]] = {".obj": check_obj, ".stl": check_stl}
+BY_SUFFIX: dict[str, Callable[[Path], None]] = {
+    ".case": check_ensight,
+    ".obj": check_obj,
+    ".stl": check_stl,
+}
 
 
 def inspect_file(path: Path, *, whole: bool = True) -> None:

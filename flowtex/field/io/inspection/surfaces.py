@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import BinaryIO
 
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count
 from flowtex.field.io.inspection.numbers import TextScanner
@@ -25,8 +26,8 @@ STL_HEAD, STL_TRIANGLE = 84, 50
 def check_obj(path: Path) -> None:
     """Refuse a file whose last line is cut, or whose faces name points that it has not.
 
-    The format declares nothing: one that ends early after a line is not to be told from a whole
-    one.
+    The format declares nothing: of one that ends early after a line only points that no face uses
+    tell, and a whole one may have such.
 
     Raises
     ------
@@ -45,6 +46,11 @@ def check_obj(path: Path) -> None:
                 numbers = [corner.split(b"/")[0] for corner in corners]
                 most = max(most, 0, *(int(number) for number in numbers if number.isdigit()))
     check_count(points, most, "a face", "points")
+    if 0 < most < points:
+        notify(
+            f"{path.name}: the last {points - most:,} of {points:,} points belong to no face; the "
+            "format has no counts: the file may be cut short"
+        )
 
 
 def check_stl(path: Path) -> None:

@@ -113,6 +113,12 @@ def _surface_step(mesh: Any, vectors: MeshArray, cut: Cut | None, *, tell: bool)
         vectors = replace(vectors, where="points")
     points = np.asarray(surface.points, dtype=np.float64)
     arrays = [a for a in catalogue(surface) if a.numeric and a.components == 1 and a.name != HIDDEN]
+    if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
+        msg = (
+            f"its cells have points {triangles.min()} to {triangles.max()}, and there are "
+            f"{len(points):,}; write or copy it again"
+        )
+        raise FieldError(msg)
     areas = np.nan_to_num(np.linalg.norm(triangle_normals(points, triangles), axis=-1) / 2)
 
     def at_nodes(array: MeshArray) -> Floats:
