@@ -64,6 +64,7 @@ function sceneOf(
 export async function openPage(openStore?: OpenStore): Promise<void> {
   const place = document.getElementById("flowtex") as HTMLElement;
   const status = document.getElementById("status") as HTMLElement;
+  const loading = document.getElementById("loading") as HTMLElement;
   try {
     // Of a second header there is what differs from the first.
     const headers: Header[] = JSON.parse(document.getElementById("headers")?.textContent ?? "");
@@ -76,14 +77,17 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
     const look = () => {
       // The client says why in its own place, which the preview covers.
       status.hidden = !place.querySelector('[data-failed="true"]');
+      loading.hidden = !status.hidden;
       status.textContent =
         "This browser cannot draw the flow, for want of WebGL2; here is a picture of it.";
-      if (place.querySelector('[data-sharp="false"]')) return;
+      // A coarse picture that can be moved is better than a sharp one that cannot.
+      if (place.querySelector('.flowtex:not([data-drawn="true"])')) return;
       watch.disconnect();
       document.getElementById("preview")?.remove();
+      loading.remove();
     };
     const watch = new MutationObserver(look);
-    const attributeFilter = ["data-sharp", "data-failed"];
+    const attributeFilter = ["data-drawn", "data-failed"];
     watch.observe(place, { subtree: true, childList: true, attributeFilter });
     let isComing = true;
     const { root, together } = mountPage(place, scenes, { isComing: () => isComing });
@@ -94,15 +98,20 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
     });
     // Meanwhile the shaders are built.
     for (const [n, viewer] of together.entries()) {
-      for (const [info, text] of packed[n].parts) {
+      const view = together.length > 1 ? ` of view ${n + 1}` : "";
+      for (const [m, [info, text]] of packed[n].parts.entries()) {
+        const done = `${view}, ${m} of ${packed[n].parts.length} parts`;
+        (loading.lastElementChild as HTMLElement).textContent = done;
         const part = known.get(info.digest) ?? (await partOfText(info, text));
         known.set(info.digest, part);
         viewer.setPart({ ...part, name: info.name });
       }
     }
     isComing = false;
+    loading.textContent = "Drawing the first picture";
     for (const viewer of together) viewer.change();
   } catch (error) {
+    loading.remove();
     status.hidden = false;
     const reason = error instanceof Error ? error.message : String(error);
     status.textContent = `The flow cannot be drawn here: ${reason}`;

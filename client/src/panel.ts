@@ -56,7 +56,10 @@ export class Panel {
   private readonly readout = dom("div", { class: "readout", role: "status" });
   private readonly head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.readout]);
   private readonly note = dom("div", { class: "note", hidden: "", role: "alert" });
-  private readonly busy = dom("div", { class: "busy", hidden: "" });
+  /** What goes on, whose beginning is read out, and how far it is, which would be read again and again. */
+  private readonly doing = dom("span", { role: "status" });
+  private readonly count = dom("span", { "aria-hidden": "true" });
+  private readonly busy = dom("div", { class: "busy", hidden: "" }, [this.doing, this.count]);
   private readonly told = dom("div", { class: "told glass", hidden: "", role: "status" });
   private readonly words = new Set<string>();
   private readonly hintBox = dom("div", { class: "hint glass", hidden: "" }, [HINT]);
@@ -241,15 +244,20 @@ export class Panel {
     this.gear.setAttribute("aria-pressed", String(this.isOpen));
   }
 
-  /** Show that parts are on their way, paths being traced or tiles to come, or nothing of these. */
-  wait(missing: string[], isMade: boolean): void {
+  /** Show that parts are on their way, paths being traced, tiles to come or details left out, if any. */
+  wait(missing: string[], isMade: boolean, isCoarse = false): void {
     const { viewer, busy } = this;
     const { pending = 0, wanted = 0 } = viewer.tiles ?? {};
-    const tiles = pending ? `${wanted - pending} of ${wanted} tiles …` : "";
-    const traces = isMade ? tiles : "tracing paths …";
-    const text = missing.length ? "waiting for data …" : traces;
-    if (busy.textContent !== text) busy.textContent = text;
-    busy.hidden = !text;
+    const details = isCoarse ? `Fewer details while ${viewer.player.playing ? "playing" : "moving"}` : "";
+    let doing = "";
+    if (missing.length) doing = "Loading data";
+    else if (!isMade) doing = "Tracing paths";
+    else if (pending) doing = "Loading tiles";
+    const isOfTiles = doing === "Loading tiles";
+    const count = isOfTiles ? `: ${wanted - pending} of ${wanted}` : doing ? " …" : details;
+    if (this.doing.textContent !== doing) this.doing.textContent = doing;
+    if (this.count.textContent !== count) this.count.textContent = count;
+    busy.hidden = !(doing || count);
     if (!missing.length || viewer.options.onNeed || viewer.options.isComing?.() || this.lateTimer) return;
     // Parts come in any order.
     this.lateTimer = viewer.lifetime.later(() => {

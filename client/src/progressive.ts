@@ -5,14 +5,13 @@ import type { Graphics } from "./context.ts";
 import type { EarthView } from "./earthlayer.ts";
 import type { Program } from "./programs.ts";
 import type { Settings } from "./protocol.ts";
-import { draftUniforms, learnedPrice, motionFactor, quality, rowsIn } from "./quality.ts";
+import { COARSEST_SCALE, draftUniforms, learnedPrice, motionFactor, movingTime, quality, rowsIn } from "./quality.ts";
 import { reused, type Reuse } from "./reuse.ts";
 import type { Scene } from "./scene.ts";
 import { uniforms, type Moment, type ViewState } from "./uniforms.ts";
 import { clamp, scale, subtract, toFrame } from "./vectors.ts";
 
-/** Milliseconds for a picture in motion, of one view at least, and for a strip at rest. */
-const MOVING_MS = 55;
+/** Milliseconds for a picture in motion of one of many views at least, and for a strip at rest. */
 const MOVING_LEAST_MS = 14;
 const STRIP_MS = 40;
 /** As many times more or fewer triangles, beside those that cost nothing, take another time. */
@@ -35,6 +34,8 @@ export interface DrawContext {
   arrange(shown: Moment): Scene[];
   readonly camera: Camera | null;
   readonly player: { varies: boolean; playing: boolean };
+  /** Whether a hand moves the view or a control. */
+  readonly isHeld: boolean;
   /** Whether outlines are smoothed. */
   readonly smooth: boolean;
   /** Pixels of the canvas along one of the page. */
@@ -77,11 +78,13 @@ export class ProgressiveRenderer {
   /** What is drawn of it, and whether there is more by now. */
   private layers: Scene[] = [];
   private isRefined = false;
-  /** Milliseconds that each drawing takes, however few its pixels, and the triangles that it has. */
-  private fixed = 4;
+  /** Milliseconds that each strip and each draft takes, however few its pixels, and the triangles that it has. */
+  private fixed = { strip: 4, draft: 4 };
   private triangles = 0;
   /** Number of full pictures. */
   frames = 0;
+  /** Whether the picture on show has fewer pixels or samples than the full one. */
+  private isCoarse = false;
 
   constructor(viewer: DrawContext) {
     this.viewer = viewer;
@@ -121,13 +124,23 @@ export class ProgressiveRenderer {
   }
 
   /** Go on with the picture until a time; tells whether it is complete. */
-  draw(program: Program, shown: Moment, moving: boolean, until: number): boolean {
+  draw(program: Program, shown: Moment, until: number): boolean {
+    const moving = this.isMoving;
     if (this.draftVersion !== this.version) return this.draft(program, shown, moving);
     if (moving) return false;
     let complete = false;
     do complete = this.strip(program, shown) && !this.isRefined;
     while (!complete && performance.now() < until);
     return complete;
+  }
+
+  private get isMoving(): boolean {
+    return this.viewer.player.playing || this.viewer.isHeld;
+  }
+
+  /** Whether details are left out for the sake of motion. */
+  get leavesOut(): boolean {
+    return this.isCoarse && this.isMoving;
   }
 
   private arrange(shown: Moment): void {
@@ -141,11 +154,13 @@ export class ProgressiveRenderer {
     const samples = Number(this.viewer.settings.samples);
     // Views that move share the time; at rest one after the other gets its whole picture.
     const crowd = moving ? this.graphics.waiting.size + 1 : 1;
-    const budget = Math.max(MOVING_MS / crowd, MOVING_LEAST_MS);
     this.arrange(shown);
     this.warm(program, shown);
     const price = program.price * this.factor(samples);
-    const best = quality(price, this.fixed, width * height, samples, budget);
+    const isPlaying = this.viewer.player.playing && !this.viewer.isHeld;
+    const time = movingTime(price, this.fixed.draft, width * height, samples, isPlaying);
+    const budget = Math.max(time / crowd, MOVING_LEAST_MS);
+    const best = quality(price, this.fixed.draft, width * height, samples, budget);
     const w = Math.max(Math.round(width * best.scale), 1);
     const h = Math.max(Math.round(height * best.scale), 1);
     this.draftVersion = this.version;
@@ -163,7 +178,8 @@ export class ProgressiveRenderer {
       this.pen.drawImage(this.last, 0, 0);
       this.pen.setTransform(1, 0, 0, 1, 0, 0);
     }
-    const isWhole = best.scale === 1 && best.samples === samples && !this.viewer.smooth;
+    this.isCoarse = best.scale < 1 || best.samples < samples;
+    const isWhole = !this.isCoarse && !this.viewer.smooth;
     if (isWhole) this.complete();
     this.drawLines(shown);
     return isWhole && !this.isRefined;
@@ -183,7 +199,7 @@ export class ProgressiveRenderer {
     this.warm(program, shown);
     const price = program.price * this.factor(samples);
     const most = Math.min(height - this.rowsDone, smooth ? SMOOTH_ROWS : height);
-    const rows = Math.min(rowsIn(STRIP_MS, price, this.fixed, width, samples), most);
+    const rows = Math.min(rowsIn(STRIP_MS, price, this.fixed.strip, width, samples), most);
     const region = { width, height, top: this.rowsDone, rows };
     this.timed(program, region, samples, () => {
       this.render(program, shown, region, samples, smooth);
@@ -227,6 +243,7 @@ export class ProgressiveRenderer {
   private complete(): void {
     const { camera, player } = this.viewer;
     this.rowsDone = this.canvas.height;
+    this.isCoarse = false;
     this.frames += 1;
     this.draftVersion = this.version;
     this.lastPen?.drawImage(this.canvas, 0, 0);
@@ -261,7 +278,8 @@ export class ProgressiveRenderer {
     const spent = performance.now() - started;
     const pixels = region.width * region.rows;
     const factor = this.factor(samples);
-    program.price = learnedPrice(program.price, spent, this.fixed, pixels, samples, factor);
+    const fixed = region.rows < region.height ? this.fixed.strip : this.fixed.draft;
+    program.price = learnedPrice(program.price, spent, fixed, pixels, samples, factor);
   }
 
   /**
@@ -273,12 +291,17 @@ export class ProgressiveRenderer {
     const share = (triangles + FEW_TRIANGLES) / (this.triangles + FEW_TRIANGLES);
     if (program.warm && share < ALIKE && share > 1 / ALIKE) return;
     const { width, height } = this.canvas;
-    const region = { width, height, top: 0, rows: 1 };
-    if (!program.warm) this.render(program, shown, region, 1);
+    const row = { width, height, top: 0, rows: 1 };
+    const [w, h] = [width, height].map((n) => Math.max(Math.round(n * COARSEST_SCALE), 1));
+    if (!program.warm) this.render(program, shown, row, 1);
     this.triangles = triangles;
-    const started = performance.now();
-    this.render(program, shown, region, 1);
-    this.fixed = clamp(performance.now() - started, 0.5, 500);
+    const fixed = [row, { width: w, height: h, top: 0, rows: h }].map((region) => {
+      const started = performance.now();
+      this.render(program, shown, region, 1);
+      return clamp(performance.now() - started, 0.5, 500);
+    });
+    // Few pixels have most triangles to themselves, which a row hardly meets.
+    this.fixed = { strip: fixed[0], draft: fixed[1] };
     program.warm = true;
   }
 

@@ -7,9 +7,14 @@ import { clamp } from "./vectors.ts";
 const PIXEL_COST = 8;
 /** Samples of a draft, and its least share of the width. */
 const DRAFT_SAMPLES = 9;
-const COARSEST_SCALE = 0.2;
+export const COARSEST_SCALE = 0.2;
 /** Greatest distance of two samples in a draft, in grains. */
 const DRAFT_SPACING = 1.4;
+/** Milliseconds for a picture while a hand moves the view, and at most while an animation plays. */
+const MOVING_MS = 55;
+const PLAYING_MS = 125;
+/** Share of the width from which an animation has its grain: below it time is better spent on pixels. */
+const CLEAR_SCALE = 0.5;
 /** Least rows in a strip, and its longest time beside what each drawing takes. */
 const FEWEST_ROWS = 4;
 const LONGEST_STRIP_MS = 150;
@@ -28,12 +33,30 @@ export function quality(
   samples: number,
   budget: number,
 ): { scale: number; samples: number } {
-  const room = Math.max(budget - fixed, 2) / price;
+  // What takes long however few its pixels hardly takes longer with enough of them to be seen well.
+  const room = Math.max(budget - fixed, Math.min(fixed / 2, budget), 2) / price;
   if (pixels * (samples + PIXEL_COST) <= room) return { scale: 1, samples };
   const fewer = Math.min(DRAFT_SAMPLES, samples);
   const scale = Math.sqrt(room / (fewer + PIXEL_COST) / pixels);
   if (scale < 1) return { scale: Math.max(scale, COARSEST_SCALE), samples: fewer };
   return { scale: 1, samples: clamp(Math.floor(room / pixels - PIXEL_COST), fewer, samples) };
+}
+
+/**
+ * Milliseconds for a picture in motion. A hand feels what is late, so there pixels are left out; an eye
+ * that watches an animation sees grains that are blurred before it minds fewer pictures a second.
+ */
+export function movingTime(
+  price: number,
+  fixed: number,
+  pixels: number,
+  samples: number,
+  isPlaying: boolean,
+): number {
+  if (!isPlaying) return MOVING_MS;
+  const fewer = Math.min(DRAFT_SAMPLES, samples);
+  const clear = fixed + price * pixels * CLEAR_SCALE ** 2 * (fewer + PIXEL_COST);
+  return clamp(clear, MOVING_MS, PLAYING_MS);
 }
 
 /**

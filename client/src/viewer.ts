@@ -363,8 +363,8 @@ export class Viewer implements User {
     this.busyUntil = performance.now() + STILL_MS;
   }
 
-  private get isBusy(): boolean {
-    return this.playing || performance.now() < this.busyUntil;
+  get isHeld(): boolean {
+    return performance.now() < this.busyUntil;
   }
 
   /** Draw another picture when its turn comes. */
@@ -454,7 +454,7 @@ export class Viewer implements User {
     this.ask([moment[0], moment[1], ...ahead]);
     const isMade = !lacking.length && scene.make(moment.slice(0, 2), until);
     this.root.dataset.lacking = String(lacking.length || Number(!isMade));
-    this.panel.wait(lacking, isMade);
+    this.panel.wait(lacking, isMade, this.renderer.leavesOut);
     // A picture that was begun before the slices were there shows another moment.
     if (isMade && String(moment.slice(0, 2)) !== String(shown?.slice(0, 2))) {
       this.trim();
@@ -524,7 +524,9 @@ export class Viewer implements User {
       return;
     }
     if (!program.ready || !this.scene?.earth.isReady) return this.request();
-    if (!this.sharp && this.renderer.draw(program, shown, this.isBusy, until)) {
+    const isComplete = !this.sharp && this.renderer.draw(program, shown, until);
+    this.root.dataset.drawn = "true"; // coarse or not
+    if (isComplete) {
       this.root.dataset.frames = String(this.renderer.frames);
       this.panel.clear();
       void this.scene.pickers; // the pointer asks for them next,

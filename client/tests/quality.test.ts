@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { draftUniforms, learnedPrice, motionFactor, quality, rowsIn } from "../src/quality.ts";
+import { draftUniforms, learnedPrice, motionFactor, movingTime, quality, rowsIn } from "../src/quality.ts";
 
 const ask = (price: number, pixels: number) => quality(price, 2, pixels, 49, 55);
 
@@ -20,6 +20,25 @@ test("a machine between them gets fewer samples of all pixels", () => {
   const { scale, samples } = ask(2e-6, 1e6);
   assert.equal(scale, 1);
   assert.ok(samples > 9 && samples < 49);
+});
+
+test("an animation takes the time that its grain needs, and a hand does not wait for it", () => {
+  const scale = (price: number, isPlaying: boolean) => {
+    const time = movingTime(price, 2, 1e6, 49, isPlaying);
+    return [time, quality(price, 2, 1e6, 49, time).scale];
+  };
+  assert.equal(scale(3e-5, false)[0], 55);
+  assert.equal(scale(1e-7, true)[0], 55);
+  const [time, share] = scale(2.5e-5, true);
+  assert.ok(time > 100 && time < 125 && Math.abs(share - 0.5) < 1e-9);
+  const [longest, coarse] = scale(1e-4, true);
+  assert.ok(longest === 125 && coarse > scale(1e-4, false)[1]);
+});
+
+test("a picture that takes long however few its pixels has its share of time for them", () => {
+  const pixels = (fixed: number) => quality(3e-5, fixed, 1e6, 49, 55).scale ** 2;
+  assert.ok(Math.abs(pixels(54) * 3e-5 * 1e6 * (9 + 8) - 27) < 1e-9);
+  assert.ok(Math.abs(pixels(200) * 3e-5 * 1e6 * (9 + 8) - 55) < 1e-9);
 });
 
 test("few samples are never made more", () => {

@@ -186,13 +186,15 @@ parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(
 depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<
 3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,
 y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*
-height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,FEWEST_ROWS=4,LONGEST_STRIP_MS=150,FIRST_PRICE_MS=4e-5,
-CARD_PRICE_MS=2e-6;function quality(price,fixed,pixels,samples,budget){let room=Math.max(budget-fixed,2)/price;if(pixels*
-(samples+PIXEL_COST)<=room)return{scale:1,samples};let fewer=Math.min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+
-PIXEL_COST)/pixels);return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),samples:fewer}:{scale:1,samples:clamp(Math.floor(
-room/pixels-PIXEL_COST),fewer,samples)}}function rowsIn(budget,price,fixed,width,samples){let row=price*width*(samples+PIXEL_COST),
-worthIt=Math.max(Math.min(3*fixed,LONGEST_STRIP_MS),fixed);return Math.max(Math.floor(Math.max(budget-fixed,worthIt)/row),
-FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/(samples+PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){
+height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
+LONGEST_STRIP_MS=150,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;function quality(price,fixed,pixels,samples,budget){let room=Math.
+max(budget-fixed,Math.min(fixed/2,budget),2)/price;if(pixels*(samples+PIXEL_COST)<=room)return{scale:1,samples};let fewer=Math.
+min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),
+samples:fewer}:{scale:1,samples:clamp(Math.floor(room/pixels-PIXEL_COST),fewer,samples)}}function movingTime(price,fixed,pixels,samples,isPlaying){
+if(!isPlaying)return MOVING_MS;let fewer=Math.min(DRAFT_SAMPLES,samples),clear=fixed+price*pixels*CLEAR_SCALE**2*(fewer+
+PIXEL_COST);return clamp(clear,MOVING_MS,PLAYING_MS)}function rowsIn(budget,price,fixed,width,samples){let row=price*width*
+(samples+PIXEL_COST),worthIt=Math.max(Math.min(3*fixed,LONGEST_STRIP_MS),fixed);return Math.max(Math.floor(Math.max(budget-
+fixed,worthIt)/row),FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/(samples+PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){
 let latest=Math.max(spent-fixed,.05)/(pixels*(samples+PIXEL_COST)*factor);return price+(latest-price)*(latest>price?.7:.3)}
 function draftUniforms(settings,samples,density){let[grain,spacing,all]=[settings.grain,settings.spacing,settings.samples].
 map(Number),drawn=Math.max(grain*density,Math.min(grain,1)),stretched=all*spacing*grain*density/(samples*drawn);return{u_grain:drawn,
@@ -797,8 +799,9 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
 ld ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,
 styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;colours;isShown;isOpen=!1;legendLook="";title=dom(
 "div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
-[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});busy=dom("div",{class:"busy",hidden:""});told=dom(
-"div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom(
+[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});doing=dom("span",{role:"status"});count=dom(
+"span",{"aria-hidden":"true"});busy=dom("div",{class:"busy",hidden:""},[this.doing,this.count]);told=dom("div",{class:"t\
+old glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom(
 "input",{type:"range",...TIME_RANGE});timeText=dom("span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.
 timeText]);hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,canvas,options}=viewer;this.isShown=
 options.controls??!0,this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.button(
@@ -841,19 +844,21 @@ this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown
 viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.
 follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.
 isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("fl\
-owtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade){
-let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},tiles=pending?`${wanted-pending} of ${wanted} tiles …`:"",
-traces=isMade?tiles:"tracing paths …",text=missing.length?"waiting for data …":traces;busy.textContent!==text&&(busy.
-textContent=text),busy.hidden=!text,!(!missing.length||viewer.options.onNeed||viewer.options.isComing?.()||this.lateTimer)&&
-(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The\
- scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),
-this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(
-text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,
-delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pr\
-e",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.
-viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(
-viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).
-click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+owtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1){
+let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?
+"playing":"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?pending&&(doing="Loading tiles"):doing="Trac\
+ing paths";let count2=doing==="Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==
+doing&&(this.doing.textContent=doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.hidden=!(doing||
+count2),!(!missing.length||viewer.options.onNeed||viewer.options.isComing?.()||this.lateTimer)&&(this.lateTimer=viewer.lifetime.
+later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missin\
+g: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.
+later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),
+this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.root.dataset.
+failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=
+!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(
+".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.
+header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(
+()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -914,68 +919,73 @@ m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(now),inverse(toPixels(befor
 if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]=inverse(matrix),isInside=([x,y])=>Math.
 abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0,0],[width,0],[0,height],[width,height]].
 every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
-4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_MS=55,MOVING_LEAST_MS=14,STRIP_MS=40,ALIKE=1.3,FEW_TRIANGLES=5e4,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext(
-"2d",{alpha:!1}),ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.createElement("canvas");backPen=penOf(
-this.back);last=document.createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.createElement(
-"canvas");coarsePen=penOf(this.coarse);front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;triangles=0;frames=0;constructor(viewer){
-this.viewer=viewer,this.graphics=viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){
-cameraOnly||(this.lastCamera=null),this.version+=1,this.rowsDone=0}refine(){this.rowsDone>=this.canvas.height?this.rowsDone=
-0:this.isRefined=!0}resize(width,height){let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.
-backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(
-back,0,0,width,height),back.width=width,back.height=height}dispose(){for(let canvas of[this.canvas,this.back,this.last,this.
-coarse,this.front])canvas.width=canvas.height=0}draw(program,shown,moving,until){if(this.draftVersion!==this.version)return this.
-draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.isRefined;while(!complete&&
-performance.now()<until);return complete}arrange(shown){this.isRefined=!1,this.layers=this.viewer.arrange(shown)}draft(program,shown,moving){
-let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1,budget=Math.
-max(MOVING_MS/crowd,MOVING_LEAST_MS);this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),
-best=quality(price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(
-height*best.scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={
+4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_LEAST_MS=14,STRIP_MS=40,ALIKE=1.3,FEW_TRIANGLES=5e4,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext("2d",{alpha:!1}),
+ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.createElement("canvas");backPen=penOf(this.back);last=document.
+createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.createElement("canvas");coarsePen=penOf(
+this.coarse);front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed={
+strip:4,draft:4};triangles=0;frames=0;isCoarse=!1;constructor(viewer){this.viewer=viewer,this.graphics=viewer.graphics,this.
+canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){cameraOnly||(this.lastCamera=null),this.version+=
+1,this.rowsDone=0}refine(){this.rowsDone>=this.canvas.height?this.rowsDone=0:this.isRefined=!0}resize(width,height){let{
+canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.backPen?.drawImage(canvas,0,0),canvas.width=
+last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(back,0,0,width,height),back.width=width,
+back.height=height}dispose(){for(let canvas of[this.canvas,this.back,this.last,this.coarse,this.front])canvas.width=canvas.
+height=0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==this.version)return this.draft(program,
+shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.isRefined;while(!complete&&
+performance.now()<until);return complete}get isMoving(){return this.viewer.player.playing||this.viewer.isHeld}get leavesOut(){
+return this.isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.viewer.arrange(shown)}draft(program,shown,moving){
+let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1;this.
+arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),isPlaying=this.viewer.player.playing&&
+!this.viewer.isHeld,time=movingTime(price,this.fixed.draft,width*height,samples,isPlaying),budget=Math.max(time/crowd,MOVING_LEAST_MS),
+best=quality(price,this.fixed.draft,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.
+round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={
 width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),
 this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
-...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0));let isWhole=best.scale===1&&best.
-samples===samples&&!this.viewer.smooth;return isWhole&&this.complete(),this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){
-let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(settings.samples);if(this.rowsDone>=height&&(this.
-rowsDone=0),this.rowsDone===0&&(this.arrange(shown),this.isRefined))return!1;this.warm(program,shown);let price=program.
-price*this.factor(samples),most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,
-this.fixed,width,samples),most),region={width,height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{
-this.render(program,shown,region,samples,smooth);let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,
-drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.
-complete(),this.drawLines(shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,{scene,camera,ratio}=this.viewer,
-{width,height}=this.canvas;if(!scene?.earth.lines.length||!camera||!frontPen)return;let{earth}=scene,{state,aspect}=camera,
-look=JSON.stringify([state,aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.
-view(shown,ratio),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),
-front.width=width,front.height=height,earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;
-frontPen.drawImage(canvas,0,top,width,height,0,0,width,height)}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){
-let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.frames+=1,this.draftVersion=this.version,this.lastPen?.
-drawImage(this.canvas,0,0),camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.
-aspect))}reuse(){let{lastCamera}=this,{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||
-!camera.state.parallel||!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,
-geometry.center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,
-anchor));return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;
-return settings.motion!=="off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.
-now();draw();let spent=performance.now()-started,pixels=region.width*region.rows,factor=this.factor(samples);program.price=
-learnedPrice(program.price,spent,this.fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.layers.reduce(
+...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),this.isCoarse=best.scale<1||best.
+samples<samples;let isWhole=!this.isCoarse&&!this.viewer.smooth;return isWhole&&this.complete(),this.drawLines(shown),isWhole&&
+!this.isRefined}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(settings.
+samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(shown),this.isRefined))return!1;this.
+warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),
+rows=Math.min(rowsIn(STRIP_MS,price,this.fixed.strip,width,samples),most),region={width,height,top:this.rowsDone,rows};return this.
+timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);let drawn=smooth?{...region,height:rows,
+top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.
+pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,
+{scene,camera,ratio}=this.viewer,{width,height}=this.canvas;if(!scene?.earth.lines.length||!camera||!frontPen)return;let{
+earth}=scene,{state,aspect}=camera,look=JSON.stringify([state,aspect,width,height,earth.lines,earth.version]);if(look!==
+this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.
+height<height&&(canvas.height=height),front.width=width,front.height=height,earth.drawLines({camera,anchor,width,height,
+ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,height,0,0,width,height)}),this.frontLook=
+look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.isCoarse=
+!1,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.playing&&(this.
+lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{scene,camera}=this.
+viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;
+let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),
+[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,
+this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies?motionFactor(
+samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.now()-started,pixels=region.
+width*region.rows,factor=this.factor(samples),fixed=region.rows<region.height?this.fixed.strip:this.fixed.draft;program.
+price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.layers.reduce(
 (sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.warm&&share<
-ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,region={width,height,top:0,rows:1};program.warm||this.render(program,
-shown,region,1),this.triangles=triangles;let started=performance.now();this.render(program,shown,region,1),this.fixed=clamp(
-performance.now()-started,.5,500),program.warm=!0}render(program,shown,region,samples,smooth=!1){let{graphics,viewer}=this,
-{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,view=viewer.view(
-shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&
-(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,
-null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.
-enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background;
-gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||height!==
-this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);for(let layer of this.
-layers)graphics.programs.use(program,this.values(layer,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,
-!0);smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}values({header,
-parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.shape??null;return{...uniforms(header,
-{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,
-camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.background,
-u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)
-return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.
-imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.
-height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,
-w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row={width,height,top:0,rows:1},[w,h]=[width,height].map(n=>Math.
+max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row,1),this.triangles=triangles;let fixed=[
+row,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(program,shown,region,
+1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){
+let{graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
+view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
+canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
+gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,
+width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.
+header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
+samples||height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(
+around2);for(let layer of this.layers)graphics.programs.use(program,this.values(layer,camera,view,samples,draft)),layer.
+draw(shown[0],shown[1],view.anchor,!0);smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,
+new Uint8Array(4))}values({header,parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.
+shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):
+{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.
+lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
+-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
+graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,
+coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
+[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
 abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
 part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
@@ -1334,8 +1344,8 @@ if(this.options.follows)return this.options.follows.play();this.playing||!this.h
 motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(
 !0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.
 update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?
-leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.
-now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
+leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isHeld(){return performance.now()<
+this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
 this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.
 root.dataset.tiles=String(this.tiles?.pending??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){
 sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
@@ -1349,10 +1359,10 @@ header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;ret
 let{header,scene,player,shown,lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?
 [1,2].map(n=>(moment[1]+n)%header.slices.steps):[];this.ask([moment[0],moment[1],...ahead]);let isMade=!lacking.length&&
 scene.make(moment.slice(0,2),until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,
-isMade),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:
-(lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&
-this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){let now=performance.now(),{onNeed,isComing}=this.options,
-lacking=[...new Set(steps.flatMap(step=>this.scene?.lacking(step)??[]))];for(let step of lacking)!onNeed||isComing?.()||
+isMade,this.renderer.leavesOut),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),
+isMade?this.shown=moment:(lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){
+tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){let now=performance.now(),{onNeed,isComing}=this.
+options,lacking=[...new Set(steps.flatMap(step=>this.scene?.lacking(step)??[]))];for(let step of lacking)!onNeed||isComing?.()||
 now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),onNeed(step));return!lacking.length}frame(now,until){
 if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
 canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
@@ -1360,22 +1370,23 @@ canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(
 variant=variantOf(header,this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){
 if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??
 [];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.
-available(until);this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!(!shown||!this.camera)){
-if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.
-ready||!this.scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&
-(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.scene.pickers,header.slices.critical&&this.
-program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}}advance(now){let{player,options}=this,isMade=steps=>this.
-ask(steps)&&!!this.scene?.make(steps,now);!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(
-player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
-let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,
-constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.
-anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?
-local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(
-shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{scene,
-graphics}=this;return!!scene&&!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.
-find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
-let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
-view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count2,options,own=()=>({})){
+available(until);this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)
+return;if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}
+if(!program.ready||!this.scene?.earth.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,
+shown,until);this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.
+clear(),this.scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.
+request()}advance(now){let{player,options}=this,isMade=steps=>this.ask(steps)&&!!this.scene?.make(steps,now);!player.playing||
+!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),
+this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)
+throw new Error("there is nothing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(
+geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,
+isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?
+anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.
+max(this.root.clientHeight*density,1)}}get canPick(){let{scene,graphics}=this;return!!scene&&!graphics.isLost&&!!graphics.
+gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;
+return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||
+!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,
+moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count2,options,own=()=>({})){
 if(count2<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
 "display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count2;n+=1){let cell=dom(
 "div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==
@@ -1402,15 +1413,17 @@ header)}:{header,parts:[],loadTile:(key,steps)=>{let needed=(tiles.get(nameOf(ke
 name)?.[1]??"",step=stepOf(part),isOfAll=part.startsWith("scalars/")&&!isOfStep(part,step,header);return Number.isNaN(step)||
 steps.includes(step)||isOfAll});return Promise.all(needed.map(async([info,text])=>{let part=known.get(info.digest);return part?
 {...part,name:info.name}:partOfText(info,text||(texts.get(info.digest)??""))}))}}}async function openPage(openStore){let place=document.
-getElementById("flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.getElementById("h\
-eaders")?.textContent??""),known=new Map,texts=new Map,packed=headers.map((_,n)=>packedOf(String(n))),scenes=headers.map(
-(header,n)=>sceneOf({...headers[0],...header},packed[n].tiles,known,texts,openStore)),look=()=>{status.hidden=!place.querySelector(
-'[data-failed="true"]'),status.textContent="This browser cannot draw the flow, for want of WebGL2; here is a picture of \
-it.",!place.querySelector('[data-sharp="false"]')&&(watch.disconnect(),document.getElementById("preview")?.remove())},watch=new MutationObserver(
-look),attributeFilter=["data-sharp","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let isComing=!0,
+getElementById("flowtex"),status=document.getElementById("status"),loading=document.getElementById("loading");try{let headers=JSON.
+parse(document.getElementById("headers")?.textContent??""),known=new Map,texts=new Map,packed=headers.map((_,n)=>packedOf(
+String(n))),scenes=headers.map((header,n)=>sceneOf({...headers[0],...header},packed[n].tiles,known,texts,openStore)),look=()=>{
+status.hidden=!place.querySelector('[data-failed="true"]'),loading.hidden=!status.hidden,status.textContent="This browse\
+r cannot draw the flow, for want of WebGL2; here is a picture of it.",!place.querySelector('.flowtex:not([data-drawn="tr\
+ue"])')&&(watch.disconnect(),document.getElementById("preview")?.remove(),loading.remove())},watch=new MutationObserver(
+look),attributeFilter=["data-drawn","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let isComing=!0,
 {root,together}=mountPage(place,scenes,{isComing:()=>isComing});document.addEventListener("keydown",event=>{event.target===
 document.body&&!root.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()});for(let[n,viewer]of together.
-entries())for(let[info,text]of packed[n].parts){let part=known.get(info.digest)??await partOfText(info,text);known.set(info.
-digest,part),viewer.setPart({...part,name:info.name})}isComing=!1;for(let viewer of together)viewer.change()}catch(error){
-status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The flow cannot\
- be drawn here: ${reason}`,error}}openPage();
+entries()){let view=together.length>1?` of view ${n+1}`:"";for(let[m,[info,text]]of packed[n].parts.entries()){let done=`${view}\
+, ${m} of ${packed[n].parts.length} parts`;loading.lastElementChild.textContent=done;let part=known.get(info.digest)??await partOfText(
+info,text);known.set(info.digest,part),viewer.setPart({...part,name:info.name})}}isComing=!1,loading.textContent="Drawin\
+g the first picture";for(let viewer of together)viewer.change()}catch(error){loading.remove(),status.hidden=!1;let reason=error instanceof
+Error?error.message:String(error);throw status.textContent=`The flow cannot be drawn here: ${reason}`,error}}openPage();

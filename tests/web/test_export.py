@@ -5,6 +5,7 @@ from __future__ import annotations
 import html.parser
 import io
 import json
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -297,6 +298,33 @@ def test_nothing_leaves_a_small_page(
 
 
 @pytest.mark.browser
+def test_a_page_says_that_it_loads_until_there_is_a_picture_to_move(
+    offline: tuple[Page, list[str], list[str]], tmp_path: Path
+) -> None:
+    page, _, said = offline
+    export(gyre(), tmp_path / "page.html", samples=9)
+    page.add_init_script(
+        "const read = Response.prototype.arrayBuffer, held = [];"
+        "window.release = () => held.splice(0).forEach((go) => go());"
+        "Response.prototype.arrayBuffer = async function () {"
+        " await new Promise((go) => held.push(go)); return read.call(this); };"
+    )
+    page.goto((tmp_path / "page.html").as_uri())
+    loading = page.locator("#loading")
+    page.wait_for_function("() => /of \\d/.test(document.getElementById('loading').innerText)")
+    first = re.fullmatch(r"Loading, 0 of (\d+) parts", loading.inner_text())
+    assert first and loading.get_attribute("role") == "status"
+    assert page.locator("#preview").count() == 1
+    page.evaluate("() => window.release()")
+    page.get_by_text(f"Loading, 1 of {first[1]} parts").wait_for()
+    page.evaluate("() => { window.again = setInterval(window.release, 1); }")
+    page.locator('.flowtex[data-drawn="true"]').wait_for()
+    page.wait_for_function("() => !document.getElementById('preview')")
+    assert loading.count() == 0
+    assert said == []
+
+
+@pytest.mark.browser
 def test_two_views_on_a_page_move_together(
     offline: tuple[Page, list[str], list[str]], tmp_path: Path
 ) -> None:
@@ -305,7 +333,7 @@ def test_two_views_on_a_page_move_together(
     two = export(gyre(), tmp_path / "two.html", samples=5, beside={"lod": False})
     assert two.nbytes < one.nbytes + 40_000  # the arrays lie in it once
     page.goto(two.path.as_uri())
-    page.wait_for_function("() => !document.getElementById('preview')")
+    page.locator(COMPLETE).nth(1).wait_for()
     views = page.locator(".flowtex .picture")
     assert views.count() == 2
     before = [views.nth(n).screenshot() for n in range(2)]
