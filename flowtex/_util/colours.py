@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -63,9 +64,13 @@ def colour_table(cmap: Any | None) -> Bytes:
     values = getattr(cmap, "values", None)
     if isinstance(values, np.ndarray):  # a LookupTable of PyVista's
         return _resampled(np.asarray(values))
+    return _named_table(cmap or DEFAULT_CMAP).copy()
+
+
+@cache  # maps are asked for by each tile
+def _named_table(name: Any) -> Bytes:
     from matplotlib import colormaps
 
-    name = cmap or DEFAULT_CMAP
     known = colormaps[name] if isinstance(name, str) and name in colormaps else name
     if callable(known):
         # Rounded down, as PyVista does, so that all renderers have the same colours.

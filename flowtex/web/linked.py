@@ -98,6 +98,7 @@ def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
         "url": link.address,
         **{name: stored.about[name] for name in ("format", "fingerprint", "parameter", "lines")},
         "depth": stored.depth,
+        "derivesSpeed": "speed" not in stored.about["scalars"],
         "steps": [scene.source(step) for step in range(scene.steps)],
     }
 
