@@ -31,7 +31,7 @@ OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
 #: Error of a value as a share of the range that most of them have.
 VALUE_SHARE = 2.0**-17
 #: Steps of a rate, which is about one along the flow.
-RATE_STEPS = 1024
+RATE_STEPS = 512
 
 
 def write_tile(here: Any, pyramid: Pyramid, key: TileKey, steps: Sequence[int], of: str) -> None:
@@ -132,7 +132,7 @@ def _shortened(flow: AnyArray) -> AnyArray:
     """Round velocities (J, I, 3 or 4) to what paths and colours need, so that gzip packs more."""
     result = np.rint(flow * RATE_STEPS) / RATE_STEPS
     bits = np.ascontiguousarray(flow[..., 2:]).view(np.uint16)
-    result[..., 2:] = ((bits + 1) & ~np.uint16(1)).view(np.float16)
+    result[..., 2:] = ((bits + 2) & ~np.uint16(3)).view(np.float16)
     return np.asarray(result, "<f2")
 
 

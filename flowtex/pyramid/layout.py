@@ -77,9 +77,9 @@ FILE_BYTES, FILE_CHUNK = 1 << 28, 1 << 20
 #: Time steps of a series up to which a reader holds all of them.
 MOST_HELD = 8
 #: How hard is tried to pack; more takes longer and gains little.
-GZIP_LEVEL, ZSTD_LEVEL = 1, 3
-#: Bits of velocities: their error is 2^-14 of themselves at most.
-VELOCITY_BITS = 13
+GZIP_LEVEL, ZSTD_LEVEL = 4, 3
+#: Bits of velocities: their error is 2^-12 of themselves at most, that of half precision.
+VELOCITY_BITS = 11
 FLOW, VALUES, SURFACE = "flow", "values", "surface"
 DIGESTS, DIGEST_BYTES = "digests", 16
 CONVENTION = {

@@ -186,7 +186,7 @@ class Levels:
             self._check_file(SURFACE, level, tuple(at), f"{SURFACE} {where}")
 
     def _check_file(self, kind: str, level: int, at: tuple[int, ...], name: str) -> list[str]:
-        """Return the names of the parts of a file; a DamageError tells that it is missing or corrupt."""
+        """Return the names of the parts of a file; a DamageError tells what is wrong."""
         array = f"{level}/{kind}"
         (file,) = self._read(_Piece(array, (*at, slice(FILE_CHUNK)), name))
         try:

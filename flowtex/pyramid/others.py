@@ -107,8 +107,9 @@ def _datasets(place: str) -> list[Any]:
     except Exception as error:
         words = str(error) if isinstance(error, ReadFault) else fault_words(error)
         msg = (
-            f"{place} cannot be opened ({words}); expected a Zarr group of xarray's. On the web "
-            "its metadata have to be consolidated, as zarr.consolidate_metadata does"
+            f"{place} holds no pyramid that can be read ({words}); make one with "
+            "flowtex.pyramid.build, or name a Zarr group of xarray's, with consolidated metadata "
+            "on the web, as by zarr.consolidate_metadata"
         )
         raise PyramidError(msg) from None
     names = [name.strip("/") for name in _level_names(attributes.get("multiscales"))]
@@ -116,7 +117,10 @@ def _datasets(place: str) -> list[Any]:
     chosen = [known[name] for name in names if name in known] or list(known.values())
     found = [one for one in chosen if find_pairs([one])]
     if not found:
-        msg = f"{place} has no velocity; expected two variables such as u and v in each level"
+        msg = (
+            f"{place} holds no pyramid, and no velocity; expected two variables such as u and v in "
+            "each level"
+        )
         raise PyramidError(msg)
     return sorted(found, key=lambda one: -max(array.size for array in one.values()))
 
