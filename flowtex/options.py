@@ -137,7 +137,8 @@ class FieldOptions:
 
     def _of_store(self, place: Any, choices: dict[str, Any]) -> FlowField | None:
         """Return the field of a pyramid in a store, where there is one."""
-        from flowtex.pyramid import has_parts, is_store, open_store
+        from flowtex.pyramid import is_store, open_store
+        from flowtex.pyramid.others import has_parts
 
         if not has_parts(place):
             return None

@@ -30,7 +30,8 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
 
     from flowtex.field.datasets.files import dataset_paths
     from flowtex.field.io.summary import describe
-    from flowtex.pyramid import has_parts, is_store
+    from flowtex.pyramid import is_store
+    from flowtex.pyramid.others import has_parts
 
     console = terminal()
     if len(files) == 1 and has_parts(files[0]):

@@ -22,7 +22,8 @@ def load_field(files: Sequence[Path], flow: FieldFlags | None) -> FlowField:
     """Return the flow of a file, or of several that belong together."""
     from flowtex.field import FlowField
     from flowtex.options import FieldOptions
-    from flowtex.pyramid import has_parts, is_store
+    from flowtex.pyramid import is_store
+    from flowtex.pyramid.others import has_parts
 
     if not files:
         msg = "there is no file; name one"

@@ -137,7 +137,7 @@ def _show_page(
     if options.pop("background") != LookFlags.background:
         msg = "--background is for pictures and windows; the page has its own, under Colours"
         raise UsageError(msg)
-    from flowtex.pyramid import has_parts
+    from flowtex.pyramid.others import has_parts
 
     if len(files) == 1 and has_parts(files[0]):
         return _serve(Library.of(load_field(files, flow)), page, options)

@@ -3,18 +3,8 @@
 from __future__ import annotations
 
 from flowtex.pyramid.build import Built, build, verify
-from flowtex.pyramid.others import has_parts
 from flowtex.pyramid.places import PyramidError, is_store
 from flowtex.pyramid.stored import open_store
 from flowtex.pyramid.stored import open_store as open
 
-__all__ = [
-    "Built",
-    "PyramidError",
-    "build",
-    "has_parts",
-    "is_store",
-    "open",
-    "open_store",
-    "verify",
-]
+__all__ = ["Built", "PyramidError", "build", "is_store", "open", "open_store", "verify"]

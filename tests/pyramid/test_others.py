@@ -15,7 +15,8 @@ from flowtex import FlowField
 from flowtex._util.notices import Notice
 from flowtex.cli import main
 from flowtex.errors import FieldError
-from flowtex.pyramid import has_parts, is_store, open_store
+from flowtex.pyramid import is_store, open_store
+from flowtex.pyramid.others import has_parts
 from flowtex.tiles import TileKey, shared_pyramid
 
 zarr = pytest.importorskip("zarr")
