@@ -64,10 +64,12 @@ def colour_table(cmap: Any | None) -> Bytes:
     values = getattr(cmap, "values", None)
     if isinstance(values, np.ndarray):  # a LookupTable of PyVista's
         return _resampled(np.asarray(values))
-    return _named_table(cmap or DEFAULT_CMAP).copy()
+    name = cmap or DEFAULT_CMAP
+    if isinstance(name, str) and name in CMAPS:  # which each tile asks for
+        return _known_table(name).copy()
+    return _named_table(name)
 
 
-@cache  # maps are asked for by each tile
 def _named_table(name: Any) -> Bytes:
     from matplotlib import colormaps
 
@@ -83,6 +85,11 @@ def _named_table(name: Any) -> Bytes:
         hint = near_names(name, sorted(colormaps)) if isinstance(name, str) else "expected a name"
         msg = f"there is no colour map {name!r}; {hint}"
         raise FieldError(msg) from error
+
+
+@cache
+def _known_table(name: str) -> Bytes:
+    return _named_table(name)
 
 
 def is_diverging(cmap: Any) -> bool:
