@@ -60,8 +60,8 @@ let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSO
 4,first))),first]}async function partOfText(info,text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<
 packed.length;n+=1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream(
 "gzip"));return partOfPlanes(info,new Uint8Array(await new Response(unpacked).arrayBuffer()))}function partOfPlanes(info,planes){
-let count=info.shape.reduce((product2,n)=>product2*n,1),width=count?planes.length/count:1,{stride=1}=info,steps=count/stride;
-if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed as it tells`);let bytes=new Uint8Array(
+let count2=info.shape.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:1,{stride=1}=info,steps=count2/
+stride;if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed as it tells`);let bytes=new Uint8Array(
 planes.length);for(let n=0,from=0;n<width*stride;n+=1){let[plane,channel]=[Math.floor(n/stride),n%stride];for(let k=0;k<
 steps;k+=1)bytes[(k*stride+channel)*width+plane]=planes[from++]}return decoded(info,summed(info,bytes,width))}var UNSIGNED={
 1:Uint8Array,2:Uint16Array,4:Uint32Array};function summed(info,bytes,width){let{differences=0,stride=1,scale:scale3=null}=info,
@@ -77,9 +77,9 @@ a[0]+b[0]*scale3,out[1]=a[1]+b[1]*scale3,out[2]=a[2]+b[2]*scale3,out}function no
 out[1]=a[1]*len,out[2]=a[2]*len,out}function dot(a,b){return a[0]*b[0]+a[1]*b[1]+a[2]*b[2]}function cross(out,a,b){var ax=a[0],
 ay=a[1],az=a[2],bx=b[0],by=b[1],bz=b[2];return out[0]=ay*bz-az*by,out[1]=az*bx-ax*bz,out[2]=ax*by-ay*bx,out}function transformMat4(out,a,m){var x=a[0],y=a[1],z=a[2],w=m[3]*x+m[7]*y+m[11]*z+m[15];return w=w||1,out[0]=(m[0]*x+m[4]*
 y+m[8]*z+m[12])/w,out[1]=(m[1]*x+m[5]*y+m[9]*z+m[13])/w,out[2]=(m[2]*x+m[6]*y+m[10]*z+m[14])/w,out}function transformMat3(out,a,m){
-var x=a[0],y=a[1],z=a[2];return out[0]=x*m[0]+y*m[3]+z*m[6],out[1]=x*m[1]+y*m[4]+z*m[7],out[2]=x*m[2]+y*m[5]+z*m[8],out}var forEach=(function(){var vec=create();return function(a,stride,offset,count,fn,arg){var i,l;for(stride||(stride=3),offset||
-(offset=0),count?l=Math.min(count*stride+offset,a.length):l=a.length,i=offset;i<l;i+=stride)vec[0]=a[i],vec[1]=a[i+1],vec[2]=
-a[i+2],fn(vec,vec,arg),a[i]=vec[0],a[i+1]=vec[1],a[i+2]=vec[2];return a}})();var v=a=>a,result=()=>[0,0,0],zeros=n=>new Array(n).fill(0),dot2=(a,b)=>dot(v(a),v(b)),length2=a=>length(v(a)),subtract2=(a,b)=>subtract(
+var x=a[0],y=a[1],z=a[2];return out[0]=x*m[0]+y*m[3]+z*m[6],out[1]=x*m[1]+y*m[4]+z*m[7],out[2]=x*m[2]+y*m[5]+z*m[8],out}var forEach=(function(){var vec=create();return function(a,stride,offset,count2,fn,arg){var i,l;for(stride||(stride=3),offset||
+(offset=0),count2?l=Math.min(count2*stride+offset,a.length):l=a.length,i=offset;i<l;i+=stride)vec[0]=a[i],vec[1]=a[i+1],
+vec[2]=a[i+2],fn(vec,vec,arg),a[i]=vec[0],a[i+1]=vec[1],a[i+2]=vec[2];return a}})();var v=a=>a,result=()=>[0,0,0],zeros=n=>new Array(n).fill(0),dot2=(a,b)=>dot(v(a),v(b)),length2=a=>length(v(a)),subtract2=(a,b)=>subtract(
 result(),v(a),v(b)),scale2=(a,by)=>scale(result(),v(a),by),cross2=(a,b)=>cross(result(),v(a),v(b)),unit=a=>normalize(result(),
 v(a)),add=(a,b,t=1)=>scaleAndAdd(result(),v(a),v(b),t);function rotated(a,axis,degrees){let turn=fromRotation(zeros(16),
 degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),v(a),turn)}function toFrame(frame,a){let columns=transpose(
@@ -133,8 +133,8 @@ try{let parts=await this.load(key,steps,controller.signal);controller.signal.abo
 controller.signal.aborted||this.fail(key,error,steps)}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
 colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
 let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
-Math.min(share,1)}}function mapOf(header,maps,name){let[first,count]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
-4*count).fill(255);for(let n=0;n<count;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
+Math.min(share,1)}}function mapOf(header,maps,name){let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
+4*count2).fill(255);for(let n=0;n<count2;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
 let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
 choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
 unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.
@@ -243,7 +243,7 @@ shaders,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:FIRST_PRICE_MS}}}fi
 program,gl.LINK_STATUS)){if(gl.isContextLost())return;let log=[...entry.shaders.map(shader=>gl.getShaderInfoLog(shader)),
 gl.getProgramInfoLog(program)].filter(Boolean).join(`
 `);entry.error=log||"the driver gave no reason";return}for(let shader of entry.shaders)this.graphics.free("Shader",shader);
-entry.shaders=[];let count=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count;n+=1){let info=gl.getActiveUniform(
+entry.shaders=[];let count2=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count2;n+=1){let info=gl.getActiveUniform(
 program,n),location2=info&&gl.getUniformLocation(program,info.name);!info||!location2||entry.uniforms.set(info.name.replace(
 /\[0\]$/,""),{location:location2,type:info.type})}gl.useProgram(program),SAMPLERS.forEach((name,n)=>{let sampler=entry.uniforms.
 get(name);sampler&&gl.uniform1i(sampler.location,n)}),entry.ready=!0}use(entry,values){let gl=this.graphics.context;gl.useProgram(
@@ -251,7 +251,8 @@ entry.program);for(let[name,value]of Object.entries(values)){let uniform=entry.u
 location:location2,type}=uniform,numbers=typeof value=="object"?value:[Number(value)];type===gl.FLOAT?gl.uniform1fv(location2,
 numbers):type===gl.FLOAT_VEC2?gl.uniform2fv(location2,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(location2,numbers):type===
 gl.FLOAT_VEC4?gl.uniform4fv(location2,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location2,!1,numbers):gl.uniform1i(
-location2,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
+location2,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,MOST_NUMBERS=[4,68],SHARED=Symbol.for("flowtex.gl/3"),Graphics=class{canvas=document.createElement(
+"canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;floats=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16,this.gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"\
 high-performance"}),this.programs=new Programs(this),this.findFeatures(),this.canvas.addEventListener("webglcontextlost",
 event=>{event.preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear(),this.common.clear(),this.tracings.clear(),
@@ -279,31 +280,32 @@ max(rows,old?.height??0)];old&&this.freeTarget(old);let target=this.target(gl.RG
 width:w,height:h}}gl.bindFramebuffer(gl.FRAMEBUFFER,this.smooth?.frame??null)}copySmooth(width,rows){let gl=this.context;
 gl.bindFramebuffer(gl.READ_FRAMEBUFFER,this.smooth?.frame??null),gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER,null),gl.disable(
 gl.SCISSOR_TEST),gl.blitFramebuffer(0,0,width,rows,0,0,width,rows,gl.COLOR_BUFFER_BIT,gl.NEAREST),gl.bindFramebuffer(gl.
-FRAMEBUFFER,null)}pixel(draw){let gl=this.context;this.picker??=this.target(gl.RGBA32UI,1,1,0),gl.bindFramebuffer(gl.FRAMEBUFFER,
-this.picker.frame),gl.viewport(0,0,1,1),gl.disable(gl.SCISSOR_TEST),gl.enable(gl.DEPTH_TEST),gl.clearBufferuiv(gl.COLOR,
-0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT),draw();let bits=new Uint32Array(4);return gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,
-gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null),bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=
-new Graphics}function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
+FRAMEBUFFER,null)}numbers(draw,width=1,height=1){let gl=this.context;this.picker??=this.target(gl.RGBA32UI,...MOST_NUMBERS,
+0),gl.bindFramebuffer(gl.FRAMEBUFFER,this.picker.frame),gl.viewport(0,0,width,height),gl.disable(gl.SCISSOR_TEST),gl.enable(
+gl.DEPTH_TEST),gl.clearBufferuiv(gl.COLOR,0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT),draw();let bits=new Uint32Array(4*width*
+height);return gl.readPixels(0,0,width,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null),
+bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=new Graphics}function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
 let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&65535,low[k]+place[k]/65535*size[k]));lines[lines.length-1].push(
 point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along=0,kept=line.filter((point,n)=>{
 let before=along;return n&&(along+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along/spacing)>Math.floor(
 before/spacing)||n===0||n===line.length-1});return along<spacing?[]:[kept]}):lines}function linePoints(lines,anchor){let size=lines.
-reduce((count,line)=>count+line.length+1,0),points=new Float32Array(3*size).fill(1e30),n=0;for(let line of lines){n+=3;for(let point of line)
-for(let k=0;k<3;k+=1)points[n++]=point[k]-anchor[k]}return points}function pieceGroups(points){let groups=[],pieces=points.
-length/3-1;for(let first=0;first<pieces;first+=256){let count=Math.min(256,pieces-first),[low,high]=[[1/0,1/0,1/0],[-1/0,
--1/0,-1/0]];for(let n=3*first;n<3*(first+count+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(low[n%3],points[n]),
-high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.hypot(...low.map((least,k)=>(high[k]-
-least)/2));groups.push({first,count,middle,radius})}return groups}function visibleRuns(groups,planes){let runs=[];for(let{
-first,count,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.hypot(a,b,c);if(planes.some(
-isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count:runs.push([first,count])}return runs}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+reduce((count2,line)=>count2+line.length+1,0),points=new Float32Array(3*size).fill(1e30),n=0;for(let line of lines){n+=3;
+for(let point of line)for(let k=0;k<3;k+=1)points[n++]=point[k]-anchor[k]}return points}function pieceGroups(points){let groups=[],
+pieces=points.length/3-1;for(let first=0;first<pieces;first+=256){let count2=Math.min(256,pieces-first),[low,high]=[[1/0,
+1/0,1/0],[-1/0,-1/0,-1/0]];for(let n=3*first;n<3*(first+count2+1);n+=1)points[n]!==Math.fround(1e30)&&(low[n%3]=Math.min(
+low[n%3],points[n]),high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map((least,k)=>(least+high[k])/2),radius=Math.
+hypot(...low.map((least,k)=>(high[k]-least)/2));groups.push({first,count:count2,middle,radius})}return groups}function visibleRuns(groups,planes){
+let runs=[];for(let{first,count:count2,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.
+hypot(a,b,c);if(planes.some(isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count2:runs.
+push([first,count2])}return runs}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
 let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
-return result2}function coordinates({shape,rows,columns}){let middles=(count,{before,size})=>Array.from({length:count},(_,n)=>(n+
-before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,alongJ}){
-return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);
-return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?
-share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.
-min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+
-(a>=b?1:columns);return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){
+return result2}function coordinates({shape,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},
+(_,n)=>(n+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,
+alongJ}){return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(
+scalars);return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(
+share)?share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-
+2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],
+aside=corner+(a>=b?1:columns);return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){
 return corners.reduce((sum,[node,share])=>sum+share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
 ray(x,y);if(earth.map){let across=fromFrame(geometry.frame,[0,0,1]),depth2=dot2(subtract2(geometry.center,start),across)/
 dot2(along,across),place=add(start,along,depth2),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&
@@ -323,9 +325,9 @@ spacings.find(each=>each<=most)??0;for(let{option,color,opacity,width:thickness}
 option))continue;gl.clear(gl.COLOR_BUFFER_BIT);let drawn=this.take(option,anchor,()=>this.linesOf(option,anchor,spacing),
 spacing);graphics.programs.use(program,{u_matrix:projection(header.geometry,camera,anchor),u_picture:[width,height],u_width:thickness*
 wider*ratio,u_lineColour:[...color,opacity],u_horizon:horizon?local[local.length-1]:[0,0,0,1]}),gl.bindVertexArray(drawn.
-array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count]of visibleRuns(drawn.groups,local)){for(let n=0;n<
+array),gl.bindBuffer(gl.ARRAY_BUFFER,drawn.buffers[0]);for(let[first,count2]of visibleRuns(drawn.groups,local)){for(let n=0;n<
 PIECE_ENDS;n+=1)gl.vertexAttribPointer(n,3,gl.FLOAT,!1,POINT_BYTES,(first+n)*POINT_BYTES);gl.drawArraysInstanced(gl.TRIANGLE_STRIP,
-0,4,count)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(gl.BLEND)}get isReady(){let{lineVertex,
+0,4,count2)}take()}gl.bindVertexArray(null),gl.blendEquation(gl.FUNC_ADD),gl.disable(gl.BLEND)}get isReady(){let{lineVertex,
 lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.programs.get(lineVertex,lineFragment).ready}drawGround({
 camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;if(!earth?.land)return;let globe=earth.map===null;
 if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.
@@ -425,8 +427,8 @@ STOPS2),this.mark.hidden=!0;let ends=legendLimits(header.scalars).map(value=>dom
 replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
 this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
 header.scalars)(value),0,1)}%`)}};var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
-t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count){let at=share*(count-1),first=clamp(Math.
-floor(at)-1,0,count-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
+t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count2){let at=share*(count2-1),first=clamp(Math.
+floor(at)-1,0,count2-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
 [i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
 forEach((v2,n)=>{across.forEach((u,m)=>{for(let k=0;k<3;k+=1)way[k]+=u*v2*data[3*((j+n)*columns+i+m)+k]})}),way}function lonLatOf(earth,position,places){
 if(earth.map&&!places)return null;let[x,y,z]=earth.map&&places?wayOn(earth.map,places,position):position,lonLat=[Math.atan2(
@@ -453,7 +455,7 @@ on",{class:"arrow",points:textOf(head)}]),...dots.map(({place:[cx,cy],radius,gre
 x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring("po\
 int")]}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
 size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
-function vertexShares(count){return Float32Array.from({length:SHARES.length*count},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
+function vertexShares(count2){return Float32Array.from({length:SHARES.length*count2},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
 let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
 length;n+=3){let[a,b,c]=[0,1,2].map(k=>at(positions2,triangles[n+k])),own=unit(cross2(subtract2(b,a),subtract2(c,a)));for(let k=n;k<
 n+3;k+=1){let normal=at(result2,k),scale3=length2(normal),alike=dot2(own,normal);Math.abs(alike)<SHARP*scale3&&result2.set(
@@ -463,32 +465,24 @@ return[third,triangle+Math.min(Math.max(second,0),MOST_SHARE)]}function cornersO
 j),[second,third]=[j-number,i];return[1-second-third,second,third].map((share,k)=>[triangles[3*number+k],share])}var TriangleMesh=class{shape;blocks;constructor(mesh,blocks){
 this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return new Int8Array(this.shape[0]*this.shape[1])}triangles(levels){
 let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
-end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,program=graphics.
-programs.get(header.shaders.vertex,header.shaders.pick),whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,
-[x,y],[canvas.width,canvas.height]),[before,after,between2]=moment,bits=graphics.pixel(()=>{layers.forEach(({scene},n)=>{
-graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
-return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,place=geometry.
-triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.
-scene,camera,corners,x,y),index=geometry.triangles?place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(
-layer.scene,moment,corners)},layer,place}}function placeAmong({rows,columns,shape},u,v2){let at=(share,{size,before},nodes)=>clamp(
-share*size-.5-before,0,nodes-1);return[at(u,columns,shape[1]),at(v2,rows,shape[0])]}function wholeIndex(header,{key},[i,
-j]){let{pyramid,geometry,mesh}=header,[level,row,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
-tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
-j,row,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
-geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
-ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){
-let{header,parts}=scene,{scalars}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({
-name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.
-map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+
-between2*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
-size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
-abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
-part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
-let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
-.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
-v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
-texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,[program]=layers[0].
+scene.pickers,whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,[x,y],[canvas.width,canvas.height]),[
+before,after,between2]=moment,bits=graphics.numbers(()=>{layers.forEach(({scene},n)=>{graphics.programs.use(program,{u_matrix:matrix,
+u_between:between2,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])return null;let[u,v2]=new Float32Array(
+bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,place=geometry.triangles?placeIn(bits[3]-1,u,v2):placeAmong(
+geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.scene,camera,corners,x,y),index=geometry.triangles?
+place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(layer.scene,moment,corners)},layer,place}}
+function placeAmong({rows,columns,shape},u,v2){let at=(share,{size,before},nodes)=>clamp(share*size-.5-before,0,nodes-1);
+return[at(u,columns,shape[1]),at(v2,rows,shape[0])]}function wholeIndex(header,{key},[i,j]){let{pyramid,geometry,mesh}=header,
+[level,row,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(
+n+tile*side,level,nodes);return[at(i,column,columns),at(j,row,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.
+part("position"),{frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(
+fromFrame(frame,local),center),[start,along]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/
+dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){let{header,parts}=scene,{scalars}=header,
+[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({name,steps,number}));for(let each of[
+scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.
+name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+between2*(after[n]-before[n]);values[each.
+name]=interpolated(corners,value)}return values}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
 subtract2(view.eye,scale2(geometry.center,w))),sparse=isSparse(header,settings),chosen=sparse?"ramp":s.kernel,kernel=signFree&&
 chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[
@@ -518,19 +512,16 @@ noise==="image"?s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.siz
 u_noiseDeviation:paper.deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],
 u_pictureRound:[Number(paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
 if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
-(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelOf(scene,step){
-let{slices,geometry}=scene.header,data=scene.part(`slices/${step}`).data,extra=scene.parts.get(`extra/${step}`)?.data,count=geometry.
-rows.size*geometry.columns.size,{channels}=slices;return(layer,texel)=>{let first=(layer*count+texel)*channels,at=n=>n<channels?
-fromHalf(data[first+n]):0,place=slices.extra.indexOf(layer),fourth=channels===4||!extra||place<0?at(3):fromHalf(extra[place*
-count+texel]);return[at(0),at(1),at(2),fourth]}}function texelsAt({scene,place}){let{rows,columns,triangles}=scene.header.
-geometry;if(triangles)return scene.cornersAt(place);let[x,y]=[place[0]+columns.before,place[1]+rows.before],[left,low]=[
-Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(
-left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*columns.size+column,share]})}function layersAt(at){let{
-scene,moment}=at,{slices}=scene.header,texels=texelsAt(at),[before,after,late]=moment,steps=[before,after].map(step=>texelOf(
-scene,step)),shares2=[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map(([texel])=>steps[0](0,texel))):texels.
-map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([texel,weight],n)=>{let other=layer+(layer>slices.lags.
-length?-1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,texel).
-forEach((value,c)=>{sum[c]+=weight*shares2[k]*value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[
+(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelsAt({
+scene,place}){let{rows,columns,triangles}=scene.header.geometry;if(triangles)return scene.cornersAt(place);let[x,y]=[place[0]+
+columns.before,place[1]+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*
+(1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*
+columns.size+column,share]})}function layersAt(at){let{scene,moment}=at,{slices}=scene.header,texels=texelsAt(at),[before,
+after,late]=moment,numbers=texels.map(([texel])=>texel),steps=(before===after?[before]:[before,after]).map(step=>scene.texels(
+step,numbers)),shares2=before===after?[1]:[1-late,late],signs=isSignFree(scene.header)?signsOf(texels.map((_,n)=>steps[0](
+0,n))):texels.map(()=>1);return layer=>{let sum=[0,0,0,0];return texels.forEach(([,weight],n)=>{let other=layer+(layer>slices.
+lags.length?-1:1)*slices.lags.length,from=signs[n]<0&&layer>0?other:layer;steps.forEach((step,k)=>{shares2[k]&&step(from,
+n).forEach((value,c)=>{sum[c]+=weight*shares2[k]*value*(c<3?signs[n]:1)})})}),sum}}function signsOf(tangents){let together=[
 0,0,0];return tangents.map(([x,y,z])=>{let sign=dot2(together,[x,y,z])<0?-1:1;return together=add(together,[x,y,z],sign),
 sign})}function sideOf(layers,lags,first,sign,by){let[before,from]=[layers(0).slice(0,3),0],reach=layers(first+1)[3],end=Math.
 min(reach,lags[lags.length-1]),result2=[];for(let m=0;m<lags.length&&from<end;m+=1){let after=layers(first+m+1).slice(0,
@@ -561,10 +552,10 @@ directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]
 position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
 sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
 layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
-points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count=sides===
+points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count2=sides===
 2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
 ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
-Math.max(count,FEWEST_SAMPLES)*step),sampled:joined(count*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity}}var TITLE="Path through this point",SVG="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
 RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.
 length<=UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:
 3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
@@ -881,16 +872,16 @@ isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.is
 lowtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade){
 let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},tiles=pending?`${wanted-pending} of ${wanted} tiles …`:"",
 traces=isMade?tiles:"tracing paths …",text=missing.length?"waiting for data …":traces;busy.textContent!==text&&(busy.
-textContent=text),busy.hidden=!text,!(!missing.length||viewer.options.onNeed||this.lateTimer)&&(this.lateTimer=viewer.lifetime.
-later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missin\
-g: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.
-later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),
-this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.root.dataset.
-failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=
-!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root:root2}=this.viewer;toggleFullscreen(
-root2.closest(".flowtex-pair")??root2)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),
-name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.
-later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+textContent=text),busy.hidden=!text,!(!missing.length||viewer.options.onNeed||viewer.options.isComing?.()||this.lateTimer)&&
+(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The\
+ scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),
+this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(
+text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,
+delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pr\
+e",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root:root2}=this.
+viewer;toggleFullscreen(root2.closest(".flowtex-pair")??root2)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(
+viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).
+click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -1013,139 +1004,190 @@ u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axe
 return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.
 imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.
 height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,
-w,rows,0,to,width,rows*height/h)}};var PLACE2=5;function blocksOf(nodes,size){let count=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count},
+w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
+abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
+part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
+let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
+.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
+v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
+texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}function makeLayers(gl,texture,size){let{width,height,layers,channels,levels}=size,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),
+mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(width,height)>most||layers>mostLayers)throw new Error(
+`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most} x ${most}\
+ in ${mostLayers}; show fewer nodes`);let target=gl.TEXTURE_2D_ARRAY;gl.bindTexture(target,texture),gl.texStorage3D(target,
+levels+1,channels===1?gl.R16F:gl.RGBA16F,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
+gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
+texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE)}function sendLayer(gl,{width,height,channels,levels},layer,texels){
+let format=channels===1?gl.RED:gl.RGBA;gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);for(let[level,w,h]=[0,width,height];;level+=
+1){if(gl.texSubImage3D(gl.TEXTURE_2D_ARRAY,level,0,0,layer,w,h,1,format,gl.HALF_FLOAT,texels),level===levels)return;[texels,
+w,h]=halved(texels,w,h,channels)}}var PLACE2=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
-{blocks}=this.mesh,count=this.rows.length*this.columns.length,size=blocks.length/count,last=(size-PLACE2)/2-1;return Int8Array.
-from({length:count},(_,block)=>{let record=blocks.subarray(size*block,size*(block+1)),[x,y,z,radius,cell]=record.subarray(
+{blocks}=this.mesh,count2=this.rows.length*this.columns.length,size=blocks.length/count2,last=(size-PLACE2)/2-1;return Int8Array.
+from({length:count2},(_,block)=>{let record=blocks.subarray(size*block,size*(block+1)),[x,y,z,radius,cell]=record.subarray(
 size-PLACE2),near=limits.leastDistance*radius,away=eye?Math.max(length2(subtract2(eye,[x,y,z]))-radius,near):1,scale3=.5*
 pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;level+=1){let error=record[level+1],colourError=record[last+
 2+level],side=cell*scale3*2**(level+1);if(!(error*scale3<=limits.maxErrorPixels&&colourError<=limits.maxColourError||Number.
 isFinite(error)&&side<=1)||side>limits.maxSideHeights*pixels)break}return level})}triangles(levels,joins){let sizes=Array.
 from(levels,level=>level<0?0:this.limits.tileCells>>level),index=new Uint32Array(6*sizes.reduce((sum,size)=>sum+size*size,
 0)),end=0;return levels.forEach((level,block)=>{level>=0&&(end=this.add(index,end,level,joins,block))}),index.slice(0,end)}add(index,start,level,joins,block){
-let{rows,columns,limits}=this,{shape,cells}=this.mesh,step=1<<level,count=limits.tileCells/step+1,row=rows[Math.floor(block/
+let{rows,columns,limits}=this,{shape,cells}=this.mesh,step=1<<level,count2=limits.tileCells/step+1,row=rows[Math.floor(block/
 columns.length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+side]),
-snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count*count);for(let b=0;b<count;b+=
-1){let y=Math.min(b*step,row.cells);for(let a=0;a<count;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===0||b===count-
-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count-1)&&(py=snapped(py,row.cells,a?right:left)),nodes[b*count+
-a]=(row.first+py)*shape[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=p,index[end++]=
-q,index[end++]=r)};for(let b=0;b<count-1;b+=1){let y=Math.min(row.first+Math.min(b*step,row.cells),shape[0]-2);for(let a=0;a<
-count-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape[1]-2);if(cells&&!cells[y*(shape[1]-1)+x])continue;
-let at=b*count+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count+1],nodes[at+count]];put(p,q,r),put(p,r,s)}}return end}},
-NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,this.width]=axis?[columns+
-1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(this.count*this.width)}at(line,along){
-return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=1){let[first,last]=[this.at(0,n),this.
-at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=this.values[last]=most}}};function eachBlock({
-step,row,column,shape},[rows,columns],call){let bottom=Math.min(row+(shape[0]<<step),rows),right=Math.min(column+(shape[1]<<
-step),columns);for(let j=row;j<bottom;j+=1){let own=(j-row>>step)*shape[1];for(let i=column;i<right;i+=1)call(j*columns+
-i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around2=(n,by,count,closed)=>closed?(n+
-by+count)%count:clamp(n+by,0,count-1);return nodes.map((own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],
-least=own;for(let by of[-1,1]){let row=around2(j,by,rows,periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.
-min(least,nodes[row*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(
-blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{part.levels[own]>=0&&(target[block]=
-value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(nodes,blocks,periodic),
-strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,blocks,(block,own)=>{levels[own]=
-Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+step)}let lines=[new Lines(blocks,0),new Lines(
-blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%blocks[1]];[[j,i],[i,j]].forEach(
-([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(line+far,along);values[at]=Math.
-max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());let joined=parts.map(part=>bordersOf(
-part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}function bordersOf({step,row,
-column,shape,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;for(let side of[0,1,2,3]){
-let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[Math.floor(own/shape[1]),
-own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+
-place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.
-max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=
-values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,UNIT,REACH,SPEED]=[0,1,2,
-3],[TANGENTS,SLOPES,VELOCITY]=[0,1,2],UNITS=6;function positionOf(padded,trace,shape){let[rows,columns]=shape,width=padded.
-shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1){let first=3*((j+top+1)*
-width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%3]}return{data,shape:[rows,columns,
-3]}}function normalOf(padded,trace,shape){let[rows,columns]=shape,width=3*padded.shape[1],[top,left]=trace.drawn,data=new Int16Array(
-rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3){let at=width*(j+top+1)+3*(i+left+1),along=step=>[
-0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(along(3),along(width)),size=length2(normal)||
-1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}return{data,shape:[rows,columns,3]}}var Tracing=class{graphics;header;trace;find;textures=[];frames=[];passes;constructor(graphics,header,trace,find,step){
-this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.passes=this.slices(`flow/${step}`)}advance(until){
-if(![this.program("trace"),this.program("layers")].every(({ready})=>ready))return null;let gl=this.graphics.context;try{
-do{let{done,value}=this.passes.next();if(gl.isContextLost())return null;if(done)return value}while(performance.now()<until);
-return null}finally{this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",texture);for(let frame of this.
-frames)this.graphics.free("Framebuffer",frame);this.textures.length=this.frames.length=0}program(fragment){let{fullVertex="",
-[fragment]:text=""}=this.header.shaders,program=this.graphics.programs.get(fullVertex,text);if(program.error)throw new Error(
-`the tracer cannot be built: ${program.error}`);return program}data(name){let part=this.find(name);if(!part)throw new Error(
-`the part "${name}" of the scene is missing`);return part.data}texture(width,height,inner,data){let gl=this.graphics.context,
-texture=this.graphics.counted(gl.createTexture());return this.textures.push(texture),gl.bindTexture(gl.TEXTURE_2D,texture),
-gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.
-texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.texSubImage2D(gl.TEXTURE_2D,0,0,0,width,height,gl.
-RGBA,gl.FLOAT,data),texture}target(width,height){let gl=this.graphics.context,texture=this.texture(width,height,gl.RGBA32UI,
-null),frame=this.graphics.counted(gl.createFramebuffer());return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,
-frame),gl.framebufferTexture2D(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.
-graphics.context;for(let n=0;n<UNITS;n+=1)gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,null);gl.bindFramebuffer(
-gl.FRAMEBUFFER,null)}flow(name){let data=this.data(name),unit2=this.data("unit"),channels=data.length/unit2.length,flow=new Float32Array(
-4*unit2.length),whole=new Float32Array(4*unit2.length);for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=HALVES[data[at+
-2]],size=HALVES[unit2[n]]*this.trace.unit;flow[4*n]=HALVES[data[at]]*speed/size,flow[4*n+1]=HALVES[data[at+1]]*speed/size,
-flow[4*n+2]=speed,flow[4*n+3]=size,whole[4*n]=HALVES[data[at+channels-1]]}return[flow,whole]}cells(){let[rows,columns]=this.
-trace.nodes,[open2,nearest]=["open","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<
-rows*columns;n+=1){cells[4*n]=open2?open2[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest?nearest[2*n+k]:0}return cells}padded(){
-let data=this.data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=
-1)result2[4*n+k]=data[3*n+k];return result2}*slices(name){let{graphics,trace,header}=this,gl=graphics.context,{geometry,
-slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.size,geometry.columns.size],pairs=Math.ceil(width/
-2),[flow,whole]=this.flow(name);gl.activeTexture(gl.TEXTURE0);let inputs=[this.texture(columns,rows,gl.RGBA32F,flow),this.
-texture(columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.padded()),this.texture(columns,
-rows,gl.RGBA32F,whole)],[first,...paths]=[0,1,2,3].map(()=>this.target(columns,rows)),[,texels]=this.target(pairs,height),
-uniforms2={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_nodes:[columns,rows],u_closed:[Number(
-trace.closed[1]),Number(trace.closed[0])],u_first:[trace.first[1],trace.first[0]],u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.
-offset.slice(3,6),u_pace:trace.pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(geometry.planar),u_mostReach:2*
-slices.lags[slices.lags.length-1]},draw=(frame,size,before,last,pass,values)=>{gl.bindFramebuffer(gl.FRAMEBUFFER,frame),
-gl.viewport(0,0,...size);for(let ability of[gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);[...inputs,
-before,last].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(
-null),graphics.programs.use(pass,{...uniforms2,...values}),gl.drawArrays(gl.TRIANGLES,0,3)},data=new Uint16Array(slices.
-count*height*width*4),read=new Uint32Array(pairs*height*4),halves=new Uint16Array(read.buffer),layer=(n,at,last,values)=>{
-draw(texels,[pairs,height],at,last,this.program("layers"),{u_lag:1,...values}),gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,
-gl.UNSIGNED_INT,read);for(let row=0;row<height;row+=1){let texelsOfRow=halves.subarray(8*pairs*row,8*pairs*row+4*width);
-data.set(texelsOfRow,4*width*(n*height+row))}},{lags,sides,count}=slices,[none]=first;layer(0,none,none,{u_kind:TANGENTS,
-u_fourth:UNIT}),count>1+sides*lags.length&&layer(count-1,none,none,{u_kind:VELOCITY,u_fourth:SPEED});for(let side=0;side<
-sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[unused]=paths[0],[last]=first,before=last;for(let[m,lag]of lags.
-entries()){let[at,frame]=m?paths[m%3]:first,[from,earlier]=[lags[m-1]??0,lags[m-2]??0],steps={u_lagEarlier:earlier,u_from:from,
-u_to:lag,u_side:sign},pass=this.program("trace");draw(frame,[columns,rows],m?last:unused,m>1?before:unused,pass,steps);let values={
-u_kind:SLOPES,u_fourth:m===1&&!side?SPEED:NOTHING,u_lag:sign*lag};m&&layer(start+m,at,at,values),[before,last]=[last,at],
-yield}layer(start,none,last,{u_kind:SLOPES,u_fourth:REACH,u_lag:sign*lags[0]})}return{data,shape:[count,height,width,4]}}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
+snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count2*count2);for(let b=0;b<
+count2;b+=1){let y=Math.min(b*step,row.cells);for(let a=0;a<count2;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===
+0||b===count2-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count2-1)&&(py=snapped(py,row.cells,a?right:left)),
+nodes[b*count2+a]=(row.first+py)*shape[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=
+p,index[end++]=q,index[end++]=r)};for(let b=0;b<count2-1;b+=1){let y=Math.min(row.first+Math.min(b*step,row.cells),shape[0]-
+2);for(let a=0;a<count2-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape[1]-2);if(cells&&!cells[y*
+(shape[1]-1)+x])continue;let at=b*count2+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count2+1],nodes[at+count2]];put(p,q,
+r),put(p,r,s)}}return end}},NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,
+this.width]=axis?[columns+1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(
+this.count*this.width)}at(line,along){return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=
+1){let[first,last]=[this.at(0,n),this.at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=
+this.values[last]=most}}};function eachBlock({step,row,column,shape},[rows,columns],call){let bottom=Math.min(row+(shape[0]<<
+step),rows),right=Math.min(column+(shape[1]<<step),columns);for(let j=row;j<bottom;j+=1){let own=(j-row>>step)*shape[1];
+for(let i=column;i<right;i+=1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){
+let around2=(n,by,count2,closed)=>closed?(n+by+count2)%count2:clamp(n+by,0,count2-1);return nodes.map((own,block)=>{let[
+j,i]=[Math.floor(block/columns),block%columns],least=own;for(let by of[-1,1]){let row=around2(j,by,rows,periodic[0]),column=around2(
+i,by,columns,periodic[1]);least=Math.min(least,nodes[row*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){
+let nodes=new Int16Array(blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{
+part.levels[own]>=0&&(target[block]=value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(
+nodes,blocks,periodic),strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,
+blocks,(block,own)=>{levels[own]=Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+step)}let lines=[
+new Lines(blocks,0),new Lines(blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%
+blocks[1]];[[j,i],[i,j]].forEach(([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(
+line+far,along);values[at]=Math.max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());
+let joined=parts.map(part=>bordersOf(part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}
+function bordersOf({step,row,column,shape,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;
+for(let side of[0,1,2,3]){let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[
+Math.floor(own/shape[1]),own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+far)*
+size,line.count-1),from=start+place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<
+end;n+=1)coarsest=Math.max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<
+end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=7,
+DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape){let[rows,
+columns]=shape,width=padded.shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=
+1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%3]}return{
+data,shape:[rows,columns,3]}}function normalOf(padded,trace,shape){let[rows,columns]=shape,width=3*padded.shape[1],[top,
+left]=trace.drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3){let at=width*
+(j+top+1)+3*(i+left+1),along=step=>[0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(along(3),
+along(width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}return{data,shape:[
+rows,columns,3]}}function flowsOf({slices},step){let{trace,times:times2,lags}=slices;if(!trace?.pathlines||!trace.timed)
+return[step];let reach=lags[lags.length-1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-times2[step])<reach),isNeeded=n=>near[n]||
+near[n-1]||near[n+1];return[...times2.keys()].filter(isNeeded)}function stretches({slices},step,side,from,to){let{trace,
+times:times2}=slices;if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,1]}];let result2=[],
+{unit:unit2}=trace.timed,lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in
+times2),end=isLast?to:lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between2=isLast?[0,1]:[lagOf(n),end],isWhole=end>=
+to-LAG_ROUNDING*to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between2}),from=isWhole?to:end}
+return result2}function programsOf({programs,floats},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,
+get=(fragment,...variant)=>{let names=variant.filter(name=>typeof name=="string"),program=programs.get(fullVertex,fragment,
+...names);if(program.error)throw new Error(`the tracer cannot be built: ${program.error}`);return program},target=floats&&
+"FLOWTEX_FLOATS";return{follow:get(path,trace.pathlines&&"FLOWTEX_PATHLINES"),compose:trace.pathlines?null:get(path,"FLO\
+WTEX_COMPOSED"),slopes:get(layers,"FLOWTEX_SLOPES",target),tangents:get(layers,target)}}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;constructor(graphics,header,trace,find,step){
+this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.passes=this.slices(step)}advance(until){if(!Object.
+values(programsOf(this.graphics,this.header,this.trace)).every(program=>program?.ready??!0))return null;let gl=this.graphics.
+context;try{do{let{done,value}=this.passes.next();if(gl.isContextLost())return null;if(done)return this.result=null,value}while(performance.
+now()<until);return null}finally{this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",
+texture);for(let frame of this.frames)this.graphics.free("Framebuffer",frame);this.result&&!this.graphics.context.isContextLost()&&
+this.graphics.context.deleteTexture(this.result),this.result=null,this.textures.clear(),this.frames.length=0}data(name){
+let part=this.find(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part.data}texture(width,height,inner,data){
+let gl=this.graphics.context,texture=this.graphics.counted(gl.createTexture());return this.textures.add(texture),gl.activeTexture(
+gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(
+gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.
+texSubImage2D(gl.TEXTURE_2D,0,0,0,width,height,gl.RGBA,gl.FLOAT,data),texture}frame(){let gl=this.graphics.context,frame=this.
+graphics.counted(gl.createFramebuffer());return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,frame),frame}target(width,height){
+let gl=this.graphics.context,texture=this.texture(width,height,gl.RGBA32UI,null),frame=this.frame();return gl.framebufferTexture2D(
+gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.graphics.context;for(let n=0;n<
+UNITS;n+=1)gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,null),gl.bindTexture(gl.TEXTURE_2D_ARRAY,null);gl.
+bindFramebuffer(gl.FRAMEBUFFER,null)}flow(step){let{trace}=this,data=this.data(`flow/${step}`),unit2=this.data("unit"),channels=data.
+length/unit2.length,flow=new Float32Array(4*unit2.length),most=0;for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=HALVES[data[at+
+2]],size=HALVES[unit2[n]]*trace.unit,i=HALVES[data[at]]*speed/size,j=HALVES[data[at+1]]*speed/size;flow[4*n]=i,flow[4*n+
+1]=j,flow[4*n+2]=speed,flow[4*n+3]=trace.timed?trace.timed.unit:size,most=Math.max(most,Math.abs(i),Math.abs(j))}return trace.
+timed&&(this.fastest=Math.max(this.fastest,most*trace.timed.speed*trace.timed.unit)),flow}wholeSpeed(step){let data=this.
+data(`flow/${step}`),nodes=this.data("unit").length,channels=data.length/nodes,whole=new Float32Array(4*nodes);for(let n=0;n<
+nodes;n+=1)whole[4*n]=HALVES[data[(n+1)*channels-1]];return whole}cells(){let[rows,columns]=this.trace.nodes,[open2,nearest]=[
+"open","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<rows*columns;n+=
+1){cells[4*n]=open2?open2[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest?nearest[2*n+k]:0}return cells}padded(){let data=this.
+data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=1)result2[4*
+n+k]=data[3*n+k];return result2}flowTexture(step){let[rows,columns]=this.trace.nodes,gl=this.graphics.context,texture=this.
+flows.get(step)??this.texture(columns,rows,gl.RGBA32F,this.flow(step));this.flows.delete(step),this.flows.set(step,texture);
+for(let[other,old]of this.flows){if(this.flows.size<=FLOWS_HELD)break;this.flows.delete(other),this.textures.delete(old),
+this.graphics.free("Texture",old)}return texture}partsOf({from,to}){let count2=clamp(Math.ceil((to-from)*this.fastest/PASS_CELLS),
+1,MOST_PARTS),at=n=>n===count2?to:from+(to-from)*n/count2;return Array.from({length:count2},(_,n)=>[at(n),at(n+1)])}layerTarget(result2,size){
+let gl=this.graphics.context,{width,height}=size;if(this.graphics.floats){let frame2=this.frame();return{begin:n=>(gl.bindFramebuffer(
+gl.FRAMEBUFFER,frame2),gl.framebufferTextureLayer(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,result2,0,n),[width,height]),end:()=>{},
+finish:()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),size.levels&&gl.generateMipmap(gl.
+TEXTURE_2D_ARRAY)}}}let pairs=Math.ceil(width/2),[,frame]=this.target(pairs,height),read=new Uint32Array(pairs*height*4),
+halves=new Uint16Array(read.buffer),texels=new Uint16Array(4*width*height);return{begin:()=>(gl.bindFramebuffer(gl.FRAMEBUFFER,
+frame),[pairs,height]),end:n=>{gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,read);for(let row=0;row<height;row+=
+1){let first=8*pairs*row;texels.set(halves.subarray(first,first+4*width),4*width*row)}gl.activeTexture(gl.TEXTURE0),gl.bindTexture(
+gl.TEXTURE_2D_ARRAY,result2),sendLayer(gl,size,n,texels)},finish:()=>{}}}*slices(step){let{graphics,trace,header}=this,gl=graphics.
+context,{geometry,slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.size,geometry.columns.size],size={
+width,height,layers:slices.count,channels:4,levels:geometry.levels},result2=gl.createTexture();this.result=result2,gl.activeTexture(
+gl.TEXTURE0),makeLayers(gl,result2,size);let own=this.texture(columns,rows,gl.RGBA32F,this.flow(step)),constant=[this.texture(
+columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.padded()),this.texture(columns,rows,
+gl.RGBA32F,this.wholeSpeed(step))],pool=[0,1,2,3,4].map(()=>this.target(columns,rows)),{lags,sides,count:count2}=slices,
+uniforms2={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_flowNext:6,u_nodes:[columns,rows],u_closed:[
+Number(trace.closed[1]),Number(trace.closed[0])],u_first:[trace.first[1],trace.first[0]],u_offsetJ:trace.offset.slice(0,
+3),u_offsetI:trace.offset.slice(3,6),u_timed:trace.timed?.speed??0,u_rest:trace.rest,u_pace:trace.pace,u_unit:slices.unit,
+u_cell:slices.cell/slices.unit,u_planar:Number(geometry.planar),u_mostReach:2*lags[lags.length-1]},draw=([w,h],textures,pass,values)=>{
+gl.viewport(0,0,w,h);for(let ability of[gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);textures.
+forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(null),graphics.
+programs.use(pass,{...uniforms2,...values}),gl.drawArrays(gl.TRIANGLES,0,3)},layers=this.layerTarget(result2,size),layer=(n,pass,textures,values)=>{
+draw(layers.begin(n),[own,...constant,...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=programsOf(
+graphics,header,trace);layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});
+for(let side=0;side<sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];
+for(let[m,lag]of lags.entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:
+null,at=now;for(let stretch of stretches(header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(
+n)),parts=composer?[[from,lag]]:this.partsOf(stretch);for(let[begin,end]of parts){let next=pool.find(each=>![first,before,
+now,at].includes(each))??pool[0];gl.bindFramebuffer(gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],
+before[0],far],composer??follow,{u_lagEarlier:earlier,u_from:begin,u_to:end,u_side:sign,u_between:stretch.between}),gl.readPixels(
+0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(4)),at=next,yield}}[before,now]=[now,at],m||(first=now);let fourth=m===
+1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],now[0]],{u_fourth:fourth,u_lag:sign*lag})}layer(start,slopes,[first[0],
+now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.finish(),result2}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
-alar"]},SOURCES=["padded","unit","open","nearest"],Scene=class{graphics;header;parts;earth;anchor=[0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";constructor(graphics,header,parts){
+alar"]},SOURCES=["padded","unit","open","nearest"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;anchor=[
+0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts)}missing(before,after){
 let{geometry,slices,scalars,paper,pyramid}=this.header,{trace}=slices,names=["mesh",...trace?.parts??["position",...geometry.
 planar?[]:["normal"]]];pyramid&&names.push("places"),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
-[before,after]))names.push(`${trace?"flow":"slices"}/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.
-push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(
-names)].filter(name=>!this.fits(name))}scalarParts(before,after,of=this.header.scalars){let{name,steps,number}=of;if(name===
-null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){
-let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.
-max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??[],shape={flow:[...nodes,part.shape[2]],unit:nodes,padded:[
-...nodes.map(n=>n+2),3],slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.
-shape,3],mesh:geometry.triangles?part.shape:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.
-split("/")[0]];return!shape||String(shape)===String(part.shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;
-if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(["padded"],name,trace);return this.put("position",
-digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.
-put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),steps.every(step=>this.trace(step,until))}trace(step,until){
-let{graphics,header}=this,{trace,lags,sides}=header.slices;if(!trace)return!0;let name=`slices/${step}`,digest=this.key(
-[`flow/${step}`,...SOURCES],trace,lags,sides),{tracings}=graphics;if(this.parts.get(name)?.digest===digest)return!0;let made=graphics.
-stock.get(digest)?.part??null;if(!made){this.tracing!==digest&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
-get(digest)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=digest,tracing),made=tracing.advance(
-until),!made)return!1;this.stopTracing()}return this.put(name,digest,()=>made),!0}put(name,digest,make){let{graphics,parts}=this;
-if(parts.get(name)?.digest===digest)return;let part=graphics.stock.get(digest)?.part??{...make(),digest};graphics.release(
-parts.get(name)),parts.set(name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.missing(steps[0],steps[steps.
-length-1]).length&&steps.every(step=>this.parts.has(`slices/${step}`))}stopTracing(){this.graphics.tracings.get(this.tracing)?.
-dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.parts.get(name);if(!part)
-throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.
-includes("index")&&(this.meshLevels=this.drawn=null);let sliced=kind==="slices"||kind==="extra";!sliced&&kind!=="scalars"&&
-this.earth.forget(name);for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);this.drop("array")}drop(name){
-let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.
-free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.
-keys()])this.drop(name);this.stopTracing(),this.earth.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.
-has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
-let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?
-graphics.common.get(whole):void 0,object2=shared?.object??graphics.counted(make()),resource=shared??{kind,object:object2,
-count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object2)||
-0),whole&&graphics.common.set(whole,resource),object2}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
+[before,after]))trace?names.push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===
+2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cma\
+p"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(
+step,step).map(name=>name.startsWith("flow/")?stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.
+header.scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
+after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
+slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.
+nodes??[],shape={flow:[...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.
+rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,
+part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(shape)===String(part.
+shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),
+digest=name=>this.key(["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.
+shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,
+geometry.shape)),steps.every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.
+graphics,this.header,trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;
+if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],
+step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
+tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
+get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.
+advance(until),!texture)return!1;this.stopTracing()}return this.take(name,"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){
+let{graphics,parts}=this;if(parts.get(name)?.digest===digest)return;let part=graphics.stock.get(digest)?.part??{...make(),
+digest};graphics.release(parts.get(name)),parts.set(name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.
+missing(steps[0],steps[steps.length-1]).length&&(!this.header.slices.trace||this.isLoaded(steps))}stopTracing(){this.graphics.
+tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.
+parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,
+step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=this.drawn=null);let sliced=["slices","extra","fl\
+ow"].includes(kind);!sliced&&kind!=="scalars"&&this.earth.forget(name);for(let user of sliced?[`slices/${step}`]:USERS[kind]??
+[])this.drop(user);SOURCES.includes(kind)&&this.dropSlices(NaN,NaN),this.drop("array")}drop(name){let resource=this.resources.
+get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.
+object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);
+this.stopTracing(),this.earth.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).
+digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.
+resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.
+common.get(whole):void 0,object2=shared?.object??graphics.counted(make()),resource=shared??{kind,object:object2,count:0,
+key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object2)||0),
+whole&&graphics.common.set(whole,resource),object2}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
 let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
 target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
 fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.
@@ -1155,59 +1197,58 @@ let{triangles,shape}=this.header.geometry;return triangles?cornersOf(this.part("
 place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==
 null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.
 joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.
-resources.has(`slices/${step}`))}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.
-graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.
-some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,
-this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(
-this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,
-paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
-key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape,
-[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
-null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("p\
-osition").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(
-nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(
-name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
-shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns,corners?.length]),place=()=>corners?
-vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
-Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
-buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",key(["normal"]),()=>normals(normal)),3,type],
-[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT],
-[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(
-gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),
-gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.
-graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.
-header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,
-key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.
-get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);
-if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(
-place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);
-return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}image(name,repeat){let gl=this.
-graphics.context;return this.texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,
-channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.
-fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,
-wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.
-context,{width,height,layers,channels,levels}=size,target=gl.TEXTURE_2D_ARRAY;this.checkSize(size);let[format,inner]=channels===
-1?[gl.RED,gl.R16F]:[gl.RGBA,gl.RGBA16F];gl.bindTexture(target,texture),gl.texStorage3D(target,levels+1,inner,width,height,
-layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
-gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE),
-gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let{floats}=this.graphics;for(let n=0;n<layers;n+=1){let texels=layer(n),[w,h]=[width,
-height];gl.texSubImage3D(target,0,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels);for(let level=1;level<=levels&&!floats;level+=
-1)[texels,w,h]=halved(texels,w,h,channels),gl.texSubImage3D(target,level,0,0,n,w,h,1,format,gl.HALF_FLOAT,texels)}floats&&
-levels&&gl.generateMipmap(target)}checkSize({width,height,layers}){let gl=this.graphics.context,most=gl.getParameter(gl.
-MAX_TEXTURE_SIZE),mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(!(Math.max(width,height)<=most&&layers<=mostLayers))
-throw new Error(`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most}\
- x ${most} in ${mostLayers}; show fewer nodes`)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.
-key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.
-get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.
-texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){
-let next=after+1<this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&
-([before,after,next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,
-{paper}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.
-image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.
-activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+
-SAMPLERS.length)}get triangles(){return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.
-graphics.context;textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),
-gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD=4,Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.header;return slices.trace?[...this.resources.
+keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.columns.size:
+0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(
+this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&
+stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
+fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,
+fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,
+{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.key(["triangles",...names],
+...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape,[...levels],[...joins]),
+index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:null,vertices=(values2,size)=>corners?
+atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("position").data,this.anchor),3),normal=geometry.
+planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(nodal,this.part("position").data,corners):nodal,
+painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(name=>this.part(name).data);return vertices(shares(
+steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],shape,scalars.low,scalars.high,scalars.log),grid2=JSON.
+stringify([shape,rows,columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.
+FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer(
+"position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&
+this.buffer("normal",key(["normal"]),()=>normals(normal)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),
+2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT],[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),
+3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{
+buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.
+FLOAT,0,0))})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
+fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
+extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
+shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
+channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
+n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
+k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
+levels},layer)})}get pickers(){let{programs}=this.graphics,{vertex,pick,fullVertex,probe}=this.header.shaders;return[programs.
+get(vertex,pick),programs.get(fullVertex,probe)]}texels(step,texels){let{graphics,header}=this,gl=graphics.context,{slices,
+geometry}=header,width=geometry.columns.size,texture=this.slices(step),draw=()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(
+gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.flatMap(n=>[n%width,Math.floor(n/width)]);graphics.
+programs.use(this.pickers[1],{u_texels:places}),gl.drawArrays(gl.TRIANGLES,0,3)},bits=graphics.numbers(draw,texels.length,
+slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{let[x,y,z,w]=numbers.subarray(4*(layer*texels.length+
+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
+let{data,shape}=this.part(name),[height,width,channels=1]=shape,levels=Math.floor(Math.log2(Math.max(width,height))),size={
+width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
+0))})}fill(texture,size,layer){let{context:gl,floats}=this.graphics;makeLayers(gl,texture,size);for(let n=0;n<size.layers;n+=
+1)sendLayer(gl,floats?{...size,levels:0}:size,n,layer(n));floats&&size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}colourMap(){
+let gl=this.graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),
+gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,
+0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
+gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
+this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.header,repeat=paper?.repeat??[!1,!1];
+[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,!0]:repeat),paper&&
+this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.
+TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.resources.
+get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,
+after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.
+get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isWatched=!1;isOver=!1;lastCame=0;failed=new Failures;limits;constructor(host,root2){
 this.host=host,this.root=root2,this.limits=root2.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
@@ -1254,21 +1295,23 @@ name=>{let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([leve
 let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){
 let scene=this.tiles.get(name)?.scene;return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.
 tiles.get(name)?.scene;return!scene||this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.
-host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,isLacking=step=>this.missing.some(name=>!this.
-isHere(name,[step])),steps=all.filter(isLacking),open2=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps)),
-isAsked=performance.now()-this.lastCame<LOST_MS&&String(open2.sort())===String([...this.missing].sort())&&(!open2.length||
-String(steps)===String(this.asked.steps));if(!(this.isWaiting||!options.onTiles)){if(isAsked)return this.watch();this.isWaiting=
-!0,lifetime.later(()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},
-options.onTiles?.(this.missing.map(keyOf),steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||
-(this.isWatched=!0,this.host.lifetime.later(()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.
-now()-this.lastCame)))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{
-parts,used}=tile,slices=[...parts.keys()].filter(part=>part.startsWith("slices/"));for(let part of slices.slice(0,Math.max(
-slices.length-STEPS_HELD,0))){let step=stepOf(part);if(steps.includes(step))continue;for(let kind of["slices","extra","f\
-low"])this.release(tile,`${kind}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));
-for(let each of values)this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes>(this.
-host.options.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.
-dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
-part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2=12,FEW_STEPS_HELD=4,FLOWS_HELD=100,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
+host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,lacking=(name,step)=>this.tiles.get(name)?.
+scene?.lacking(step)??flowsOf(this.root.header,step),needed=this.missing.flatMap(name=>all.flatMap(step=>lacking(name,step))),
+steps=[...new Set(needed)].sort((a,b)=>a-b),open2=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps)),isAsked=performance.
+now()-this.lastCame<LOST_MS&&String(open2.sort())===String([...this.missing].sort())&&(!open2.length||String(steps)===String(
+this.asked.steps));if(!(this.isWaiting||!options.onTiles)){if(isAsked)return this.watch();this.isWaiting=!0,lifetime.later(
+()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(
+this.missing.map(keyOf),steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||(this.isWatched=
+!0,this.host.lifetime.later(()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.now()-
+this.lastCame)))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,
+scene,used}=tile,kind=scene?.header.slices.trace?"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}\
+/`)),needed=scene?steps.flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-
+STEPS_HELD[kind],0))){let step=stepOf(part);if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(
+tile,`${each}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)
+this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>
+(this.host.options.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.
+scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
+part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2={slices:[12,4],flow:[100,24]},isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
 b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.createElement("d\
 iv");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root:root2}=this;
@@ -1298,75 +1341,74 @@ scene)}setPart(part){let{name,digest}=part,tile=tilePart(name);if(tile)return vo
 name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&this.parts.get(name)?.digest===digest)return;let held=this.
 graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),name==="cmap"&&this.
 tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change()}remove(name){this.
-graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){let{header,options}=this;if(!header||!options.onNeed&&
-!header.slices.trace)return;let named=kind=>[...this.parts.keys()].filter(name=>name.startsWith(kind)),flows=options.onNeed&&
-named("flow/").length>FLOWS_HELD?["flow"]:[],held=options.memory?FEW_STEPS_HELD:STEPS_HELD2;for(let name of named("slice\
-s/").slice(0,-held)){let step=stepOf(name);if(this.player.moment.slice(0,2).includes(step))continue;for(let kind of["sli\
-ces","extra",...flows])this.remove(`${kind}/${step}`);let values=options.memory?named("scalars/"):[];for(let other of values)
-isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
-settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
-name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
-this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(
-state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;
-this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.
-onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,
-aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(
-geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.
-radius:0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??
-this.ground(x,y),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.
-root.clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.
-seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),
-value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.
-setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){
-if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.
-motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(
-!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.
-update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?
-leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isBusy(){return this.playing||performance.
-now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
-this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.
-root.dataset.tiles=String(this.tiles?.pending??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){
-sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
-!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||
-1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),
-1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.
-aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;
-return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){
-return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
-header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){
-let{header,scene,player,shown,lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?
-[1,2].map(n=>(moment[1]+n)%header.slices.steps):[];this.ask([moment[0],moment[1],...ahead]);let isMade=!lacking.length&&
-scene.make(moment.slice(0,2),until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,
-isMade),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:
-(lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&
-this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){let now=performance.now(),lacking=[...new Set(steps)].filter(
-step=>this.scene?.missing(step,step).length);for(let step of lacking)!this.options.onNeed||now-(this.requests.get(step)??
--1/0)<LOST_MS2||(this.requests.set(step,now),this.options.onNeed(step));return!lacking.length}frame(now,until){if(!(this.
-lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<
-2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture coul\
-d not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(
-header,this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){if(!this.camera)
-return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.
-length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);
-if(this.camera||this.place(),!shown||!this.camera)return;let{programs}=this.graphics,program=this.program(header);if(program.
-error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||
-!this.scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.
-root.dataset.frames=String(this.renderer.frames),this.panel.clear(),programs.get(header.shaders.vertex,header.shaders.pick),
-header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{
-player,options}=this,isMade=steps=>this.ask(steps)&&!!this.scene?.make(steps,now);!player.playing||!player.advance(now,isMade)||
-(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.
-setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is not\
-hing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(
-focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.
-abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,
-between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*
-density,1)}}get canPick(){let{header,graphics}=this;return!header||graphics.isLost||!graphics.gl?!1:graphics.programs.get(
-header.shaders.vertex,header.shaders.pick).ready}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;
-return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||
-!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,
-moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count,options,own=()=>({})){
-if(count<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
-"display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count;n+=1){let cell=dom(
+graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){let{header,options}=this;if(!header||!options.onNeed)
+return;let kind=header.slices.trace?"flow":"slices",named=some=>[...this.parts.keys()].filter(name=>name.startsWith(some)),
+needed=this.player.moment.slice(0,2).flatMap(step=>flowsOf(header,step));for(let name of named(`${kind}/`).slice(0,-STEPS_HELD2[kind][+!!options.
+memory])){let step=stepOf(name);if(needed.includes(step))continue;for(let of of[kind,"extra"])this.remove(`${of}/${step}`);
+let values=options.memory?named("scalars/"):[];for(let other of values)isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){
+Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
+panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
+this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
+camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(
+state);else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.
+holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),
+this.reportCamera())}place(){let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||
+!nodes)return;let{geometry,limits}=header,state=first?widened(geometry,limits,first,nodes,aspect):fitted(geometry,limits,
+nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.radius:0;this.camera=new Camera(state,limits,geometry.planar,
+aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),(!first||!isEqual(first,state))&&this.
+options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.root.clientWidth,1)/Math.max(this.root.clientHeight,
+1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}scrub(share){
+let{player,options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.
+varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){
+this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();
+this.playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.
+start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.
+follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
+let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.
+now()+STILL_MS}get isBusy(){return this.playing||performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(
+cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){
+let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.pending??0),scenes}draw(){this.
+frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.
+sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&
+this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),width=Math.max(Math.round(this.root.
+clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),1);width===this.canvas.width&&height===this.
+canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,
+this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||!header?
+this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.root.
+clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){let[
+before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){let{header,scene,player,shown,
+lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.
+slices.steps):[];this.ask([moment[0],moment[1],...ahead]);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until);
+return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,isMade),isMade&&String(moment.
+slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:(lacking.length||this.request(),
+shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),
+this.panel.tell(reason)}ask(steps){let now=performance.now(),{onNeed,isComing}=this.options,lacking=[...new Set(steps.flatMap(
+step=>this.scene?.lacking(step)??[]))];for(let step of lacking)!onNeed||isComing?.()||now-(this.requests.get(step)??-1/0)<
+LOST_MS2||(this.requests.set(step,now),onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.
+graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(
+now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(
+error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(header,this.
+settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){if(!this.camera)return!1;
+let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?
+tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);this.
+camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!(!shown||!this.camera)){if(program.error){
+this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||!this.
+scene?.earth.isReady)return this.request();!this.sharp&&this.renderer.draw(program,shown,this.isBusy,until)&&(this.root.
+dataset.frames=String(this.renderer.frames),this.panel.clear(),this.scene.pickers,header.slices.critical&&this.program(header,
+!0),this.setSharp(!this.playing)),this.sharp||this.request()}}advance(now){let{player,options}=this,isMade=steps=>this.ask(
+steps)&&!!this.scene?.make(steps,now);!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(player.
+time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{
+header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
+focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
+range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{
+focus,anchor:isFar(subtract2(local,old))?anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
+clock,density,pixel:2*camera.height/Math.max(this.root.clientHeight*density,1)}}get canPick(){let{scene,graphics}=this;return!!scene&&
+!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.find(x,y)?.point??null}ground(x,y){
+let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;
+if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({
+layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count2,options,own=()=>({})){
+if(count2<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
+"display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count2;n+=1){let cell=dom(
 "div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==
 n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(new Viewer(cell,{...options,...own(n),...linked(options,others),
 ...follower}))}for(let viewer of viewers)viewer.together=viewers;return viewers}function linked(options,others){let both=(follow,report)=>(...values)=>{
@@ -1385,23 +1427,24 @@ onTiles:(keys,steps)=>queue?.request(keys,steps)}}),viewers=viewersIn(element,sc
 forEach(({header},n)=>viewers[n].setHeader(header)),scenes.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),
 scenes[0].source?.open().catch(error=>viewers[0].lack(error.message)),viewers[0]}function packedOf(view){let[parts,tiles]=[[],new Map];for(let element of document.querySelectorAll(`script[data-view="${view}\
 "]`)){let info=JSON.parse(element.dataset.part??""),packed=[info,element.textContent??""],tile=tilePart(info.name)?.[0];
-tile?tiles.set(tile,[...tiles.get(tile)??[],packed]):parts.push(packed),element.remove()}return{parts,tiles}}async function sceneOf(header,view,known,texts,openStore){
-let{parts,tiles}=packedOf(view);for(let[{digest},text]of[...tiles.values()].flat())text&&texts.set(digest,text);let unpacked=[];
-for(let[info,text]of parts){let part=known.get(info.digest)??await partOfText(info,text);known.set(info.digest,part),unpacked.
-push({...part,name:info.name})}return openStore?{header,parts:unpacked,source:openStore(header)}:{header,parts:unpacked,
-loadTile:(key,steps)=>{let needed=(tiles.get(nameOf(key))??[]).filter(([{name}])=>{let part=tilePart(name)?.[1]??"",step=stepOf(
-part),isOfAll=part.startsWith("scalars/")&&!isOfStep(part,step,header);return Number.isNaN(step)||steps.includes(step)||
-isOfAll});return Promise.all(needed.map(async([info,text])=>{let part=known.get(info.digest);return part?{...part,name:info.
-name}:partOfText(info,text||(texts.get(info.digest)??""))}))}}}async function openPage(openStore){let place=document.getElementById(
-"flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.getElementById("headers")?.textContent??
-""),known=new Map,texts=new Map,scenes=[];for(let[n,header]of headers.entries())scenes.push(await sceneOf({...headers[0],
-...header},String(n),known,texts,openStore));let look=()=>{status.hidden=!place.querySelector('[data-failed="true"]'),status.
-textContent="This browser cannot draw the flow, for want of WebGL2; here is a picture of it.",!place.querySelector('[dat\
-a-sharp="false"]')&&(watch.disconnect(),document.getElementById("preview")?.remove())},watch=new MutationObserver(look),
-attributeFilter=["data-sharp","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let{root:root2}=mountPage(
-place,scenes);document.addEventListener("keydown",event=>{event.target===document.body&&!root2.dispatchEvent(new KeyboardEvent(
-"keydown",event))&&event.preventDefault()})}catch(error){status.hidden=!1;let reason=error instanceof Error?error.message:
-String(error);throw status.textContent=`The flow cannot be drawn here: ${reason}`,error}}var ZarritaError=class extends Error{},NotFoundError=class extends ZarritaError{_tag="NotFoundError";name="NotFoundError";path;found;constructor(context,options={}){
+tile?tiles.set(tile,[...tiles.get(tile)??[],packed]):parts.push(packed),element.remove()}return{parts,tiles}}function sceneOf(header,tiles,known,texts,openStore){
+for(let[{digest},text]of[...tiles.values()].flat())text&&texts.set(digest,text);return openStore?{header,parts:[],source:openStore(
+header)}:{header,parts:[],loadTile:(key,steps)=>{let needed=(tiles.get(nameOf(key))??[]).filter(([{name}])=>{let part=tilePart(
+name)?.[1]??"",step=stepOf(part),isOfAll=part.startsWith("scalars/")&&!isOfStep(part,step,header);return Number.isNaN(step)||
+steps.includes(step)||isOfAll});return Promise.all(needed.map(async([info,text])=>{let part=known.get(info.digest);return part?
+{...part,name:info.name}:partOfText(info,text||(texts.get(info.digest)??""))}))}}}async function openPage(openStore){let place=document.
+getElementById("flowtex"),status=document.getElementById("status");try{let headers=JSON.parse(document.getElementById("h\
+eaders")?.textContent??""),known=new Map,texts=new Map,packed=headers.map((_,n)=>packedOf(String(n))),scenes=headers.map(
+(header,n)=>sceneOf({...headers[0],...header},packed[n].tiles,known,texts,openStore)),look=()=>{status.hidden=!place.querySelector(
+'[data-failed="true"]'),status.textContent="This browser cannot draw the flow, for want of WebGL2; here is a picture of \
+it.",!place.querySelector('[data-sharp="false"]')&&(watch.disconnect(),document.getElementById("preview")?.remove())},watch=new MutationObserver(
+look),attributeFilter=["data-sharp","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let isComing=!0,
+{root:root2,together}=mountPage(place,scenes,{isComing:()=>isComing});document.addEventListener("keydown",event=>{event.
+target===document.body&&!root2.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()});for(let[n,viewer]of together.
+entries())for(let[info,text]of packed[n].parts){let part=known.get(info.digest)??await partOfText(info,text);known.set(info.
+digest,part),viewer.setPart({...part,name:info.name})}isComing=!1;for(let viewer of together)viewer.change()}catch(error){
+status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The flow cannot\
+ be drawn here: ${reason}`,error}}var ZarritaError=class extends Error{},NotFoundError=class extends ZarritaError{_tag="NotFoundError";name="NotFoundError";path;found;constructor(context,options={}){
 super(`Not found: ${context}`,{cause:options.cause}),this.path=options.path,this.found=options.found}},InvalidMetadataError=class extends ZarritaError{_tag="\
 InvalidMetadataError";name="InvalidMetadataError";path;constructor(message,options={}){super(message,{cause:options.cause}),
 this.path=options.path}},UnknownCodecError=class extends ZarritaError{_tag="UnknownCodecError";name="UnknownCodecError";codec;constructor(codec){
@@ -1741,8 +1784,8 @@ COARSE="A part of the surface is shown coarse:",ABSENT_STEP="A time step cannot 
 n coarse:",REASONS={missing:"it is not in the store, or the store is not open to everyone.",broken:"what the store has o\
 f it is broken.",unreachable:"the store does not answer. It is away, the network is, or pages from elsewhere may not rea\
 d it (CORS)."},IDENTITY=["format","fingerprint","parameter","lines"],isCount=(value,most)=>Number.isInteger(value)&&Number(
-value)>0&&Number(value)<=most,areNumbers=(values,count)=>Array.isArray(values)&&values.every(Number.isFinite)&&(count??values.
-length)===values.length,areWhole=(values,count)=>areNumbers(values,count)&&values.every(Number.isInteger);function checkHeader(own,{
+value)>0&&Number(value)<=most,areNumbers=(values,count2)=>Array.isArray(values)&&values.every(Number.isFinite)&&(count2??
+values.length)===values.length,areWhole=(values,count2)=>areNumbers(values,count2)&&values.every(Number.isInteger);function checkHeader(own,{
 geometry:whole,slices:all}){let{geometry,slices,ranges}=own,{shape,rows,columns}=geometry,{trace}=slices;if(!(areNumbers(
 shape,2)&&shape.every(n=>isCount(n,MOST_NODES)&&n>1)&&[rows,columns].every(({before,size},axis)=>Number.isInteger(before)&&
 isCount(size,MOST_NODES)&&before>=0&&before+shape[axis]<=size)&&Number.isInteger(geometry.levels)&&geometry.levels>=0&&2**
@@ -1753,34 +1796,34 @@ slices.lags.length,MOST_LAGS)&&slices.sides===all.sides&&areNumbers(slices.extra
 n)&&n>=0&&n<slices.count)&&areNumbers([slices.unit,slices.cell,slices.critical])&&(!trace||trace.parts.every(part=>TRACED_FROM.
 includes(part))&&areNumbers(trace.nodes,2)&&trace.nodes.every((n,axis)=>isCount(n,MOST_NODES)&&trace.drawn[axis]+shape[axis]<=
 n)&&areWhole([...trace.first,...trace.drawn],4)&&trace.drawn.every(n=>n>=0)&&areNumbers(trace.closed.map(Number),2)&&areNumbers(
-[...trace.offset,...trace.middle,trace.unit,trace.pace],11))&&Object.values(ranges??{}).every(range=>areNumbers(range,2))))
-throw new Error("what is told of a tile does not fit the page")}function sizesOf({geometry,slices}){let{shape,planar}=geometry,
-{trace,count,channels,extra}=slices,size=(numbers,...more)=>[...numbers,...more].reduce((a,b)=>a*b,1),texels=[geometry.rows.
-size,geometry.columns.size],nodes=trace?.nodes??[],sizes={cells:[Uint8Array,[size(shape.map(n=>n-1))]],normal:[Int16Array,
-[size(shape,3)]],scalars:[Float32Array,[size(shape)]]};trace?(sizes.unit=[Uint16Array,[size(nodes)]],sizes.padded=[Float32Array,
-[size(nodes.map(n=>n+2),3)]],sizes.open=[Uint8Array,[size(nodes)]],sizes.nearest=[Int16Array,[size(nodes,2)]],sizes.flow=
-[Uint16Array,[size(nodes,3),size(nodes,4)]]):(sizes.position=[Float32Array,[size(shape,3)]],sizes.slices=[Uint16Array,[size(
-texels,count,channels)]],sizes.extra=[Uint16Array,[size(texels,extra.length)]]);let needed=trace?["mesh",...trace.parts]:
-["mesh","position",...planar?[]:["normal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){let{sizes}=sizesOf(
-header),blocks=header.geometry.shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){let kind=sizes[name.
-split("/")[0]];if(!(kind?data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof Float32Array&&
-own.length===3&&own[0]===blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]&&own[2]%2===1))throw new Error(
-`the part "${name}" of a tile has another size than is told`)}}function speedOf(flow,{geometry,slices},typical){let[rows,
-columns]=geometry.shape,[channels,{drawn,nodes}={drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(
-rows*columns);for(let n=0;n<data.length;n+=1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=
-typical*fromHalf(Number(flow.data[channels*(at+1)-1]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest} s\
-peed`}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){let told=header.store;
-if(!told)throw new Error("the page does not tell where its store is");this.header=header,this.told=told,this.url=new URL(
-told.url,base),this.store=new Store(this.url.href)}open(){return this.opening?this.opening:(this.opening=this.compare().
-catch(error=>{let{fault,message}=storeError(error);if(fault==="other")throw error;fault==="unreachable"&&(this.opening=null);
-let text=`${fault==="missing"?NO_STORE:COARSE} ${REASONS[fault]}`;throw new StoreError(fault,text,message)}),this.opening)}async compare(){
-let{url}=this.told;if(!/^https?:/.test(this.url.protocol)){let text2=`This page looks for its store at ${url} beside its\
-elf, which a browser does not read where the page is a file: open it from a web server.`;throw new StoreError("other",text2)}
-let own=(await this.store.attributes()).flowtex;if(IDENTITY.every(name=>own?.[name]===this.told[name]))return;let text=`\
-The store at ${url} holds another flow than this page, or one with other paths or of another version: export the page ag\
-ain.`;throw new StoreError("other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(COARSE,
-signal,async whole=>{let late=steps.filter(step=>!has(`slices/${step}`)&&!has(`flow/${step}`)),known=has("header")&&!late.
-length?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):{header:known,parts:[]},coming=new Map(
+[...trace.offset,...trace.middle,trace.unit,trace.pace,trace.rest],12)&&(!trace.timed||areNumbers([trace.timed.unit,trace.
+timed.speed],2)))&&Object.values(ranges??{}).every(range=>areNumbers(range,2))))throw new Error("what is told of a tile \
+does not fit the page")}function sizesOf({geometry,slices}){let{shape,planar}=geometry,{trace,count:count2,channels,extra}=slices,
+size=(numbers,...more)=>[...numbers,...more].reduce((a,b)=>a*b,1),texels=[geometry.rows.size,geometry.columns.size],nodes=trace?.
+nodes??[],sizes={cells:[Uint8Array,[size(shape.map(n=>n-1))]],normal:[Int16Array,[size(shape,3)]],scalars:[Float32Array,
+[size(shape)]]};trace?(sizes.unit=[Uint16Array,[size(nodes)]],sizes.padded=[Float32Array,[size(nodes.map(n=>n+2),3)]],sizes.
+open=[Uint8Array,[size(nodes)]],sizes.nearest=[Int16Array,[size(nodes,2)]],sizes.flow=[Uint16Array,[size(nodes,3),size(nodes,
+4)]]):(sizes.position=[Float32Array,[size(shape,3)]],sizes.slices=[Uint16Array,[size(texels,count2,channels)]],sizes.extra=
+[Uint16Array,[size(texels,extra.length)]]);let needed=trace?["mesh",...trace.parts]:["mesh","position",...planar?[]:["no\
+rmal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){let{sizes}=sizesOf(header),blocks=header.geometry.
+shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){let kind=sizes[name.split("/")[0]];if(!(kind?
+data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof Float32Array&&own.length===3&&own[0]===
+blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]&&own[2]%2===1))throw new Error(`the part "${name}" of \
+a tile has another size than is told`)}}function speedOf(flow,{geometry,slices},typical){let[rows,columns]=geometry.shape,
+[channels,{drawn,nodes}={drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(rows*columns);for(let n=0;n<
+data.length;n+=1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=typical*fromHalf(Number(flow.
+data[channels*(at+1)-1]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest} speed`}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){
+let told=header.store;if(!told)throw new Error("the page does not tell where its store is");this.header=header,this.told=
+told,this.url=new URL(told.url,base),this.store=new Store(this.url.href)}open(){return this.opening?this.opening:(this.opening=
+this.compare().catch(error=>{let{fault,message}=storeError(error);if(fault==="other")throw error;fault==="unreachable"&&
+(this.opening=null);let text=`${fault==="missing"?NO_STORE:COARSE} ${REASONS[fault]}`;throw new StoreError(fault,text,message)}),
+this.opening)}async compare(){let{url}=this.told;if(!/^https?:/.test(this.url.protocol)){let text2=`This page looks for \
+its store at ${url} beside itself, which a browser does not read where the page is a file: open it from a web server.`;throw new StoreError(
+"other",text2)}let own=(await this.store.attributes()).flowtex;if(IDENTITY.every(name=>own?.[name]===this.told[name]))return;
+let text=`The store at ${url} holds another flow than this page, or one with other paths or of another version: export t\
+he page again.`;throw new StoreError("other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(
+COARSE,signal,async whole=>{let late=steps.filter(step=>!has(`slices/${step}`)&&!has(`flow/${step}`)),known=has("header")&&
+!late.length?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):{header:known,parts:[]},coming=new Map(
 late.map(step=>[step,this.flow(key,step,whole)])),flows=[...coming.values()],rest=async()=>{let{header,parts:parts2}=await surface;
 if(this.headers.set(name,header),!header)return parts2;let[values,...slices]=await Promise.all([this.values(key,header,steps,
 has,whole,coming),...flows]);if(checkParts(slices.flat(),header,this.header.mesh.tileCells),!slices.every(each=>each.length))
@@ -1811,11 +1854,11 @@ let{steps,times:times2,timeUnit,dates,pace}=this.header.slices;return checkHeade
 slices,steps,times:times2,timeUnit,dates,pace}}}async flow(key,step,signal){let source=this.told.steps[step];return[...(await this.
 file("flow",key,[source,key[1],key[2]],signal)).values()].map(part=>{let[kind,own]=part.name.split("/");if(Number(own)!==
 source)throw new Error(`in place of step ${source} is ${part.name}`);return{...part,name:`${kind}/${step}`}})}async values(key,place,steps,has,signal,coming){
-let parts=new Map;for(;;){let{name,steps:count,number}=this.header.scalars,names=(count>1?steps:[0]).map(step=>number?`s\
-calars/${step}/${number}`:`scalars/${step}`),lacking=name===null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.
-length)return[...parts.values()];let found=await Promise.all(lacking.map(async each=>{let step=count>1?stepOf(each):0;if(!number&&
+let parts=new Map;for(;;){let{name,steps:count2,number}=this.header.scalars,names=(count2>1?steps:[0]).map(step=>number?
+`scalars/${step}/${number}`:`scalars/${step}`),lacking=name===null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.
+length)return[...parts.values()];let found=await Promise.all(lacking.map(async each=>{let step=count2>1?stepOf(each):0;if(!number&&
 this.told.derivesSpeed&&place.slices.trace){let[flow]=await(coming.get(step)??this.flow(key,step,signal));return{...speedOf(
-flow,place,this.header.speed.typical),name:each}}let source=count>1?this.told.steps[step]:0,part=(await this.file("value\
-s",key,[source,key[1],key[2],number],signal)).get(`scalars/${source}/${number}`);if(!part)throw new Error(`tile ${nameOf(
+flow,place,this.header.speed.typical),name:each}}let source=count2>1?this.told.steps[step]:0,part=(await this.file("valu\
+es",key,[source,key[1],key[2],number],signal)).get(`scalars/${source}/${number}`);if(!part)throw new Error(`tile ${nameOf(
 key)} has no values of step ${source}`);return{...part,name:each}}));checkParts(found,place,this.header.mesh.tileCells);
 for(let part of found)parts.set(part.name,part)}}};openPage(header=>new Stream(header,location.href));
