@@ -115,8 +115,7 @@ class FieldOptions:
             When something is chosen of a field that is made already, or the times of a file.
         """
         choices = {name: value for name, value in vars(self).items() if value is not None}
-        if isinstance(mesh, (str, Path)) and (stored := _stored_field(mesh)) is not None:
-            self._refuse(choices, tuple(choices), "what a pyramid is built from")
+        if (stored := self._of_store(mesh, choices)) is not None:
             return stored
         if is_dataset(mesh):
             return FlowField.from_xarray(mesh, **self._of_dataset(choices))
@@ -136,6 +135,17 @@ class FieldOptions:
             raise FieldError(msg)
         return mesh
 
+    def _of_store(self, place: Any, choices: dict[str, Any]) -> FlowField | None:
+        """Return the field of a pyramid in a store, where there is one."""
+        from flowtex.pyramid import is_store, open_store
+        from flowtex.pyramid.others import has_parts
+
+        if not has_parts(place):
+            return None
+        if is_store(place):
+            self._refuse(choices, tuple(choices), "what a pyramid is built from")
+        return open_store(place, **self._of_dataset(choices))
+
     def _of_dataset(self, choices: dict[str, Any]) -> dict[str, Any]:
         """Return the arguments of :meth:`FlowField.from_xarray`."""
         self._refuse(choices, OF_MESHES, "meshes, and this is a data set")
@@ -146,13 +156,6 @@ class FieldOptions:
         if given := [name for name in names if name in choices]:
             msg = f"{', '.join(given)} is for {what}; leave it out"
             raise FieldError(msg)
-
-
-def _stored_field(path: str | Path) -> FlowField | None:
-    """Return the field of a pyramid in a store, where there is one."""
-    from flowtex.pyramid import is_store, open_store
-
-    return open_store(path) if is_store(path) else None
 
 
 def _are_paths(mesh: Any) -> bool:

@@ -203,7 +203,6 @@ PROTOCOLS = {
     "field/steps.py: IndexError",  # of sequences
     "pyramid/checks.py: ValueError",
     "pyramid/objects.py: ValueError",  # of a codec of Zarr's
-    "pyramid/served.py: IndexError",
     "rendering/webgl/client_data.py: IndexError",
     "tiles/pyramid.py: KeyError",
     "tiles/triangle_pyramid.py: KeyError",

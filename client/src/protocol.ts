@@ -180,6 +180,8 @@ export interface StoreHeader {
   depth: number;
   /** Numbers in the store of the page's time steps. */
   steps: number[];
+  /** Whether the speed is that of the flow, where this is a velocity. */
+  derivesSpeed: boolean;
 }
 
 /** What slices are traced from, where the client does: flowtex/rendering/webgl/velocity.py. */

@@ -1,6 +1,7 @@
 // Tiles and time steps of a page from the store that they lie in: flowtex/pyramid/layout.py tells what is
 // where, and flowtex/pyramid/client_parts.py what the surface of a tile is.
 
+import { fromHalf } from "./half.ts";
 import {
   infosOfFile,
   partsOfFile,
@@ -38,6 +39,10 @@ const REASONS: Record<Exclude<StoreFault, "other">, string> = {
 const IDENTITY = ["format", "fingerprint", "parameter", "lines"] as const;
 /** Tells whether a part is there, of a tile or of the whole. */
 export type Has = (part: string) => boolean;
+
+/** Flows that are on their way, by their steps. */
+type Flows = Map<number, Promise<NamedPart[]>>;
+type Place = Pick<Header, "geometry" | "slices">;
 
 /** What of a tile is the same at all times; no header where nothing of it is drawn. */
 interface Surface {
@@ -140,6 +145,18 @@ function checkParts(parts: NamedPart[], header: Pick<Header, "geometry" | "slice
   }
 }
 
+/** The speed at the nodes that are drawn, in the field's own unit. */
+function speedOf(flow: NamedPart, { geometry, slices }: Place, typical: number): NamedPart {
+  const [rows, columns] = geometry.shape;
+  const [channels, { drawn, nodes } = { drawn: [0, 0], nodes: [0, 0] }] = [flow.shape[2], slices.trace];
+  const data = new Float32Array(rows * columns);
+  for (let n = 0; n < data.length; n += 1) {
+    const at = (Math.floor(n / columns) + drawn[0]) * nodes[1] + (n % columns) + drawn[1];
+    data[n] = typical * fromHalf(Number(flow.data[channels * (at + 1) - 1]));
+  }
+  return { name: "", data, shape: [rows, columns], digest: `${flow.digest} speed` };
+}
+
 export class Stream {
   private readonly header: Header;
   private readonly told: StoreHeader;
@@ -195,13 +212,14 @@ export class Stream {
       const known = has("header") && !late.length ? this.headers.get(name) : undefined;
       const surface: Surface | Promise<Surface> = known === undefined ? this.surface(key, whole) : { header: known, parts: [] };
       // On their way before it is known what they belong to.
-      const flows = late.map((step) => this.flow(key, step, whole));
+      const coming: Flows = new Map(late.map((step) => [step, this.flow(key, step, whole)]));
+      const flows = [...coming.values()];
       const rest = async () => {
         const { header, parts } = await surface;
         this.headers.set(name, header);
         if (!header) return parts;
         const [values, ...slices] = await Promise.all([
-          this.values(key, header, steps, has, whole),
+          this.values(key, header, steps, has, whole, coming),
           ...flows,
         ]);
         checkParts(slices.flat(), header, this.header.mesh.tileCells);
@@ -219,12 +237,14 @@ export class Stream {
     const key: TileKey = [this.told.depth, 0, 0];
     return this.loaded(ABSENT_STEP, signal, async (whole) => {
       const parts: NamedPart[] = [];
+      const coming: Flows = new Map();
       if (lacking().some((name) => /^(flow|slices|extra)\//.test(name))) {
-        parts.push(...(await this.flow(key, step, whole)));
+        coming.set(step, this.flow(key, step, whole));
+        parts.push(...((await coming.get(step)) ?? []));
         checkParts(parts, header, header.mesh.tileCells);
       }
       const has = (part: string) => !lacking().includes(part);
-      return [...parts, ...(await this.values(key, header, [step], has, whole))];
+      return [...parts, ...(await this.values(key, header, [step], has, whole, coming))];
     });
   }
 
@@ -319,10 +339,11 @@ export class Stream {
   /** Values to colour by at some steps, once more where the colours have changed meanwhile. */
   private async values(
     key: TileKey,
-    place: Pick<Header, "geometry" | "slices">,
+    place: Place,
     steps: number[],
     has: Has,
     signal: AbortSignal,
+    coming: Flows,
   ): Promise<NamedPart[]> {
     const parts = new Map<string, NamedPart>();
     for (;;) {
@@ -333,7 +354,12 @@ export class Stream {
       if (!lacking.length) return [...parts.values()];
       const found = await Promise.all(
         lacking.map(async (each) => {
-          const source = count > 1 ? this.told.steps[stepOf(each)] : 0;
+          const step = count > 1 ? stepOf(each) : 0;
+          if (!number && this.told.derivesSpeed && place.slices.trace) {
+            const [flow] = await (coming.get(step) ?? this.flow(key, step, signal));
+            return { ...speedOf(flow, place, this.header.speed.typical), name: each };
+          }
+          const source = count > 1 ? this.told.steps[step] : 0;
           const file = await this.file("values", key, [source, key[1], key[2], number], signal);
           const part = file.get(`scalars/${source}/${number}`);
           if (!part) throw new Error(`tile ${nameOf(key)} has no values of step ${source}`);

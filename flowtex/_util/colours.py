@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -63,9 +64,15 @@ def colour_table(cmap: Any | None) -> Bytes:
     values = getattr(cmap, "values", None)
     if isinstance(values, np.ndarray):  # a LookupTable of PyVista's
         return _resampled(np.asarray(values))
+    name = cmap or DEFAULT_CMAP
+    if isinstance(name, str) and name in CMAPS:  # which each tile asks for
+        return _known_table(name).copy()
+    return _named_table(name)
+
+
+def _named_table(name: Any) -> Bytes:
     from matplotlib import colormaps
 
-    name = cmap or DEFAULT_CMAP
     known = colormaps[name] if isinstance(name, str) and name in colormaps else name
     if callable(known):
         # Rounded down, as PyVista does, so that all renderers have the same colours.
@@ -78,6 +85,11 @@ def colour_table(cmap: Any | None) -> Bytes:
         hint = near_names(name, sorted(colormaps)) if isinstance(name, str) else "expected a name"
         msg = f"there is no colour map {name!r}; {hint}"
         raise FieldError(msg) from error
+
+
+@cache
+def _known_table(name: str) -> Bytes:
+    return _named_table(name)
 
 
 def is_diverging(cmap: Any) -> bool:

@@ -31,11 +31,13 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     from flowtex.field.datasets.files import dataset_paths
     from flowtex.field.io.summary import describe
     from flowtex.pyramid import is_store
+    from flowtex.pyramid.others import has_parts
 
     console = terminal()
-    if len(files) == 1 and is_store(files[0]):
+    if len(files) == 1 and has_parts(files[0]):
         console.print(Text(str(files[0]), "bold"), soft_wrap=True)
-        console.print(_store_table(files[0]))
+        if is_store(files[0]):
+            console.print(_store_table(files[0]))
         console.print(_field_table(load_field(files, flow)))
         return 0
     if paths := dataset_paths(files):

@@ -21,18 +21,22 @@ __all__ = ["load_field", "notices"]
 def load_field(files: Sequence[Path], flow: FieldFlags | None) -> FlowField:
     """Return the flow of a file, or of several that belong together."""
     from flowtex.field import FlowField
-    from flowtex.pyramid import is_store, open_store
+    from flowtex.options import FieldOptions
+    from flowtex.pyramid import is_store
+    from flowtex.pyramid.others import has_parts
 
     if not files:
         msg = "there is no file; name one"
         raise UsageError(msg)
     arguments = (flow or FieldFlags()).arguments()
     with waiting(f"Reading {files[0].name}"), notices():
-        if len(files) == 1 and is_store(files[0]):
-            if arguments:
+        if len(files) == 1 and has_parts(files[0]):
+            if arguments and is_store(files[0]):
                 msg = f"--{next(iter(arguments))} is for what a pyramid is built from; leave it out"
                 raise UsageError(msg)
-            return open_store(files[0])
+            if (time := arguments.pop("time", None)) is not None:
+                arguments["sel"] = {**arguments.get("sel", {}), "time": time}
+            return FieldOptions(**arguments).field(files[0])
         whole: Any = files[0] if len(files) == 1 else files
         return FlowField.from_file(whole, **arguments)
 

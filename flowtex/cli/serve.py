@@ -74,9 +74,9 @@ def serve(
         msg = f"{store} is no pyramid; make one of it with `flowtex pyramid {store} -o flow.zarr`"
         raise UsageError(msg)
     from flowtex.app.server.security import known_hosts, new_secret
+    from flowtex.app.server.served_store import ServedStore
     from flowtex.app.server.store_site import run_store
     from flowtex.diagnostics import has_display
-    from flowtex.pyramid.served import ServedStore
 
     with waiting(f"Reading {store.name}") as end_waiting:
         field = open_store(store)

@@ -137,9 +137,9 @@ def _show_page(
     if options.pop("background") != LookFlags.background:
         msg = "--background is for pictures and windows; the page has its own, under Colours"
         raise UsageError(msg)
-    from flowtex.pyramid import is_store
+    from flowtex.pyramid.others import has_parts
 
-    if len(files) == 1 and is_store(files[0]):
+    if len(files) == 1 and has_parts(files[0]):
         return _serve(Library.of(load_field(files, flow)), page, options)
     choice = (flow or FieldFlags()).arguments()
     one = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))

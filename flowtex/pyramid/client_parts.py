@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Floats, Floats32
+from flowtex._util.array_types import AnyArray, Floats, Floats32
 from flowtex.field import FlowField
 from flowtex.field.steps import typical_steps
 from flowtex.pyramid.layout import FILE_BYTES, FILE_CHUNK, FLOW, SURFACE, VALUES
@@ -30,6 +30,8 @@ __all__ = ["write_tile"]
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
 #: Error of a value as a share of the range that most of them have.
 VALUE_SHARE = 2.0**-17
+#: Steps of a rate, which is about one along the flow.
+RATE_STEPS = 512
 
 
 def write_tile(here: Any, pyramid: Pyramid, key: TileKey, steps: Sequence[int], of: str) -> None:
@@ -54,7 +56,11 @@ def write_tile(here: Any, pyramid: Pyramid, key: TileKey, steps: Sequence[int], 
                     file = {f"{prefix}/scalars/{step}/{number}": values}
                     _write(here[VALUES], (step, *at, number), of, file)
             named = data.step(step).items()
-            parts = {f"{prefix}/{k}": v for k, v in named if not k.startswith("scalars/")}
+            flow = {k: v for k, v in named if not k.startswith("scalars/")}
+            parts = {
+                f"{prefix}/{k}": _shortened(v) if k.startswith("flow/") else v
+                for k, v in flow.items()
+            }
             data.textures.forget()
         # The last one: by it a tile is known to be whole.
         _write(here[FLOW], (step, *at), of, parts)
@@ -108,7 +114,9 @@ def _values(pyramid: Pyramid, data: ClientData, step: int) -> list[Floats32 | No
     rows, columns = data.textures.grid.drawn
     for name in _names(data.field):
         steps = _steps_of(data.field, name)
-        if step >= len(steps):
+        # The flow tells the speed.
+        is_derived = data.traced and name not in data.field.scalars
+        if is_derived or step >= len(steps):
             result.append(None)
             continue
         values: Floats = np.asarray(steps[step])[rows, columns]
@@ -118,6 +126,14 @@ def _values(pyramid: Pyramid, data: ClientData, step: int) -> list[Floats32 | No
             values = np.rint(values / unit) * unit
         result.append(single(values))
     return result
+
+
+def _shortened(flow: AnyArray) -> AnyArray:
+    """Round velocities (J, I, 3 or 4) to what paths and colours need, so that gzip packs more."""
+    result = np.rint(flow * RATE_STEPS) / RATE_STEPS
+    bits = np.ascontiguousarray(flow[..., 2:]).view(np.uint16)
+    result[..., 2:] = ((bits + 2) & ~np.uint16(3)).view(np.float16)
+    return np.asarray(result, "<f2")
 
 
 def _colours(pyramid: Pyramid, field: FlowField) -> Colours:

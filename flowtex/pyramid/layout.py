@@ -19,7 +19,8 @@ Whoever draws makes tiles of a region of a level, with the halo that their paths
 them; the root is one tile. A browser is handed what it makes them of, in files of parts: the
 surface of a tile, with all that is the same at all times, the flow of one time, and the values of
 one scalar, so that it takes what it shows with one request each. The flow is the velocity where the
-browser can trace it, and slices where it cannot; see client_parts.py. Scalar 0 is the speed.
+browser can trace it, and slices where it cannot; see client_parts.py. Scalar 0 is the speed, which
+velocity tells by itself.
 
 Arrays over nodes lie in chunks of a tile, several in a shard, packed by Blosc. A file is a shard,
 followed by zeros, of which most are left out, packed by gzip, which browsers undo themselves. All
@@ -76,9 +77,9 @@ FILE_BYTES, FILE_CHUNK = 1 << 28, 1 << 20
 #: Time steps of a series up to which a reader holds all of them.
 MOST_HELD = 8
 #: How hard is tried to pack; more takes longer and gains little.
-GZIP_LEVEL, ZSTD_LEVEL = 1, 3
-#: Bits of velocities: their error is 2^-14 of themselves at most.
-VELOCITY_BITS = 13
+GZIP_LEVEL, ZSTD_LEVEL = 4, 3
+#: Bits of velocities: their error is 2^-12 of themselves at most, that of half precision.
+VELOCITY_BITS = 11
 FLOW, VALUES, SURFACE = "flow", "values", "surface"
 DIGESTS, DIGEST_BYTES = "digests", 16
 CONVENTION = {

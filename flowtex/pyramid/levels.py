@@ -175,16 +175,18 @@ class Levels:
         """Raise a DamageError where some of a tile is missing or corrupt."""
         where, (level, *at) = f"of tile {tuple(key)} at step {step}", key
         parts = self._check_file(FLOW, level, (step, *at), f"{FLOW} {where}")
-        if parts > 1:  # something is drawn
-            counts = self.about["scalars"]
+        if parts:  # something is drawn
+            # A flow that browsers trace tells its speed.
+            is_traced = any("/flow/" in part for part in parts)
+            counts = dict.fromkeys([] if is_traced else ["speed"], step + 1) | self.about["scalars"]
             for number, scalar in enumerate(value_names(self.about)):
-                if step < counts.get(scalar, step + 1):
+                if step < counts.get(scalar, 0):
                     self._check_file(VALUES, level, (step, *at, number), f"{scalar} {where}")
         if step == 0 and level < self.about["depth"]:
             self._check_file(SURFACE, level, tuple(at), f"{SURFACE} {where}")
 
-    def _check_file(self, kind: str, level: int, at: tuple[int, ...], name: str) -> int:
-        """Return how many parts a file has; a DamageError tells that it is missing or corrupt."""
+    def _check_file(self, kind: str, level: int, at: tuple[int, ...], name: str) -> list[str]:
+        """Return the names of the parts of a file; a DamageError tells what is wrong."""
         array = f"{level}/{kind}"
         (file,) = self._read(_Piece(array, (*at, slice(FILE_CHUNK)), name))
         try:
@@ -201,7 +203,7 @@ class Levels:
             raise DamageError(msg)
         for first in range(FILE_CHUNK, size, FILE_CHUNK):
             self._read(_Piece(array, (*at, slice(first, first + FILE_CHUNK)), name))
-        return len(infos)
+        return names
 
     def positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         """Return where nodes are, (J, I, 3), and which of them are valid, (J, I)."""

@@ -47,10 +47,14 @@ class _Piece:
 
 
 class Objects(WrapperStore[Any]):
-    """A store of Zarr's to read a pyramid from; errors are each a :class:`ReadFault`."""
+    """A store of Zarr's to read a pyramid from; errors are each a :class:`ReadFault`.
 
-    def __init__(self, store: Any) -> None:
+    One of others may be ``sparse``: it leaves chunks out that have nothing but the fill value.
+    """
+
+    def __init__(self, store: Any, *, sparse: bool = False) -> None:
         super().__init__(store)
+        self._sparse = sparse
         self._kept: ByteCache[Any, _Piece] = ByteCache(CACHE_BYTES)
         self._gates: weakref.WeakValueDictionary[Any, asyncio.Lock] = weakref.WeakValueDictionary()
         self._reads = asyncio.Semaphore(MOST_READS)
@@ -82,7 +86,7 @@ class Objects(WrapperStore[Any]):
                         return None
                     msg = f"{key} {fault_words(error)}"
                     raise ReadFault(msg) from None
-        if result is None and _CHUNK.search(key):
+        if result is None and not self._sparse and _CHUNK.search(key):
             msg = f"{key} is missing"
             raise ReadFault(msg, missing=True)
         return result

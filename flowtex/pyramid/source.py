@@ -24,7 +24,7 @@ from flowtex.pyramid.places import is_store
 from flowtex.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
 
-__all__ = ["Source", "source_of"]
+__all__ = ["FieldSource", "Opened", "RegionSource", "Source", "source_of"]
 
 
 class Source(ABC):
@@ -235,7 +235,7 @@ class RegionSource(Source):
                 yield one.resolve(), one.stat()
 
 
-class _Opened(FieldConstructors):
+class Opened(FieldConstructors):
     """Opens what makes a field; a dataset of which any region can be read alone is not read."""
 
     from_arrays = FlowField.from_arrays
@@ -258,10 +258,10 @@ def source_of(given: Any, **options: Any) -> Source:
         raise FieldError(msg)
     made: Any
     if is_dataset(given):
-        made = _Opened.from_xarray(given, **options)
+        made = Opened.from_xarray(given, **options)
     else:
         one: str | Path | Sequence[str | Path] = given
-        made = _Opened.from_file(one, **options)
+        made = Opened.from_file(one, **options)
         if isinstance(made, RegionSource):
             made.files, made.choice = dataset_paths(one), repr(sorted(options.items()))
     return made if isinstance(made, Source) else FieldSource(made)

@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.field import WHOLE_SHAPE
 from flowtex.pyramid.layout import VELOCITY_BITS, empty_field
 from flowtex.pyramid.levels import Levels
-from flowtex.pyramid.places import PyramidError
+from flowtex.pyramid.others import OtherLevels, levels_of_others
+from flowtex.pyramid.places import PyramidError, is_store, place_text
 from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, have_pyramid
 from flowtex.tiles.pyramid import Nodes, averaged
@@ -23,7 +25,7 @@ from flowtex.tiles.pyramid import Nodes, averaged
 __all__ = ["StoredPyramid", "open_store", "root_of"]
 
 
-def open_store(store: str | Path) -> FlowField:
+def open_store(store: str | Path, **options: Any) -> FlowField:
     """Open a pyramid in a store as a field.
 
     Drawing it reads the tiles that are in view, as ``flowtex.render``, ``flowtex.show`` and the
@@ -33,7 +35,11 @@ def open_store(store: str | Path) -> FlowField:
     ----------
     store
         A local folder, or a URL: ``s3://bucket/path`` and other object storage, or ``https://``.
-        Endpoint and credentials come from the environment.
+        Endpoint and credentials come from the environment. Others may have written it: a multiscale
+        group of xarray datasets, as ndpyramid and topozarr write them, or a Zarr dataset.
+    **options
+        What is drawn of a store of others: as for :meth:`flowtex.FlowField.from_xarray`, such as
+        ``u``, ``v``, ``globe`` or ``level``.
 
     Returns
     -------
@@ -46,6 +52,11 @@ def open_store(store: str | Path) -> FlowField:
     ModuleNotFoundError
         When what reads it is missing; the text names the extra.
 
+    Warns
+    -----
+    Notice
+        When large chunks, or the want of coarse levels, make a store of others slow.
+
     Examples
     --------
     >>> import flowtex
@@ -54,6 +65,12 @@ def open_store(store: str | Path) -> FlowField:
     >>> flowtex.pyramid.open_store("gyre.zarr").shape
     (21, 41)
     """
+    if not is_store(store):
+        found = levels_of_others(place_text(store), options)
+        return found if isinstance(found, FlowField) else _field_of(found, found.template)
+    if options:
+        msg = f"{', '.join(options)} is for what a pyramid is built from; leave it out"
+        raise FieldError(msg)
     levels = Levels(store)
     if not levels.about.get("levels_done"):
         msg = (
@@ -61,7 +78,12 @@ def open_store(store: str | Path) -> FlowField:
             "flowtex.pyramid.build again, which makes what is missing"
         )
         raise PyramidError(msg)
-    root = root_of(levels)
+    return _field_of(levels, empty_field(levels.about))
+
+
+def _field_of(levels: Levels | OtherLevels, template: FlowField) -> FlowField:
+    """Return the coarsest level as a field that has the others."""
+    root = _root(levels, template)
 
     def pyramid(field: FlowField, parameter: str, lines: str) -> Pyramid:
         return StoredPyramid(levels, field, parameter, lines)
@@ -73,8 +95,12 @@ def open_store(store: str | Path) -> FlowField:
 
 def root_of(levels: Levels) -> FlowField:
     """Return the coarsest level as a field."""
-    template = StoredPyramid(levels, empty_field(levels.about))
-    return template.at_level(template.depth)
+    return _root(levels, empty_field(levels.about))
+
+
+def _root(levels: Levels | OtherLevels, template: FlowField) -> FlowField:
+    pyramid = StoredPyramid(levels, template)
+    return pyramid.at_level(pyramid.depth)
 
 
 class StoredPyramid(Pyramid):
@@ -85,7 +111,7 @@ class StoredPyramid(Pyramid):
 
     def __init__(
         self,
-        levels: Levels,
+        levels: Levels | OtherLevels,
         field: FlowField,
         parameter: str | None = None,
         lines: str | None = None,
@@ -123,11 +149,13 @@ class StoredPyramid(Pyramid):
     def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
         """Return the textures of a tile; a PyramidError tells what cannot be read."""
         textures = super().tile(key, steps)
-        if textures is not None:
-            self.check_nodes(key, textures, steps)
+        if textures is not None and isinstance(self._stored, Levels):
+            self._check_nodes(self._stored, key, textures, steps)
         return textures
 
-    def check_nodes(self, key: TileKey, textures: TextureSet, steps: Sequence[int]) -> None:
+    def _check_nodes(
+        self, stored: Levels, key: TileKey, textures: TextureSet, steps: Sequence[int]
+    ) -> None:
         """Raise a PyramidError where the nodes of a tile are not those of the level above it.
 
         That has every other line of them, and means of their velocities.
@@ -143,18 +171,18 @@ class StoredPyramid(Pyramid):
         lines = [2 * some - a for some, a in zip(above, first, strict=True)]
         rows, columns = (some + np.array([[-1], [0], [1]]) for some in lines)
         at = np.ix_(*lines)
-        coarse = self._stored.nodes(key.level + 1, *above, velocities=False)
+        coarse = stored.nodes(key.level + 1, *above, velocities=False)
         pairs = [(field.points[drawn][at], coarse.points), (valid[at], coarse.valid)]
         for name, values in coarse.scalars.items():
             own = field.scalars[name]
             pairs += [(own[t][drawn][at], values[t]) for t in steps if t < len(values)]
         for step in steps:
-            told = self._stored.velocity(key.level + 1, step, *above)[coarse.valid]
+            told = stored.velocity(key.level + 1, step, *above)[coarse.valid]
             mean = averaged(np.asarray(field.velocity[step])[drawn], valid, rows, columns)
             pairs.append((mean[coarse.valid][:, : told.shape[-1]], told))
         if not all(_alike(own, told) for own, told in pairs):
             msg = (
-                f"the nodes of tile {tuple(key)} of {self._stored.place} are not those of the "
+                f"the nodes of tile {tuple(key)} of {stored.place} are not those of the "
                 "level above it; build the store anew"
             )
             raise PyramidError(msg)

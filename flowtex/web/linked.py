@@ -98,6 +98,7 @@ def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
         "url": link.address,
         **{name: stored.about[name] for name in ("format", "fingerprint", "parameter", "lines")},
         "depth": stored.depth,
+        "derivesSpeed": "speed" not in stored.about["scalars"],
         "steps": [scene.source(step) for step in range(scene.steps)],
     }
 
@@ -123,10 +124,10 @@ def _stored(view: WebView) -> StoredPyramid:
         )
         raise FieldError(msg)
     pyramid = pyramid or shared_pyramid(scene.field, scene.settings.parameter, scene.lines)
-    if not isinstance(pyramid, StoredPyramid):
+    if not isinstance(pyramid, StoredPyramid) or "fingerprint" not in pyramid.about:
         msg = (
-            "store is given, and the flow is not read from one; build it with "
-            "flowtex.pyramid.build, and export the store"
+            "store is given, and the flow is not read from one of flowtex; build it with "
+            "flowtex.pyramid.build, and export the store, or leave store out"
         )
         raise FieldError(msg)
     own = pyramid.about

@@ -1828,7 +1828,10 @@ rmal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){let{siz
 shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){let kind=sizes[name.split("/")[0]];if(!(kind?
 data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof Float32Array&&own.length===3&&own[0]===
 blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]&&own[2]%2===1))throw new Error(`the part "${name}" of \
-a tile has another size than is told`)}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){
+a tile has another size than is told`)}}function speedOf(flow,{geometry,slices},typical){let[rows,columns]=geometry.shape,
+[channels,{drawn,nodes}={drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(rows*columns);for(let n=0;n<
+data.length;n+=1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=typical*fromHalf(Number(flow.
+data[channels*(at+1)-1]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest} speed`}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){
 let told=header.store;if(!told)throw new Error("the page does not tell where its store is");this.header=header,this.told=
 told,this.url=new URL(told.url,base),this.store=new Store(this.url.href)}open(){return this.opening?this.opening:(this.opening=
 this.compare().catch(error=>{let{fault,message}=storeError(error);if(fault==="other")throw error;fault==="unreachable"&&
@@ -1839,39 +1842,42 @@ its store at ${url} beside itself, which a browser does not read where the page 
 let text=`The store at ${url} holds another flow than this page, or one with other paths or of another version: export t\
 he page again.`;throw new StoreError("other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(
 COARSE,signal,async whole=>{let late=steps.filter(step=>!has(`slices/${step}`)&&!has(`flow/${step}`)),known=has("header")&&
-!late.length?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):{header:known,parts:[]},flows=late.
-map(step=>this.flow(key,step,whole)),rest=async()=>{let{header,parts:parts2}=await surface;if(this.headers.set(name,header),
-!header)return parts2;let[values,...slices]=await Promise.all([this.values(key,header,steps,has,whole),...flows]);if(checkParts(
-slices.flat(),header,this.header.mesh.tileCells),!slices.every(each=>each.length))throw new Error(`tile ${name} has no f\
-low`);return[...parts2,...slices.flat(),...values]},[parts]=await Promise.all([rest(),...flows]);return parts.map(part=>({
-...part,name:`tile/${name}/${part.name}`}))})}async root(step,signal,lacking){let{header}=this,key=[this.told.depth,0,0];
-return this.loaded(ABSENT_STEP,signal,async whole=>{let parts=[];lacking().some(name=>/^(flow|slices|extra)\//.test(name))&&
-(parts.push(...await this.flow(key,step,whole)),checkParts(parts,header,header.mesh.tileCells));let has=part=>!lacking().
-includes(part);return[...parts,...await this.values(key,header,[step],has,whole)]})}async loaded(what,signal,load){let controller=new AbortController,
-stop=()=>{},stopped=new Promise((_,reject)=>{stop=()=>reject(signal.reason),signal.addEventListener("abort",stop,{once:!0})});
-try{return await Promise.race([this.open().then(()=>load(controller.signal)),stopped])}catch(error){signal.throwIfAborted();
-let{fault,message}=storeError(error);throw fault==="other"?error:new StoreError(fault,`${what} ${REASONS[fault]}`,message)}finally{
-controller.abort(),signal.removeEventListener("abort",stop)}}async file(kind,key,at,signal){let array=await this.store.array(
-`${key[0]}/${kind}`),chunk=async n=>{let{data}=await array.getChunk([...at,n],{signal});if(!(data instanceof Uint8Array))
-throw new Error(`${array.path} has no bytes`);return data},first=await chunk(0),[infos,start]=infosOfFile(first),size=infos.
-reduce((sum,{bytes})=>sum+bytes,start);if(!isCount(size,MOST_BYTES))throw new Error(`a file of ${array.path} tells anoth\
-er size`);let file=new Uint8Array(Math.ceil(size/first.length)*first.length);file.set(first);for(let n=1;n*first.length<
-size;n+=1)file.set(await chunk(n),n*first.length);let parts=new Map;for(let part of partsOfFile(file.buffer)){let[tile,name]=tilePart(
-part.name)??["",part.name];if(tile&&tile!==nameOf(key))throw new Error(`in place of tile ${nameOf(key)} is ${tile}`);parts.
-set(name,{...part,name})}if(new TextDecoder().decode(parts.get("of")?.data)!==this.told.fingerprint)throw new Error(`til\
-e ${nameOf(key)} is that of another flow`);return parts.delete("of"),parts}async surface(key,signal){let parts=await this.
-file("surface",key,[key[1],key[2]],signal),header=this.tileHeader(parts.get("header"));if(parts.delete("header"),header){
-let missing=sizesOf(header).needed.filter(name=>!parts.has(name));if(missing.length)throw new Error(`a tile has no ${missing.
-join(", ")}`);checkParts([...parts.values()],header,this.header.mesh.tileCells)}let text=new TextEncoder().encode(JSON.stringify(
-header)),told={name:"header",data:text,shape:[text.length],digest:`${this.told.fingerprint} ${nameOf(key)} header`};return{
-header,parts:[told,...parts.values()]}}tileHeader(part){let own=JSON.parse(new TextDecoder().decode(part?.data));if(own===
-null)return null;let{steps,times:times2,timeUnit,dates,pace}=this.header.slices;return checkHeader(own,this.header),{...own,
-slices:{...own.slices,steps,times:times2,timeUnit,dates,pace}}}async flow(key,step,signal){let source=this.told.steps[step];
-return[...(await this.file("flow",key,[source,key[1],key[2]],signal)).values()].map(part=>{let[kind,own]=part.name.split(
-"/");if(Number(own)!==source)throw new Error(`in place of step ${source} is ${part.name}`);return{...part,name:`${kind}/${step}`}})}async values(key,place,steps,has,signal){
+!late.length?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):{header:known,parts:[]},coming=new Map(
+late.map(step=>[step,this.flow(key,step,whole)])),flows=[...coming.values()],rest=async()=>{let{header,parts:parts2}=await surface;
+if(this.headers.set(name,header),!header)return parts2;let[values,...slices]=await Promise.all([this.values(key,header,steps,
+has,whole,coming),...flows]);if(checkParts(slices.flat(),header,this.header.mesh.tileCells),!slices.every(each=>each.length))
+throw new Error(`tile ${name} has no flow`);return[...parts2,...slices.flat(),...values]},[parts]=await Promise.all([rest(),
+...flows]);return parts.map(part=>({...part,name:`tile/${name}/${part.name}`}))})}async root(step,signal,lacking){let{header}=this,
+key=[this.told.depth,0,0];return this.loaded(ABSENT_STEP,signal,async whole=>{let parts=[],coming=new Map;lacking().some(
+name=>/^(flow|slices|extra)\//.test(name))&&(coming.set(step,this.flow(key,step,whole)),parts.push(...await coming.get(step)??
+[]),checkParts(parts,header,header.mesh.tileCells));let has=part=>!lacking().includes(part);return[...parts,...await this.
+values(key,header,[step],has,whole,coming)]})}async loaded(what,signal,load){let controller=new AbortController,stop=()=>{},
+stopped=new Promise((_,reject)=>{stop=()=>reject(signal.reason),signal.addEventListener("abort",stop,{once:!0})});try{return await Promise.
+race([this.open().then(()=>load(controller.signal)),stopped])}catch(error){signal.throwIfAborted();let{fault,message}=storeError(
+error);throw fault==="other"?error:new StoreError(fault,`${what} ${REASONS[fault]}`,message)}finally{controller.abort(),
+signal.removeEventListener("abort",stop)}}async file(kind,key,at,signal){let array=await this.store.array(`${key[0]}/${kind}`),
+chunk=async n=>{let{data}=await array.getChunk([...at,n],{signal});if(!(data instanceof Uint8Array))throw new Error(`${array.
+path} has no bytes`);return data},first=await chunk(0),[infos,start]=infosOfFile(first),size=infos.reduce((sum,{bytes})=>sum+
+bytes,start);if(!isCount(size,MOST_BYTES))throw new Error(`a file of ${array.path} tells another size`);let file=new Uint8Array(
+Math.ceil(size/first.length)*first.length);file.set(first);for(let n=1;n*first.length<size;n+=1)file.set(await chunk(n),
+n*first.length);let parts=new Map;for(let part of partsOfFile(file.buffer)){let[tile,name]=tilePart(part.name)??["",part.
+name];if(tile&&tile!==nameOf(key))throw new Error(`in place of tile ${nameOf(key)} is ${tile}`);parts.set(name,{...part,
+name})}if(new TextDecoder().decode(parts.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${nameOf(key)} i\
+s that of another flow`);return parts.delete("of"),parts}async surface(key,signal){let parts=await this.file("surface",key,
+[key[1],key[2]],signal),header=this.tileHeader(parts.get("header"));if(parts.delete("header"),header){let missing=sizesOf(
+header).needed.filter(name=>!parts.has(name));if(missing.length)throw new Error(`a tile has no ${missing.join(", ")}`);checkParts(
+[...parts.values()],header,this.header.mesh.tileCells)}let text=new TextEncoder().encode(JSON.stringify(header)),told={name:"\
+header",data:text,shape:[text.length],digest:`${this.told.fingerprint} ${nameOf(key)} header`};return{header,parts:[told,
+...parts.values()]}}tileHeader(part){let own=JSON.parse(new TextDecoder().decode(part?.data));if(own===null)return null;
+let{steps,times:times2,timeUnit,dates,pace}=this.header.slices;return checkHeader(own,this.header),{...own,slices:{...own.
+slices,steps,times:times2,timeUnit,dates,pace}}}async flow(key,step,signal){let source=this.told.steps[step];return[...(await this.
+file("flow",key,[source,key[1],key[2]],signal)).values()].map(part=>{let[kind,own]=part.name.split("/");if(Number(own)!==
+source)throw new Error(`in place of step ${source} is ${part.name}`);return{...part,name:`${kind}/${step}`}})}async values(key,place,steps,has,signal,coming){
 let parts=new Map;for(;;){let{name,steps:count2,number}=this.header.scalars,names=(count2>1?steps:[0]).map(step=>number?
 `scalars/${step}/${number}`:`scalars/${step}`),lacking=name===null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.
-length)return[...parts.values()];let found=await Promise.all(lacking.map(async each=>{let source=count2>1?this.told.steps[stepOf(
-each)]:0,part=(await this.file("values",key,[source,key[1],key[2],number],signal)).get(`scalars/${source}/${number}`);if(!part)
-throw new Error(`tile ${nameOf(key)} has no values of step ${source}`);return{...part,name:each}}));checkParts(found,place,
-this.header.mesh.tileCells);for(let part of found)parts.set(part.name,part)}}};openPage(header=>new Stream(header,location.href));
+length)return[...parts.values()];let found=await Promise.all(lacking.map(async each=>{let step=count2>1?stepOf(each):0;if(!number&&
+this.told.derivesSpeed&&place.slices.trace){let[flow]=await(coming.get(step)??this.flow(key,step,signal));return{...speedOf(
+flow,place,this.header.speed.typical),name:each}}let source=count2>1?this.told.steps[step]:0,part=(await this.file("valu\
+es",key,[source,key[1],key[2],number],signal)).get(`scalars/${source}/${number}`);if(!part)throw new Error(`tile ${nameOf(
+key)} has no values of step ${source}`);return{...part,name:each}}));checkParts(found,place,this.header.mesh.tileCells);
+for(let part of found)parts.set(part.name,part)}}};openPage(header=>new Stream(header,location.href));

@@ -142,6 +142,7 @@ def test_a_page_has_the_root_and_one_moment(store: Path) -> None:
         "parameter": "arclength",
         "lines": "streamlines",
         "depth": 1,
+        "derivesSpeed": True,
         "steps": [0, 1, 2],
     }
     assert own.name == read.header["name"]
@@ -186,7 +187,7 @@ def test_what_the_store_has_not_is_refused(
 
 
 def test_a_flow_that_is_in_no_store_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(FieldError, match="not read from one; build it with"):
+    with pytest.raises(FieldError, match="not read from one of flowtex; build it with"):
         export(flow(), tmp_path / "page.html", store=BUCKET)
 
 

@@ -29,7 +29,8 @@ from flowtex.field.io.surfaces.beside import SUFFIXES as WITHOUT_VECTORS
 from flowtex.field.remote import open_remote, prepare_readers
 from flowtex.field.source import FlowSource, Source
 from flowtex.options import FieldOptions
-from flowtex.pyramid import is_store, open_store
+from flowtex.pyramid import open_store
+from flowtex.pyramid.others import has_parts
 from flowtex.scene import drawn_store
 from flowtex.settings import Settings
 from flowtex.tiles import Pyramid
@@ -398,7 +399,7 @@ class _Files:
 
     @property
     def _is_store(self) -> bool:
-        return len(self.paths) == 1 and is_store(self.paths[0])
+        return len(self.paths) == 1 and has_parts(self.paths[0])
 
 
 def _identity(opener: Opener) -> Identity:

@@ -3,7 +3,7 @@
 ::
 
     GET  /<token>/                     the page
-    GET  /<token>/store/<run>/<name>   an object of the store, or a part of it
+    GET  /<token>/store/<run>/<name>   an object of the store
 
 All addresses in the page are relative, so that it works behind any proxy. Names are those of a
 pyramid's arrays and numbers of their chunks, and nothing else is looked for. Objects of another
@@ -12,24 +12,21 @@ run, which a browser may still have, lie elsewhere.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Container
 
 from aiohttp import web
 
 from flowtex.app.server.connections import LimitedServer
 from flowtex.app.server.security import LOCAL, guard, is_same
+from flowtex.app.server.served_store import ServedStore
 from flowtex.app.server.site import serve_until_ended
 from flowtex.pyramid.places import DOCUMENT
-from flowtex.pyramid.served import Piece, ServedStore
 
 __all__ = ["run_store", "store_application"]
 
 #: Seconds for which a browser may keep an object.
 KEPT_S = 3600
 WRONG = "This page opens with the whole address that flowtex printed."
-#: A byte that no object has.
-BEYOND = 10**18
 
 
 def store_application(
@@ -51,17 +48,11 @@ def store_application(
     async def store_handler(request: web.Request) -> web.Response:
         check(request)
         name = request.match_info["name"]
-        asked = _asked(request.headers.get("Range", ""))
         try:
-            if request.method == "HEAD":
-                return await _head(served, name)
-            piece = await served.get(name, asked)
-        except IndexError as error:
-            headers = {"Content-Range": f"bytes */{error.args[0]}"}
-            return web.Response(status=416, headers=headers)
+            body = await served.get(name)
         except LookupError:
             raise web.HTTPNotFound(text="There is no such object.") from None
-        return _answer(name, piece, part=asked != slice(None))
+        return web.Response(body=body, headers=_headers(name))
 
     async def closed(request: web.Request) -> web.Response:
         del request
@@ -80,38 +71,9 @@ def store_application(
     return application
 
 
-def _asked(text: str) -> slice:
-    """Return the part that a header asks for; what is not understood is for the whole."""
-    found = re.fullmatch(r"bytes=(\d{0,18})-(\d{0,18})", text.strip())
-    first, last = found.groups() if found else ("", "")
-    if first:
-        backward = last and int(last) < int(first)
-        return slice(None) if backward else slice(int(first), int(last) + 1 if last else None)
-    if last:
-        return slice(-int(last) or BEYOND, None)  # of no bytes there is no part
-    return slice(None)
-
-
-async def _head(served: ServedStore, name: str) -> web.Response:
-    try:
-        size = (await served.get(name, slice(0, 1))).size
-    except IndexError as error:
-        size = error.args[0]
-    return web.Response(headers={**_headers(name), "Content-Length": str(size)})
-
-
-def _answer(name: str, piece: Piece, *, part: bool) -> web.Response:
-    headers = _headers(name)
-    if part:
-        last = piece.first + len(piece.body) - 1
-        headers["Content-Range"] = f"bytes {piece.first}-{last}/{piece.size}"
-    return web.Response(body=piece.body, status=206 if part else 200, headers=headers)
-
-
 def _headers(name: str) -> dict[str, str]:
     metadata = name.endswith(DOCUMENT)
     return {
-        "Accept-Ranges": "bytes",
         "Content-Type": "application/json" if metadata else "application/octet-stream",
         "Cache-Control": "no-store" if metadata else f"private, max-age={KEPT_S}",
     }

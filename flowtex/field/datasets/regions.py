@@ -160,20 +160,21 @@ class Regions:
                 first = self.lines.vectors(u_first, v_first, rows, columns)
             valid = np.asarray(np.isfinite(first).all(axis=-1))
         velocity[~valid] = 0.0
-        scalars = {k: self._read(s, number, rows, columns) for k, s in self.scalars.items()}
+        scalars = {k: self.read(s, number, rows, columns) for k, s in self.scalars.items()}
         if len(self.names) > len(scalars):
             scalars["speed"] = np.hypot(u, v)
         points = self.lines.points(rows, columns)
         return RegionNodes(points, valid, np.nan_to_num(velocity), scalars)
 
     def _components(self, number: int, rows: Any, columns: Any) -> list[Floats]:
-        parts = [self._read(one, number, rows, columns) * self.factor for one in self.components]
+        parts = [self.read(one, number, rows, columns) * self.factor for one in self.components]
         if self.mask is None:
             return parts
-        wet = self._read(self.mask, number, rows, columns) > 0
+        wet = self.read(self.mask, number, rows, columns) > 0
         return [np.where(wet, part, np.nan) for part in parts]
 
-    def _read(self, variable: xr.Variable, number: int, rows: Any, columns: Any) -> Floats:
+    def read(self, variable: xr.Variable, number: int, rows: Any, columns: Any) -> Floats:
+        """Return some rows and columns of a variable, at a number in it."""
         step = variable[number] if variable.ndim > 2 else variable
         below = []
         for first in even_runs(self.lines.rows[rows]):

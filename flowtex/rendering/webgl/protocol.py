@@ -41,7 +41,7 @@ FORMAT = 4
 #: Of gzip, for the parts of a page.
 COMPRESSION_LEVEL = 6
 #: How often numbers of a part of a page are taken from each other, and how many tell what is best.
-MOST_DIFFERENCES, SAMPLE = 2, 100_000
+MOST_DIFFERENCES, SAMPLE = 2, 20_000
 #: Bits of whole numbers that single precision holds, and exponents of their unit.
 WHOLE_BITS, MOST_SCALE = 24, 100
 

@@ -1,0 +1,303 @@
+"""Levels that others wrote: a multiscale group of xarray datasets, or one dataset in chunks.
+
+A level of a pyramid here has every 2^l-th line of the finest one. Others average blocks of nodes,
+so theirs lie between those lines: values are interpolated from the level of theirs with about as
+many nodes. Where there is none as coarse, lines of a finer one are picked.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import warnings
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex._util.extras import import_extra
+from flowtex._util.notices import Notice, notify
+from flowtex.field import FlowField
+from flowtex.field.datasets.pairs import find_pairs
+from flowtex.field.datasets.regions import Regions
+from flowtex.field.steps import LazySteps
+from flowtex.pyramid.places import (
+    PyramidError,
+    ReadFault,
+    fault_words,
+    is_remote,
+    is_store,
+    place_text,
+    store_at,
+)
+from flowtex.pyramid.source import Opened, RegionSource
+from flowtex.tiles.pyramid import ROOT_NODES, Nodes, level_lines, root_level
+
+__all__ = ["OtherLevels", "has_parts", "levels_of_others"]
+
+#: Nodes up to which a dataset is opened as a whole.
+WHOLE_NODES = 2_000_000
+#: Metadata of groups and arrays, of Zarr's formats 3 and 2.
+GROUPS, ARRAYS = ("zarr.json", ".zattrs"), ("*/zarr.json", "*/.zarray")
+#: Nodes of a level may be so many times as far apart as those that are drawn.
+WIDER = 1.5
+#: Bytes of a chunk, and nodes of the coarsest level, from which on somebody waits for them.
+SLOW_BYTES, SLOW_NODES = 8_000_000, 16 * ROOT_NODES
+#: Bytes of the steps of a tile that are kept.
+KEPT_BYTES = 64_000_000
+
+
+def has_parts(place: Any) -> bool:
+    """Whether there is a store of which parts are drawn, ours or that of others; any URL is one."""
+    if not isinstance(place, (str, Path)) or is_store(place):
+        return isinstance(place, (str, Path))
+    if is_remote(place):
+        return True
+    folder = Path(place_text(place))
+    told = [_json(folder / name) for name in GROUPS]
+    if any("multiscales" in one.get("attributes", one) for one in told):
+        return True
+    shapes = (_json(file).get("shape", []) for name in ARRAYS for file in folder.glob(name))
+    return any(len(shape) > 1 and math.prod(shape[-2:]) > WHOLE_NODES for shape in shapes)
+
+
+def _json(path: Path) -> dict[str, Any]:
+    try:
+        told = json.loads(path.read_bytes())
+    except (OSError, ValueError):
+        return {}
+    return told if isinstance(told, dict) else {}
+
+
+def levels_of_others(place: str, options: Mapping[str, Any]) -> OtherLevels | FlowField:
+    """Open a store that others wrote; one that is small, or on curved lines, is a whole field.
+
+    Options are those of :meth:`FlowField.from_xarray`.
+    """
+    datasets = _datasets(place)
+    named = {"name": Path(place).stem, **options}
+    finest: Any = Opened.from_xarray(datasets[0], **named)
+    if isinstance(finest, FlowField):
+        return finest
+    if math.prod(finest.shape) <= WHOLE_NODES:
+        return FlowField.from_xarray(datasets[0], **named)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", Notice)  # what the finest one has told
+        others: list[Any] = [Opened.from_xarray(one, **named) for one in datasets[1:]]
+    return OtherLevels(place, [finest, *others])
+
+
+def _datasets(place: str) -> list[Any]:
+    """Return the datasets of a place that have a velocity, the finest first."""
+    from flowtex.pyramid.objects import Objects
+
+    xarray = import_extra("xarray", "xarray")
+    zarr = import_extra("zarr", "store")
+    try:
+        store = Objects(store_at(place), sparse=True)
+        attributes = zarr.open_group(store, mode="r").attrs
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # of metadata that lie apart
+            groups = xarray.open_groups(store, engine="zarr", decode_timedelta=False)
+    except (PyramidError, ModuleNotFoundError):
+        raise
+    except Exception as error:
+        words = str(error) if isinstance(error, ReadFault) else fault_words(error)
+        msg = (
+            f"{place} holds no pyramid that can be read ({words}); make one with "
+            "flowtex.pyramid.build, or name a Zarr group of xarray's, with consolidated metadata "
+            "on the web, as by zarr.consolidate_metadata"
+        )
+        raise PyramidError(msg) from None
+    names = [name.strip("/") for name in _level_names(attributes.get("multiscales"))]
+    known = {name.strip("/"): dataset for name, dataset in groups.items()}
+    chosen = [known[name] for name in names if name in known] or list(known.values())
+    found = [one for one in chosen if find_pairs([one])]
+    if not found:
+        msg = (
+            f"{place} holds no pyramid, and no velocity; expected two variables such as u and v in "
+            "each level"
+        )
+        raise PyramidError(msg)
+    return sorted(found, key=lambda one: -max(array.size for array in one.values()))
+
+
+def _level_names(told: Any) -> list[str]:
+    """Return the paths of levels, as ndpyramid and the convention of zarr-conventions tell them."""
+    if isinstance(told, list):  # of the former there is one in a list
+        told = told[0] if told else {}
+    if not isinstance(told, dict):
+        return []
+    levels = [*told.get("layout", []), *told.get("datasets", [])]
+    return [str(one.get("asset", one.get("path"))) for one in levels if isinstance(one, dict)]
+
+
+class OtherLevels:
+    """The levels of a store of others, read as :class:`~flowtex.pyramid.levels.Levels` are.
+
+    Parameters
+    ----------
+    place
+        The store.
+    sources
+        Its levels, the finest first.
+    """
+
+    def __init__(self, place: str, sources: list[RegionSource]) -> None:
+        self.place = place
+        self._regions = [source.regions for source in sources]
+        finest = sources[0]
+        self.template, nodes = finest.field, finest.shape
+        self.about: dict[str, Any] = {
+            "nodes": list(nodes),
+            "depth": root_level(nodes),
+            "periods": finest.periods,
+            "parameter": "arclength",
+            "lines": "streamlines",
+        }
+        for words in self._slow():
+            notify(words)
+
+    def _slow(self) -> list[str]:
+        """Return what takes long in a store, with what helps."""
+        build = "flowtex.pyramid.build makes a store without this"
+        component, shape = self._regions[0].components[0], self._regions[-1].lines.shape
+        chunks = component.encoding.get("chunks") or component.shape
+        nbytes = math.prod(chunks) * component.dtype.itemsize
+        words = []
+        if nbytes > SLOW_BYTES:
+            size = " × ".join(map(str, chunks))
+            words.append(
+                f"chunks of {size} numbers ({nbytes / 1e6:.0f} MB) are read whole for each tile, "
+                f"which is slow; chunks of one time step and 256 to 512 nodes a side suit; {build}"
+            )
+        if math.prod(shape) > SLOW_NODES:
+            words.append(
+                f"the coarsest level has {shape[1]:,} × {shape[0]:,} nodes, which are read for the "
+                f"first picture and that of each time step, so it is slow; {build}"
+            )
+        return words
+
+    def positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
+        """Return where nodes are, (J, I, 3), and which of them are valid, (J, I)."""
+        fine, (u, _) = self._lines(level, rows, columns), self._components(0, level, rows, columns)
+        return self._regions[0].lines.points(*fine), np.isfinite(u)
+
+    def nodes(self, level: int, rows: Indices, columns: Indices) -> Nodes:
+        """Return what some lines of a level have."""
+        points, valid = self.positions(level, rows, columns)
+        finest, count = self._regions[0], len(self.template.times)
+        fine = self._lines(level, rows, columns)
+
+        def velocity(step: int) -> Floats:
+            u, v = self._components(step, level, rows, columns)
+            return np.nan_to_num(finest.lines.vectors(u, v, *fine))
+
+        def scalar(name: str, step: int) -> Floats:
+            if name not in finest.scalars:
+                return np.hypot(*self._components(step, level, rows, columns))
+            regions = self._regions[self._nearest(level)]
+            return self._values(regions, [regions.scalars[name]], step, fine)[0]
+
+        return Nodes(
+            points,
+            valid,
+            _steps(count, velocity),
+            None,
+            {name: _steps(count, partial(scalar, name)) for name in finest.names},
+        )
+
+    def _lines(self, level: int, rows: Indices, columns: Indices) -> tuple[Indices, Indices]:
+        """Return the numbers of lines of a level in the finest one."""
+        first, second = (
+            level_lines(n, level)[some]
+            for n, some in zip(self.about["nodes"], (rows, columns), strict=True)
+        )
+        return first, second
+
+    def _nearest(self, level: int) -> int:
+        """Return the coarsest level of theirs that has nodes enough for a level."""
+        finest = math.prod(self._regions[0].lines.shape)
+        wide = [math.sqrt(finest / math.prod(one.lines.shape)) for one in self._regions]
+        return max(n for n, one in enumerate(wide) if one <= WIDER * 2**level)
+
+    def _components(
+        self, step: int, level: int, rows: Indices, columns: Indices
+    ) -> tuple[Floats, Floats]:
+        """Return the components of the velocity, (J, I) each, NaN where there are no data."""
+        regions, fine = self._regions[self._nearest(level)], self._lines(level, rows, columns)
+        variables = [*regions.components, *([] if regions.mask is None else [regions.mask])]
+        u, v, *mask = self._values(regions, variables, step, fine)
+        wet = np.isfinite(u) & np.isfinite(v)
+        if mask:
+            wet &= mask[0] > 0
+        return tuple(np.where(wet, one * regions.factor, np.nan) for one in (u, v))  # type: ignore[return-value]
+
+    def _values(
+        self, regions: Regions, variables: list[Any], step: int, fine: tuple[Indices, Indices]
+    ) -> list[Floats]:
+        """Interpolate variables of a level of theirs at lines of the finest one."""
+        lines, own = self._regions[0].lines, regions.lines
+        turn = 360.0 if lines.projection is not None else None
+        (below, down), (beside, across) = (
+            _between(lines.b[fine[0]], own.b, None),
+            _between(lines.a[fine[1]], own.a, turn),
+        )
+        rows, columns = np.unique(below), np.unique(beside)
+        at = np.searchsorted(rows, below), np.searchsorted(columns, beside)
+        number, result = regions.numbers[step], []
+        for variable in variables:
+            try:
+                values = regions.read(variable, number, rows, columns)
+            except Exception as error:
+                words = str(error) if isinstance(error, ReadFault) else fault_words(error)
+                msg = f"{self.place} cannot be read: {words}"
+                raise PyramidError(msg) from None
+            result.append(_interpolated(values, at, (down, across)))
+        return result
+
+
+def _steps(count: int, read: Callable[[int], AnyArray]) -> Any:
+    """Return steps, of which those of a series are read late."""
+    return read(0)[None] if count == 1 else LazySteps(count, read, kept=KEPT_BYTES)
+
+
+def _between(wanted: Floats, line: Floats, turn: float | None) -> tuple[Indices, Floats]:
+    """Return the numbers in a line of the two nodes around each place, (2, N).
+
+    The share of the second one comes with them. Where places lie farther apart than nodes, the
+    nearest one stands for both: what is read then is evenly spaced.
+    """
+    if turn is not None:
+        line = np.unwrap(line, period=turn)
+        middle = (line[0] + line[-1]) / 2
+        wanted = middle + (wanted - middle + turn / 2) % turn - turn / 2
+    numbers = np.arange(len(line), dtype=float)
+    way = 1 if line[-1] > line[0] else -1
+    at = np.interp(wanted, line[::way], numbers[::way])
+    if len(at) > 1 and np.median(np.abs(np.diff(at))) > WIDER:
+        near = np.rint(at).astype(np.intp)
+        return np.stack([near, near]), np.zeros(len(at))
+    first = np.minimum(at.astype(np.intp), len(line) - 2)
+    share = at - first
+    return np.stack([first, first + 1]), share
+
+
+def _interpolated(
+    values: Floats, at: tuple[Indices, Indices], shares: tuple[Floats, Floats]
+) -> Floats:
+    """Interpolate (J, I) between lines; NaN has no weight, and is where half of it is missing."""
+    known = np.isfinite(values)
+    total, weight = (np.zeros((at[0].shape[1], at[1].shape[1])) for _ in range(2))
+    for a in (0, 1):
+        for b in (0, 1):
+            own = (shares[0] if a else 1 - shares[0])[:, None] * (shares[1] if b else 1 - shares[1])
+            nodes = np.ix_(at[0][a], at[1][b])
+            own = own * known[nodes]
+            total += own * np.where(known[nodes], values[nodes], 0.0)
+            weight += own
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(weight > 0.5 - 1e-9, total / weight, np.nan)

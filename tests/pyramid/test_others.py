@@ -1,0 +1,148 @@
+"""Levels that others wrote are drawn as those of the whole field, in a folder and on the web."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from range_server import range_server
+
+import flowtex
+from flowtex import FlowField
+from flowtex._util.notices import Notice
+from flowtex.cli import main
+from flowtex.errors import FieldError
+from flowtex.pyramid import is_store, open_store
+from flowtex.pyramid.others import has_parts
+from flowtex.tiles import TileKey, shared_pyramid
+
+zarr = pytest.importorskip("zarr")
+xr = pytest.importorskip("xarray")
+
+ROWS, COLUMNS = 64, 96
+#: As ndpyramid tells its levels, and as the convention of zarr-conventions does.
+TOLD: dict[str, Any] = {
+    "ndpyramid": [{"datasets": [{"path": str(n)} for n in range(3)]}],
+    "convention": {"layout": [{"asset": str(n)} for n in range(3)]},
+}
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _small(small_tiles: None) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 500)
+        patch.setattr("flowtex.pyramid.others.WHOLE_NODES", 1000)
+        yield
+
+
+def dataset(*, earth: bool = False) -> Any:
+    """Return a flow that is linear in x and y, so that means of cells are its values there."""
+    x, y = (np.arange(n) / 20 + 0.1 for n in (COLUMNS, ROWS))
+    names = ("lat", "lon") if earth else ("y", "x")
+    units = ("degrees_north", "degrees_east") if earth else ("m", "m")
+    u = 1 + 0.2 * x + 0 * y[:, None]
+    v = 0.3 * y[:, None] - 0.1 * x
+    return xr.Dataset(
+        {
+            k: (names, one.astype(np.float32), {"units": "m/s"})
+            for k, one in zip("uv", (u, v), strict=True)
+        },
+        {n: (n, line, {"units": unit}) for n, line, unit in zip(names, (y, x), units, strict=True)},
+    )
+
+
+def write(place: Path, told: Any, *, reverse: bool = False, **options: Any) -> None:
+    """Write three levels; those of ndpyramid begin with the coarsest one."""
+    finest, factors = dataset(**options), [1, 2, 4]
+    for n, factor in enumerate(reversed(factors) if reverse else factors):
+        one = finest.coarsen(dict.fromkeys(finest.dims, factor)).mean()
+        chunks = {name: {"chunks": (16, 16)} for name in "uv"}
+        one.to_zarr(place, group=str(n), encoding=chunks, consolidated=False, zarr_format=3)
+    zarr.open_group(place, mode="r+").attrs["multiscales"] = told
+    with pytest.warns(UserWarning, match="Consolidated metadata"):
+        zarr.consolidate_metadata(place)
+
+
+@pytest.fixture(scope="module", params=list(TOLD))
+def store(request: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("others") / "flow.zarr"
+    write(place, TOLD[request.param], reverse=request.param == "ndpyramid")
+    return place
+
+
+def test_levels_lie_where_those_of_the_field_lie(store: Path) -> None:
+    assert has_parts(store) and not is_store(store)
+    field, whole = open_store(store), FlowField.from_xarray(dataset())
+    stored, own = (shared_pyramid(one, "arclength", "streamlines") for one in (field, whole))
+    assert stored.nodes == own.nodes and stored.depth == own.depth == 2
+    for level in range(3):
+        some, others = stored.at_level(level), own.at_level(level)
+        assert np.allclose(some.points, others.points)
+        inside = (slice(1, -1), slice(1, -1))  # at borders a mean of cells lies further in
+        exact = whole.velocity[0][np.ix_(*own.line_numbers(level))]
+        assert np.allclose(np.asarray(some.velocity[0])[inside], exact[inside], atol=1e-6)
+    tile = stored.textures(TileKey(0, 0, 1))
+    assert tile is not None and tile.geometry.field.valid.all()
+
+
+def test_missing_values_are_left_out_at_all_levels(tmp_path: Path) -> None:
+    write(tmp_path / "a.zarr", TOLD["convention"])
+    for level in range(3):
+        part = (slice(32 >> level, 48 >> level), slice(0, 32 >> level))
+        zarr.open_group(tmp_path / "a.zarr", mode="r+")[f"{level}/u"][part] = np.nan
+    stored = shared_pyramid(open_store(tmp_path / "a.zarr"), "arclength", "streamlines")
+    for level in range(3):
+        rows, columns = stored.line_numbers(level)
+        valid = stored.at_level(level).valid
+        hole = ((rows >= 32) & (rows < 48))[:, None] & (columns < 32)
+        near = ((rows >= 28) & (rows < 52))[:, None] & (columns < 36)
+        assert not valid[hole].all() and valid[~near].all()
+        assert (valid != ~hole).mean() < 0.12
+
+
+def test_pictures_pages_and_the_shell(
+    opengl: Any, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    view: dict[str, Any] = {"size": (200, 120), "samples": 9, "zoom": 6}
+    with range_server(store.parent) as server:
+        url = server.address + store.name
+        pictures = [flowtex.render(one, **view) for one in (dataset(), store, url)]
+        page = flowtex.export(url, tmp_path / "a.html")
+        assert main(["render", url, "-o", str(tmp_path / "a.png"), "--size", "100x80"]) == 0
+        assert main(["info", url]) == 0
+    assert np.array_equal(pictures[1], pictures[2])
+    away = pictures[0].astype(float) - pictures[1]
+    assert np.sqrt(np.mean(away**2)) < 3 and pictures[1].std() > 10
+    assert 'data-part="{&quot;name&quot;: &quot;tile/0/' in page.path.read_text()
+    assert f"{COLUMNS} × {ROWS} nodes" in capsys.readouterr().out
+    with pytest.raises(FieldError, match="not read from one of flowtex"):
+        flowtex.export(store, tmp_path / "b.html", store="./flow.zarr")
+
+
+def test_a_map_and_one_level_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.pyramid.others.SLOW_BYTES", 1000)
+    monkeypatch.setattr("flowtex.pyramid.others.SLOW_NODES", 1000)
+    dataset(earth=True).to_zarr(tmp_path / "a.zarr", consolidated=False, zarr_format=3)
+    assert has_parts(tmp_path / "a.zarr")
+    with pytest.warns(Notice) as told:
+        field = open_store(tmp_path / "a.zarr", globe=True)
+    words = " ".join(str(one.message) for one in told)
+    assert "chunks of 64 × 96 numbers" in words and "coarsest level has 96 × 64 nodes" in words
+    assert field.projection is not None and field.projection.is_globe
+    whole = FlowField.from_xarray(dataset(earth=True), globe=True)
+    stored = shared_pyramid(field, "arclength", "streamlines")
+    at = np.ix_(*stored.line_numbers(2))
+    assert np.allclose(field.points, whole.points[at])
+    assert np.allclose(field.velocity[0], whole.velocity[0][at], atol=1e-6)
+
+
+def test_what_is_no_velocity_is_told(tmp_path: Path) -> None:
+    with pytest.raises(FieldError, match=r"holds no pyramid .*consolidate_metadata"):
+        open_store(tmp_path / "nothing.zarr")
+    data = dataset().rename(u="salt", v="heat")
+    data.to_zarr(tmp_path / "a.zarr", consolidated=False, zarr_format=3)
+    with pytest.raises(FieldError, match="no velocity; expected two variables such as u and v"):
+        open_store(tmp_path / "a.zarr")
