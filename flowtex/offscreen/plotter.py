@@ -12,7 +12,7 @@ import numpy as np
 from flowtex._util.arguments import checked_size
 from flowtex._util.array_types import Bytes
 from flowtex.camera import CAMERA_LIMITS, Camera, CameraError
-from flowtex.diagnostics import require_opengl
+from flowtex.diagnostics import begin_trial, require_opengl
 from flowtex.errors import FieldError
 from flowtex.offscreen.annotations import annotate, difference_text
 from flowtex.options import FieldOptions, Options, ViewOptions
@@ -56,10 +56,12 @@ class OffscreenPlotter:
         annotations: bool = False,
         scalar_bar_args: Mapping[str, Any] | None = None,
     ) -> None:
-        require_opengl()
+        begin_trial()
         _check_size(size, supersampling)
         # Whoever draws the same numbers once more finds what was traced of them.
         field = share_field(options.field.field(mesh))
+        # Asked for as late as this, the trial has run beside the reading of the field.
+        require_opengl()
         options = replace(options, field=FieldOptions())
         appearance = options.appearance
         self._legend = appearance.has_bar
