@@ -96,7 +96,7 @@ class Projection:
     def __post_init__(self) -> None:
         """Check the name."""
         if not self.is_globe:
-            _ = self._transform
+            _ = self._transforms
 
     @property
     def is_globe(self) -> bool:
@@ -108,13 +108,14 @@ class Projection:
         return self.center[0] if self.name in NAMES else 0.0
 
     @cached_property
-    def _transform(self) -> Any:
+    def _transforms(self) -> tuple[Any, Any]:
+        """Transforms that turn longitudes around, and that go on beyond the edge of a map."""
         pyproj = import_extra("pyproj", "xarray")
         text = self.name
         if text in NAMES:
-            # Longitudes are counted from the middle: PROJ would turn some of them around.
+            # Longitudes are counted from the middle, where half a turn is the edge of the map.
             lat, half = self.center[1], self.half_height
-            text = f"{NAMES[text]} +lon_0=0 +R={EARTH_RADIUS:.12g} +units=m +over"
+            text = f"{NAMES[text]} +lon_0=0 +R={EARTH_RADIUS:.12g} +units=m"
             if self.name == "platecarree":
                 text += f" +lat_ts={lat:.12g}"
             elif self.name == "lambert":
@@ -131,7 +132,13 @@ class Projection:
                     f"{', '.join((GLOBE, *NAMES))}, or another that PROJ knows"
                 )
                 raise ProjectionError(msg)
-            return pyproj.Transformer.from_crs(crs.geodetic_crs, crs, always_xy=True)
+            both = (
+                pyproj.Transformer.from_crs(
+                    crs.geodetic_crs, crs, always_xy=True, force_over=over and text != self.name
+                )
+                for over in (False, True)
+            )
+            return tuple(both)
         except pyproj.exceptions.ProjError as error:
             msg = (
                 f"the projection {self.name!r} is not known; expected one of "
@@ -140,17 +147,19 @@ class Projection:
             )
             raise ProjectionError(msg) from error
 
-    def positions(self, lon: Floats, lat: Floats) -> Floats:
+    def positions(self, lon: Floats, lat: Floats, *, beyond: bool = False) -> Floats:
         """Return positions in metres, (..., 3), of longitudes and latitudes in degrees.
 
-        They are NaN where the projection has none.
+        They are NaN where the projection has none. ``beyond`` says whether longitudes beyond the
+        edge of a map that has a name lie beyond it, or come back on its other side.
         """
         if self.is_globe:
             a, b = np.radians(lon), np.radians(lat)
             parts = (np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b))
             return np.asarray(EARTH_RADIUS * np.stack(np.broadcast_arrays(*parts), axis=-1))
         lon, lat = np.broadcast_arrays(lon, lat)
-        x, y = self._transform.transform(lon - self._origin, lat, errcheck=False)
+        transform = self._transforms[beyond]
+        x, y = transform.transform(lon - self._origin, lat, errcheck=False)
         points = np.stack([x, y, np.zeros(np.shape(x))], axis=-1)
         points[~np.isfinite(points).all(axis=-1)] = np.nan
         return points
@@ -201,7 +210,7 @@ class Projection:
         x, y, z = np.moveaxis(np.asarray(positions, dtype=float), -1, 0)
         if self.is_globe:
             return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
-        lon, lat = self._transform.transform(x, y, direction="INVERSE", errcheck=False)
+        lon, lat = self._transforms[0].transform(x, y, direction="INVERSE", errcheck=False)
         known = np.isfinite(lon) & np.isfinite(lat)
         lon, lat = np.where(known, lon, np.nan), np.where(known, lat, np.nan)
         return (lon + self._origin + 180.0) % 360.0 - 180.0, lat

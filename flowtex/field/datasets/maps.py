@@ -163,7 +163,8 @@ def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
 
 def shown_positions(projection: Projection, lon: Floats, lat: Floats) -> Floats:
     """Return positions (..., 3) on a flat map, NaN where it has ended."""
-    points = projection.positions(lon, lat)
+    # The last column of the whole Earth is the first one, a turn further.
+    points = projection.positions(lon, lat, beyond=True)
     least, most = LATITUDES.get(projection.name, (-90.0, 90.0))
     with np.errstate(invalid="ignore"):
         points[(lat < least) | (lat > most)] = np.nan

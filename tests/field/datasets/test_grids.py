@@ -74,9 +74,23 @@ def test_a_mask_and_places_without_a_position_are_land() -> None:
     assert not field.valid[15:].any()
 
 
-def test_the_same_winds_are_the_same_picture_across_the_date_line(opengl: Any) -> None:
+@pytest.mark.parametrize("projection", ["platecarree", "mercator", "robinson", "equalearth"])
+@pytest.mark.parametrize("first", [-180.0, -178.0, 0.0, 2.0])
+def test_the_last_column_of_the_earth_is_a_turn_beyond_the_first(
+    projection: str, first: float
+) -> None:
+    lon = np.arange(first, first + 360.0, 4.0)
+    field = FlowField.from_xarray(winds(lon, np.arange(-80.0, 80.1, 4.0)), projection=projection)
+    x = field.points[20, :, 0]  # on the equator
+    assert (np.diff(x) > 0).all()
+    assert np.ptp(np.diff(x)) < 1e-3 * x.max()
+    assert np.ptp(x) == pytest.approx(90 * (x[1] - x[0]))
+
+
+@pytest.mark.parametrize("west", [-180.0, -178.0])
+def test_the_same_winds_are_the_same_picture_across_the_date_line(opengl: Any, west: float) -> None:
     del opengl
-    ds = winds(np.arange(-180.0, 180.0, 4.0), np.arange(-90.0, 90.1, 4.0))
+    ds = winds(np.arange(west, 180.0, 4.0), np.arange(-90.0, 90.1, 4.0))
     shifted = ds.assign_coords(lon=ds.lon % 360).sortby("lon").isel(lat=slice(None, None, -1))
     options: dict[str, Any] = {"size": (200, 200), "scalars": False, "coastlines": False}
     options |= {"graticule": False, "lighting": False}
