@@ -9,6 +9,7 @@ browser in the header, so that both sides move the camera alike.
 from __future__ import annotations
 
 import math
+import re
 import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
@@ -19,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Floats
+from flowtex._util.written import number_or_text
 from flowtex.earth import EARTH_RADIUS
 from flowtex.errors import FieldError
 from flowtex.field import Surface
@@ -339,6 +341,33 @@ class Camera:
             msg = f"camera is {points!r}; expected position, focal point and up, three points"
             raise CameraError(msg) from error
         return cls(position, focal_point, up)
+
+    @classmethod
+    def from_text(cls, text: str) -> Self:
+        """Return the camera of :meth:`to_text`, or of the nine numbers of :meth:`from_points`.
+
+        Raises
+        ------
+        CameraError
+            When the text is none of these, or the camera sees nothing.
+        """
+        kind, *words = re.split(r"[,\s]+", text.strip())
+        numbers = [number_or_text(word) for word in ([kind, *words] if len(words) == 8 else words)]
+        points = [tuple(numbers[start : start + 3]) for start in (0, 3, 6)]
+        if len(words) == 8:
+            return cls.from_points(points)
+        if kind not in ("parallel", "perspective") or len(numbers) != 11:
+            msg = f"camera is {text!r}; expected nine numbers: position, focal point and up"
+            raise CameraError(msg)
+        scale, angle = numbers[9:]
+        position, focal_point, up = points
+        return cls(position, focal_point, up, kind == "parallel", scale, angle)  # type: ignore[arg-type]
+
+    def to_text(self) -> str:
+        """Return all of it as one text without blanks."""
+        numbers = (*self.position, *self.focal_point, *self.up)
+        words = map(repr, (*numbers, self.parallel_scale, self.view_angle))
+        return ",".join(["parallel" if self.parallel else "perspective", *words])
 
     def to_dict(self) -> dict[str, Any]:
         """Return the attributes by name: lists of numbers, numbers, and a bool, for JSON."""

@@ -14,19 +14,30 @@ from __future__ import annotations
 import inspect
 import math
 import textwrap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
 from flowtex._util.arguments import near_names
 from flowtex._util.colours import DEFAULT_CMAP, colour_table, rgb
+from flowtex._util.written import (
+    NUMBER,
+    PLAIN,
+    SWITCH,
+    Form,
+    UnreadableError,
+    named_texts,
+    number_or_text,
+    numbers,
+    or_none,
+)
 from flowtex.camera import Camera
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.datasets.detect import is_dataset
 from flowtex.field.datasets.pairs import two_names
-from flowtex.settings import TABLE, Settings, SettingsError
+from flowtex.settings import TABLE, Settings, SettingsError, setting
 
 __all__ = [
     "LAND_COLOR",
@@ -38,6 +49,7 @@ __all__ = [
     "Options",
     "ViewOptions",
     "accepts_options",
+    "option_form",
     "option_text",
 ]
 
@@ -57,9 +69,36 @@ SPEED, ROBUST = "speed", "robust"
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def _option(default: Any, text: str) -> Any:
-    """Return a field with the text that tells a person what it is for."""
-    return field(default=default, metadata={"text": text})
+def _option(default: Any, text: str, form: Form | None = PLAIN) -> Any:
+    """Return a field with the text that tells a person what it is for.
+
+    ``form`` is how its values are written in a shell or a link; ``None`` for what is not.
+    """
+    return field(default=default, metadata={"text": text, "form": form})
+
+
+def _read_ends(text: str) -> str | tuple[float, ...]:
+    if text == ROBUST:
+        return ROBUST
+    low, high = numbers(2, expected="two numbers, as 1.5,3")(text)
+    if not low < high:
+        msg = "a lower number and a higher one"
+        raise UnreadableError(msg)
+    return low, high
+
+
+def _read_differences(words: Sequence[str]) -> dict[str, Any]:
+    """Read words such as ``lod=false`` as settings, and as what :class:`Appearance` has."""
+    expected = "name=value, as in --beside lod=false"
+    texts = named_texts(str, expected)(words)
+    values: dict[str, Any] = {}
+    for name, text in texts.items():
+        own = name.strip().replace("-", "_")
+        if (row := Appearance.__dataclass_fields__.get(own)) is not None:
+            values[own] = row.metadata["form"].read(text)
+        else:
+            values[own] = setting(own).parse(text)
+    return values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,16 +115,28 @@ class FieldOptions:
         None,
         'Plane through any volume: ``"x=0.5"``, or a normal and a point, '
         '``"1,1,0 through 0,0,2"``; the point is the middle by default.',
+        Form(
+            "Plane through any volume: ``x=0.5``, or a normal and a point, "
+            '``"1,1,0 through 0,0,2"``; the point is the middle by default.'
+        ),
     )
     contour: Any | None = _option(
-        None, 'Surface in a volume where an array has a value: ``"pressure=101325"``.'
+        None,
+        'Surface in a volume where an array has a value: ``"pressure=101325"``.',
+        Form("Surface in a volume where an array has a value: ``pressure=101325``."),
     )
     block: int | str | None = _option(
-        None, "Number or path of the block to draw, where there are several."
+        None,
+        "Number or path of the block to draw, where there are several.",
+        Form(read=lambda text: int(text) if text.isdecimal() else text),
     )
-    times: Any | None = _option(None, "Times of a list of meshes; their positions by default.")
+    times: Any | None = _option(
+        None, "Times of a list of meshes; their positions by default.", form=None
+    )
     periodic: str | None = _option(
-        None, 'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.'
+        None,
+        'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.',
+        Form("Axes that close on themselves: ``i``, ``j``, ``ij`` or none.", read=or_none("")),
     )
     sign_free: bool | None = _option(
         None, "Whether the vectors have no sign, so that v and -v mean the same."
@@ -98,12 +149,28 @@ class FieldOptions:
     )
     globe: bool | None = _option(None, "Whether data of the Earth are put on a sphere.")
     level: float | str | None = _option(
-        None, "Level of a data set, such as ``500``; the one nearest to the surface by default."
+        None,
+        "Level of a data set, such as ``500``; the one nearest to the surface by default.",
+        Form(read=number_or_text),
     )
     sel: Mapping[str, Any] | None = _option(
-        None, 'What to draw along other axes of a data set, by value: ``{"number": 3}``.'
+        None,
+        'What to draw along other axes of a data set, by value: ``{"number": 3}``.',
+        Form(
+            "What to draw along another axis of a data set, as number=3.",
+            read=named_texts(number_or_text, "an axis and a value, as number=3"),
+            repeated=True,
+        ),
     )
-    isel: Mapping[str, Any] | None = _option(None, "The same by number.")
+    isel: Mapping[str, Any] | None = _option(
+        None,
+        "The same by number.",
+        Form(
+            "The same by number from 0, as number=2.",
+            read=named_texts(int, "an axis and a whole number, as number=2"),
+            repeated=True,
+        ),
+    )
 
     def field(self, mesh: Any) -> FlowField:
         """Return the field of a mesh or of a file, or a field as it is.
@@ -177,29 +244,46 @@ class Appearance:
         None,
         'What to colour by: the name of an array, ``"speed"`` (the default), or ``False`` for a '
         "plain surface.",
+        Form(
+            "Array to colour by, speed by default, or none for a plain surface.",
+            or_none(value=False),
+        ),
     )
     cmap: Any | None = _option(
         None,
         "Colour map: a name, a map of matplotlib's, a table of PyVista's, or an array (N, 3 or "
         "4), uint8 or from 0 to 1; viridis by default.",
+        Form("Colour map, by matplotlib's name; viridis by default."),
     )
     clim: tuple[float, float] | str | None = _option(
         None,
         "Values at the ends of the colour map; by default the range over all times, with zero in "
         "the middle where the map diverges, such as coolwarm, and the values have both signs. "
         '``"robust"`` leaves 2 % out at either end.',
+        Form(
+            "Values at the ends of the colour map, as low,high; by default the range over all "
+            "times, of which ``robust`` leaves 2 % out at either end.",
+            read=_read_ends,
+            write=lambda ends: ",".join(repr(float(end)) for end in ends),
+        ),
     )
     log_scale: bool = _option(
-        default=False, text="Whether colours go by the logarithm, for values above 0."
+        default=False,
+        text="Whether colours go by the logarithm, for values above 0.",
+        form=SWITCH,
     )
     color: Any = _option(PLAIN_COLOR, "Colour of a plain surface, as PyVista takes it.")
-    opacity: float = _option(1.0, "1 is opaque, 0 invisible.")
-    visible: bool = _option(default=True, text="Whether the surface is drawn.")
+    opacity: float = _option(1.0, "1 is opaque, 0 invisible.", NUMBER)
+    visible: bool = _option(default=True, text="Whether the surface is drawn.", form=SWITCH)
     lighting: bool | None = _option(
-        None, "Whether the surface is lit; by default a curved one is and a flat one is not."
+        None,
+        "Whether the surface is lit; by default a curved one is and a flat one is not.",
+        SWITCH,
     )
     show_scalar_bar: bool | None = _option(
-        None, "Whether there is a legend of the colours; by default unless an image covers them."
+        None,
+        "Whether there is a legend of the colours; by default unless an image covers them.",
+        SWITCH,
     )
     image: Any | None = _option(
         None,
@@ -208,18 +292,23 @@ class Appearance:
         "surface once, its left at the first i and its top, row 0, at the last j; ``tiles`` "
         "repeats it. Where it is transparent the surface's colour shows. It sets "
         '``noise="image"``, and ``strength=1`` unless that is given.',
+        Form("PNG or JPEG that the flow smears, in place of the noise.", Path),
     )
     coastlines: bool | None = _option(
-        None, "Whether coasts are drawn; by default where the field has a projection."
+        None, "Whether coasts are drawn; by default where the field has a projection.", SWITCH
     )
     graticule: bool | None = _option(
         None,
         "Whether meridians and parallels are drawn; by default where the field has a projection.",
+        SWITCH,
     )
     land: Any = _option(
         LAND_COLOR,
         "Colour of the Earth where a field with a projection has no data, such as land in an "
         "ocean; ``None`` for none.",
+        Form(
+            "Colour of the Earth where a field with a projection has no data, or none.", or_none()
+        ),
     )
 
     def __post_init__(self) -> None:
@@ -278,18 +367,33 @@ class ViewOptions:
 
     zoom: float = _option(1.0, "How far in: 1 shows the whole surface, 8 an eighth of its width.")
     focus: tuple[float, ...] | None = _option(
-        None, "Point of the mesh to look at, two or three coordinates; the middle by default."
+        None,
+        "Point of the mesh to look at, two or three coordinates; the middle by default.",
+        Form(
+            "Point of the mesh to look at, as x,y or x,y,z; the middle by default.",
+            read=numbers(2, 3, expected="two or three coordinates, as 1.5,0"),
+        ),
     )
     camera: Any | None = _option(
         None,
         "Another view: a :class:`flowtex.camera.Camera`, its numbers by name, or position, focal "
         "point and direction upwards, three points.",
+        Form(
+            "Position, focal point and direction upwards, nine numbers with commas between; or "
+            "the camera of a page's link.",
+            Camera.from_text,
+        ),
     )
     background: Any = _option("white", "Colour behind the surface.")
     beside: Mapping[str, Any] | None = _option(
         None,
         "What is different in a second view to the right of the first one, such as "
         '``{"lod": False}``; both views move together.',
+        Form(
+            "What is different in a second view to the right of the first one, such as lod=false.",
+            read=_read_differences,
+            repeated=True,
+        ),
     )
 
     def __post_init__(self) -> None:
@@ -401,6 +505,12 @@ def accepts_options(*kinds: type) -> Callable[[Function], Function]:
 def option_text(kind: type, name: str) -> str:
     """Return what a field of an option class is for, as one paragraph."""
     return str(kind.__dataclass_fields__[name].metadata["text"])  # type: ignore[attr-defined]
+
+
+def option_form(kind: type, name: str) -> Form:
+    """Return how the values of a field of an option class are written."""
+    form: Form = kind.__dataclass_fields__[name].metadata["form"]  # type: ignore[attr-defined]
+    return form
 
 
 def _described(text: str, options: list[Any]) -> str:

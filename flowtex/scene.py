@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -475,18 +475,9 @@ class AppearanceAttributes:
     scene: Any
     _is_made = False
 
-    scalars = _attribute("scalars")
-    cmap = _attribute("cmap")
-    clim = _attribute("clim")
-    log_scale = _attribute("log_scale")
-    color = _attribute("color")
-    opacity = _attribute("opacity")
-    visible = _attribute("visible")
-    lighting = _attribute("lighting")
-    show_scalar_bar = _attribute("show_scalar_bar")
-    coastlines = _attribute("coastlines")
-    graticule = _attribute("graticule")
-    land = _attribute("land")
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Set an attribute that there is; the error for another one names those that are near."""
@@ -502,13 +493,18 @@ class AppearanceAttributes:
         super().__setattr__(name, value)
 
 
+for _name in Appearance.__dataclass_fields__:
+    if _name != "image":  # which is changed by a method
+        setattr(AppearanceAttributes, _name, _attribute(_name))
+
+
 def steps_of(field: FlowField, name: str) -> Steps:
     """Return nodal values at all times, (T or 1, J, I); a FieldError lists the names there are."""
     if name in field.scalars:
         return field.scalars[name]
-    if name == "speed":
+    if name == SPEED:
         return field.speed
-    names = ", ".join(repr(n) for n in dict.fromkeys(("speed", *field.scalars, *DERIVED)))
+    names = ", ".join(map(repr, dict.fromkeys((SPEED, *field.scalars, *DERIVED))))
     msg = f"there is no scalar {name!r} on this field; there are {names}"
     raise FieldError(msg)
 

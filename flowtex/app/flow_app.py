@@ -27,6 +27,7 @@ from flowtex.app.ui.layout import build_page
 from flowtex.diagnostics import has_display
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.options import ViewOptions
 
 __all__ = ["FlowApp", "first_choice", "serve"]
 
@@ -48,8 +49,8 @@ class FlowApp(NotebookPage):
     server
         A trame server; one of its own by default.
     **options
-        Arguments and settings of ``plotter.flowtex.add``, and ``zoom`` and ``focus`` as for
-        :func:`flowtex.render`.
+        Arguments and settings of ``plotter.flowtex.add``, and ``zoom``, ``focus`` and ``camera``
+        as for :func:`flowtex.render`.
 
     Attributes
     ----------
@@ -81,8 +82,10 @@ class FlowApp(NotebookPage):
         library = Library.of(flow, **{name: options.pop(name, None) for name in FIELD_ARGUMENTS})
         name, choice = first_choice(library, options)
         options = {k: v for k, v in options.items() if k not in CHOICE_ARGUMENTS}
-        field = library.field(name, choice)
+        field, camera = library.field(name, choice), options.pop("camera", None)
         self.area = FlowArea(field, server=self.server, state=self.state, **options)
+        if camera is not None:
+            self.viewport.camera = ViewOptions(camera=camera).first_camera(field.surface)
         self.context = Context(self.state, self.area, library.branch())
         self.server.state.trame__favicon = None
         self.state.set(panel=None, group=None, help=False, problem="")
