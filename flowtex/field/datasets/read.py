@@ -10,12 +10,13 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
+from flowtex.earth import GLOBE
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import (
     FACES,
@@ -44,14 +45,13 @@ from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places
 from flowtex.field.datasets.regions import Regions, Words, numbers_in, region_lines
 from flowtex.field.datasets.staggered import centred
 from flowtex.field.dates import as_seconds
+from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.steps import LazySteps
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Recognised", "as_datasets", "field_of", "recognise"]
-
-F = TypeVar("F")
+__all__ = ["Recognised", "as_datasets", "read_datasets", "recognise"]
 
 #: Longest name that a legend has room for.
 LONGEST_NAME = 40
@@ -129,22 +129,28 @@ class Recognised:
         return turned(self.places, self.ahead, u, v)
 
 
-def field_of(
-    make: type[F],
+def read_datasets(
     data: xr.Dataset | Sequence[xr.Dataset],
     u: str | None = None,
     v: str | None = None,
     *,
     projection: str | None = None,
+    globe: bool = False,
     name: str = "",
     sel: Mapping[str, Any] | None = None,
     isel: Mapping[str, Any] | None = None,
-) -> F:
-    """Make a field, as :meth:`FlowField.from_xarray` does; ``make`` is the class.
+    regions: bool = False,
+    **selection: Any,
+) -> GridArrays | TriangleArrays | Regions:
+    """Read what a field needs, as :meth:`FlowField.from_xarray` has the parameters.
 
-    One that has ``from_regions`` gets no nodes where any part of them can be read by itself, but
-    :class:`Regions`.
+    With ``regions`` no nodes are read where any part of them can be read by itself.
     """
+    if globe and projection not in (None, GLOBE):
+        msg = f"globe=True and projection={projection!r} are given; leave out one of them"
+        raise FieldError(msg)
+    projection = GLOBE if globe else projection
+    sel = {**(sel or {}), **selection}
     known = recognise(data, u, v, sel=sel, isel=isel)
     for note in known.notes:
         notify(note)
@@ -156,34 +162,45 @@ def field_of(
         )
         raise FieldError(msg)
     times, numbers = drawn_steps(known.u, known.pair.u)
-    scalars = _scalars(known, as_datasets(data), Choice(dict(sel or {}), dict(isel or {})))
-    name = ", ".join(filter(None, (name, known.level)))
+    scalars = _scalars(known, as_datasets(data), Choice(dict(sel), dict(isel or {})))
+    words = {"name": ", ".join(filter(None, (name, known.level))), **_words(scalars)}
     if known.mesh is not None:
-        on_mesh: F = _mesh_field(make, known, known.mesh, scalars, times, numbers, projection, name)
-        return on_mesh
-    if make.from_regions is not None:  # type: ignore[attr-defined]
-        regions = _regions(known, scalars, times, numbers, projection, name)
-        if regions is not None:
-            return cast("F", make.from_regions(regions))  # type: ignore[attr-defined]
+        return _mesh_arrays(known, known.mesh, scalars, times, numbers, projection, words)
+    if regions and (found := _regions(known, scalars, times, numbers, projection, words)):
+        return found
+    return _grid_arrays(known, scalars, times, numbers, projection, words)
+
+
+def _grid_arrays(
+    known: Recognised,
+    scalars: Mapping[str, _Scalar],
+    times: Any,
+    numbers: list[int],
+    projection: str | None,
+    words: dict[str, Any],
+) -> GridArrays:
+    """Return what a field on rows and columns needs; steps but the first are read later."""
+    places, lines, speeds = known.places, (slice(None), slice(None)), False
     if not places.is_earth:
-        points = np.stack([places.a, places.b], axis=-1)
+        words |= {"points": np.stack([places.a, places.b], axis=-1), "length_unit": places.unit}
 
         def vectors(u: Floats, v: Floats) -> Floats:
             return _in_plane(*known.turned(u, v))
-
-        lines: Any = (slice(None), slice(None))
-        options: dict[str, Any] = {"length_unit": places.unit, "time_unit": "s"}
-        speeds = False
     else:
         drawn = on_map(places, projection)
-        points, lines = drawn.points, drawn.lines
-        options = {"length_unit": "m", "time_unit": "s", "projection": drawn.projection}
-        options["periodic"] = drawn.periodic
-        speeds = not drawn.projection.is_globe
+        lines, speeds = drawn.lines, not drawn.projection.is_globe
+        words |= {"points": drawn.points, "length_unit": "m", "periodic": drawn.periodic}
+        words["projection"] = drawn.projection
 
         def vectors(u: Floats, v: Floats) -> Floats:
             east, north = known.turned(u, v)
             return drawn.vectors(east[lines], north[lines])
+
+    def later(read: Callable[[int], Floats]) -> LazySteps:
+        return LazySteps(len(numbers), lambda n: read(numbers[n]))
+
+    def speed(number: int) -> Floats:
+        return np.asarray(np.hypot(*known.steps(number))[lines])
 
     def velocity(number: int) -> Floats:
         return vectors(*known.steps(number))
@@ -191,20 +208,12 @@ def field_of(
     def on_lines(read: Callable[[int], Floats], number: int) -> Floats:
         return np.asarray(read(number)[lines])
 
-    def speed(number: int) -> Floats:
-        return np.asarray(np.hypot(*known.steps(number))[lines])
-
-    first = velocity(numbers[0])
-    base = make.from_arrays(points, first, name=name, **options)  # type: ignore[attr-defined]
-    extra: dict[str, Callable[[int], Floats]] = {}
-    for key, scalar in scalars.items():
-        extra[key] = partial(on_lines, scalar.read)
-    words = _words(scalars)
+    extra = {key: later(partial(on_lines, scalar.read)) for key, scalar in scalars.items()}
     if speeds:
-        extra["speed"] = speed
+        extra["speed"] = later(speed)
         words["units"]["speed"] = "m/s"
-    field: F = _with_steps(base, first, velocity, extra, times, numbers, words)
-    return field
+    moving = later(velocity) if len(numbers) > 1 else velocity(numbers[0])
+    return GridArrays(velocity=moving, scalars=extra, times=times, time_unit="s", **words)
 
 
 def _regions(
@@ -213,7 +222,7 @@ def _regions(
     times: Any,
     numbers: list[int],
     projection: str | None,
-    name: str,
+    words: dict[str, Any],
 ) -> Regions | None:
     """Return what reads a dataset by regions; ``None`` where it has to be read as a whole."""
     lines = None if known.staggered else region_lines(known.places, projection)
@@ -221,17 +230,15 @@ def _regions(
         return None
     on_earth = lines.projection is not None
     seconds, _, start = as_seconds(times, "s" if times is None else "")
-    words = _words(scalars)
     others = {key: scalar.section.array.variable for key, scalar in scalars.items()}
     if lines.projection is not None and not lines.projection.is_globe:
         others.pop("speed", None)
         words["units"]["speed"] = "m/s"
     return Regions(
         Words(
-            name,
-            "m" if on_earth else known.places.unit,
-            np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float),
-            start,
+            length_unit="m" if on_earth else known.places.unit,
+            times=np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float),
+            start=start,
             **words,
         ),
         lines,
@@ -243,19 +250,17 @@ def _regions(
     )
 
 
-def _mesh_field(
-    make: Any,
+def _mesh_arrays(
     known: Recognised,
     mesh: Mesh,
     scalars: Mapping[str, _Scalar],
     times: Any,
     numbers: list[int],
     projection: str | None,
-    name: str,
-) -> Any:
-    """Make a field on a mesh by ``FlowField.from_triangles``."""
-    options: dict[str, Any] = {"length_unit": known.places.unit or "m", "time_unit": "s"}
-    words = _words(scalars)
+    words: dict[str, Any],
+) -> TriangleArrays:
+    """Return what a field on a mesh needs."""
+    words |= {"length_unit": known.places.unit or "m", "time_unit": "s"}
     at: Callable[[Floats], Floats] = np.asarray
     has_speed = False
     vectors: Callable[[Floats, Floats], Floats] = _in_plane
@@ -267,7 +272,7 @@ def _mesh_field(
                 "pole; a globe has them all, as in globe=True"
             )
         points, triangles, at = drawn.points, drawn.triangles, drawn.at
-        options["projection"] = drawn.projection
+        words["projection"] = drawn.projection
         vectors = drawn.vectors
         has_speed = not drawn.projection.is_globe
         if has_speed:
@@ -293,18 +298,15 @@ def _mesh_field(
     some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
     valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
     count = len(numbers)
-    field = make.from_triangles(
-        points,
-        triangles,
-        LazySteps(count, velocity) if count > 1 else velocity(0),
+    return TriangleArrays(
+        points=points,
+        triangles=triangles,
+        velocity=LazySteps(count, velocity) if count > 1 else velocity(0),
         times=times,
         valid=at(valid * 1.0) > 1 - 1e-9,
         scalars={key: LazySteps(count, read) for key, read in data.items()},
-        name=name,
-        units=words["units"],
-        **options,
+        **words,
     )
-    return replace(field, long_names=words["long_names"])
 
 
 def _in_plane(u: Floats, v: Floats) -> Floats:
@@ -556,45 +558,4 @@ def _scalar(known: Recognised, array: Any, steps: int, choice: Choice) -> _Scala
     nodal = NodalValues(known.mesh, horizontal_dims(array)[0])
     return _Scalar(
         section, lambda number: nodal.scalar(numbers_in(section.step(number))), array.attrs
-    )
-
-
-def _with_steps(
-    base: Any,
-    first: Floats,
-    velocity: Callable[[int], Floats],
-    scalars: Mapping[str, Callable[[int], Floats]],
-    times: Any,
-    numbers: list[int],
-    words: Mapping[str, Mapping[str, str]],
-) -> Any:
-    """Return a field with all its steps, read as they are needed, and closed as its first one."""
-    more = [n - m for n, m in zip(base.shape, first.shape[:2], strict=True)]
-
-    def closed(values: Floats) -> Floats:
-        for axis, count in enumerate(more):
-            if count:
-                values = np.concatenate([values, np.take(values, [0], axis=axis)], axis=axis)
-        return values
-
-    def moving(number: int) -> Floats:
-        v = closed(velocity(numbers[number]))
-        v[~base.valid] = 0.0
-        return np.nan_to_num(v)
-
-    def value(read: Callable[[int], Floats], number: int) -> Floats:
-        return closed(read(numbers[number]))
-
-    seconds, _, start = as_seconds(times, "s" if times is None else "")
-    data: dict[str, Any] = {}
-    for name, read in scalars.items():
-        data[name] = LazySteps(len(numbers), partial(value, read))
-    series = len(numbers) > 1
-    return replace(
-        base,
-        velocity=LazySteps(len(numbers), moving) if series else base.velocity,
-        times=base.times if seconds is None else np.asarray(seconds, dtype=float),
-        scalars=data,
-        **words,
-        start=start,
     )
