@@ -18,7 +18,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import is_number
+from flowtex._util.arguments import checked_number, is_number
 from flowtex._util.array_types import Floats
 from flowtex._util.written import number_or_text
 from flowtex.earth import EARTH_RADIUS
@@ -198,16 +198,12 @@ class Camera:
         FieldError
             When ``zoom`` is not positive, ``focus`` is no point, or ``margin`` is out of range.
         """
-        if not (is_number(margin) and 0 <= margin < 0.5):
-            msg = f"margin is {margin!r}; expected a number from 0 to less than 0.5, such as 0.04"
-            raise FieldError(msg)
-        share = 1 - 2 * margin
-        if not (is_number(zoom) and NEAREST_REACH <= zoom <= FARTHEST_REACH):
-            msg = (
-                f"zoom is {zoom!r}; expected a positive number, 1 for the whole surface, from "
-                f"{NEAREST_REACH:g} to {FARTHEST_REACH:g}"
-            )
-            raise FieldError(msg)
+        expected = "a number from 0 to less than 0.5, such as 0.04"
+        most = math.nextafter(0.5, 0.0)
+        share = 1 - 2 * checked_number("margin", margin, 0.0, most, expected=expected)
+        ends = NEAREST_REACH, FARTHEST_REACH
+        expected = "a positive number, 1 for the whole surface, from {:g} to {:g}".format(*ends)
+        zoom = checked_number("zoom", zoom, *ends, expected=expected)
         center = surface.center.copy()
         if focus is not None:
             if not (_is_point(focus, 2) or _is_point(focus, 3)):

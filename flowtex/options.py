@@ -15,11 +15,11 @@ import inspect
 import math
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from flowtex._util.arguments import near_names
+from flowtex._util.arguments import is_number, near_names
 from flowtex._util.colours import DEFAULT_CMAP, colour_table, rgb
 from flowtex._util.written import (
     NUMBER,
@@ -45,6 +45,7 @@ __all__ = [
     "ROBUST",
     "SPEED",
     "Appearance",
+    "AppearanceAttributes",
     "FieldOptions",
     "Options",
     "ViewOptions",
@@ -320,7 +321,7 @@ class Appearance:
             faults.append(f"scalars is {self.scalars!r}; expected the name of an array, or False")
         if self.cmap is None:
             object.__setattr__(self, "cmap", DEFAULT_CMAP)
-        if not _is_between(self.opacity, 0, 1):
+        if not (is_number(self.opacity) and 0 <= self.opacity <= 1):
             faults.append(f"opacity is {self.opacity!r}; expected a number from 0 to 1")
         if self.clim is not None and not (isinstance(self.clim, str) and self.clim == ROBUST):
             try:
@@ -513,6 +514,62 @@ def option_form(kind: type, name: str) -> Form:
     return form
 
 
+def _attribute(name: str) -> Any:
+    def get(self: AppearanceAttributes) -> Any:
+        return getattr(self.scene.appearance, name)
+
+    def change(self: AppearanceAttributes, value: Any) -> None:
+        self.scene.appearance = replace(self.scene.appearance, **{name: value})
+
+    return property(get, change, doc=option_text(Appearance, name))
+
+
+class AppearanceAttributes:
+    """The field, settings and appearance of a scene as attributes of what shows it.
+
+    Each of the appearance is to be set at any time.
+
+    Once it is made, other attributes cannot be set, so that a slip of the pen is no silent one.
+    """
+
+    scene: Any
+    _is_made = False
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    @property
+    def field(self) -> FlowField:
+        """The flow."""
+        field: FlowField = self.scene.field
+        return field
+
+    @property
+    def settings(self) -> Settings:
+        """Every setting, live."""
+        settings: Settings = self.scene.settings
+        return settings
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set an attribute that there is; the error for another one names those that are near."""
+        is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
+        if self._is_made and not is_known:
+            own = [n for n in dir(type(self)) if not n.startswith("_")]
+            msg = f"{type(self).__name__} has no attribute {name!r}"
+            if name in TABLE:
+                msg += f" of its own; it is a setting: settings.{name}"
+            else:
+                msg += f"; {near_names(name, own)}"
+            raise AttributeError(msg)
+        super().__setattr__(name, value)
+
+
+for _name in Appearance.__dataclass_fields__:
+    if _name != "image":  # which is changed by a method
+        setattr(AppearanceAttributes, _name, _attribute(_name))
+
+
 def _described(text: str, options: list[Any]) -> str:
     """Put the description of options into a docstring."""
     lines = []
@@ -531,10 +588,3 @@ def _described(text: str, options: list[Any]) -> str:
                 break_on_hyphens=False,
             )
     return "\n".join(lines)
-
-
-def _is_between(value: Any, low: float, high: float) -> bool:
-    try:
-        return bool(low <= value <= high)
-    except (TypeError, ValueError):
-        return False

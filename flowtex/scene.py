@@ -10,11 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
-from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
 from flowtex._util.colours import colour_table, is_diverging
@@ -24,7 +23,14 @@ from flowtex.field.dates import seconds_since
 from flowtex.field.derived import DERIVED
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps, Steps
-from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
+from flowtex.options import (
+    ROBUST,
+    SPEED,
+    Appearance,
+    AppearanceAttributes,
+    FieldOptions,
+    Options,
+)
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet, check_noise
@@ -454,48 +460,6 @@ class Scene:
     def _notify(self, affects: Change) -> None:
         for notice in list(self._notices):
             notice(affects)
-
-
-def _attribute(name: str) -> Any:
-    def get(self: AppearanceAttributes) -> Any:
-        return getattr(self.scene.appearance, name)
-
-    def change(self: AppearanceAttributes, value: Any) -> None:
-        self.scene.appearance = replace(self.scene.appearance, **{name: value})
-
-    return property(get, change, doc=option_text(Appearance, name))
-
-
-class AppearanceAttributes:
-    """The appearance of a scene as attributes of what shows it, each to be set at any time.
-
-    Once it is made, other attributes cannot be set, so that a slip of the pen is no silent one.
-    """
-
-    scene: Any
-    _is_made = False
-
-    if TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any: ...
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        """Set an attribute that there is; the error for another one names those that are near."""
-        is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
-        if self._is_made and not is_known:
-            own = [n for n in dir(type(self)) if not n.startswith("_")]
-            msg = f"{type(self).__name__} has no attribute {name!r}"
-            if name in TABLE:
-                msg += f" of its own; it is a setting: settings.{name}"
-            else:
-                msg += f"; {near_names(name, own)}"
-            raise AttributeError(msg)
-        super().__setattr__(name, value)
-
-
-for _name in Appearance.__dataclass_fields__:
-    if _name != "image":  # which is changed by a method
-        setattr(AppearanceAttributes, _name, _attribute(_name))
 
 
 def steps_of(field: FlowField, name: str) -> Steps:

@@ -13,11 +13,17 @@ import numpy as np
 import traitlets
 
 from flowtex.errors import FieldError
-from flowtex.field import FlowField
 from flowtex.field.locate import locate
-from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
-from flowtex.scene import NO_IMAGE, AppearanceAttributes, Change, Scene
-from flowtex.settings import TABLE, Settings
+from flowtex.options import (
+    Appearance,
+    AppearanceAttributes,
+    FieldOptions,
+    Options,
+    ViewOptions,
+    accepts_options,
+)
+from flowtex.scene import NO_IMAGE, Change, Scene
+from flowtex.settings import TABLE
 from flowtex.textures.images import load_image
 from flowtex.web.assets import asset
 from flowtex.web.export import PREVIEW, page_text, write_page
@@ -138,16 +144,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         self._ends = [self.settings.observe(self._set), self.scene.observe(self._scene_changed)]
         self._views.start()
         self._is_made = True
-
-    @property
-    def field(self) -> FlowField:
-        """The flow."""
-        return self.scene.field
-
-    @property
-    def settings(self) -> Settings:
-        """Every setting; the traits of the same names follow it."""
-        return self.scene.settings
 
     @property
     def scene(self) -> Scene:
