@@ -116,15 +116,9 @@ class FieldOptions:
         None,
         'Plane through any volume: ``"x=0.5"``, or a normal and a point, '
         '``"1,1,0 through 0,0,2"``; the point is the middle by default.',
-        Form(
-            "Plane through any volume: ``x=0.5``, or a normal and a point, "
-            '``"1,1,0 through 0,0,2"``; the point is the middle by default.'
-        ),
     )
     contour: Any | None = _option(
-        None,
-        'Surface in a volume where an array has a value: ``"pressure=101325"``.',
-        Form("Surface in a volume where an array has a value: ``pressure=101325``."),
+        None, 'Surface in a volume where an array has a value: ``"pressure=101325"``.'
     )
     block: int | str | None = _option(
         None,
@@ -137,7 +131,7 @@ class FieldOptions:
     periodic: str | None = _option(
         None,
         'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.',
-        Form("Axes that close on themselves: ``i``, ``j``, ``ij`` or none.", read=or_none("")),
+        Form(read=or_none("")),
     )
     sign_free: bool | None = _option(
         None, "Whether the vectors have no sign, so that v and -v mean the same."
@@ -157,20 +151,12 @@ class FieldOptions:
     sel: Mapping[str, Any] | None = _option(
         None,
         'What to draw along other axes of a data set, by value: ``{"number": 3}``.',
-        Form(
-            "What to draw along another axis of a data set, as number=3.",
-            read=named_texts(number_or_text, "an axis and a value, as number=3"),
-            repeated=True,
-        ),
+        Form(read=named_texts(number_or_text, "an axis and a value, as number=3"), repeated=True),
     )
     isel: Mapping[str, Any] | None = _option(
         None,
-        "The same by number.",
-        Form(
-            "The same by number from 0, as number=2.",
-            read=named_texts(int, "an axis and a whole number, as number=2"),
-            repeated=True,
-        ),
+        'The same by number from 0: ``{"number": 2}``.',
+        Form(read=named_texts(int, "an axis and a whole number, as number=2"), repeated=True),
     )
 
     def field(self, mesh: Any) -> FlowField:
@@ -245,10 +231,7 @@ class Appearance:
         None,
         'What to colour by: the name of an array, ``"speed"`` (the default), or ``False`` for a '
         "plain surface.",
-        Form(
-            "Array to colour by, speed by default, or none for a plain surface.",
-            or_none(value=False),
-        ),
+        Form(read=or_none(value=False)),
     )
     cmap: Any | None = _option(
         None,
@@ -258,15 +241,11 @@ class Appearance:
     )
     clim: tuple[float, float] | str | None = _option(
         None,
-        "Values at the ends of the colour map; by default the range over all times, with zero in "
-        "the middle where the map diverges, such as coolwarm, and the values have both signs. "
+        "Values at the ends of the colour map, low and high; by default the range over all times, "
+        "with zero in the middle where the map diverges, such as coolwarm, and the values have "
+        "both signs. "
         '``"robust"`` leaves 2 % out at either end.',
-        Form(
-            "Values at the ends of the colour map, as low,high; by default the range over all "
-            "times, of which ``robust`` leaves 2 % out at either end.",
-            read=_read_ends,
-            write=lambda ends: ",".join(repr(float(end)) for end in ends),
-        ),
+        Form(read=_read_ends, write=lambda ends: ",".join(repr(float(end)) for end in ends)),
     )
     log_scale: bool = _option(
         default=False,
@@ -306,10 +285,8 @@ class Appearance:
     land: Any = _option(
         LAND_COLOR,
         "Colour of the Earth where a field with a projection has no data, such as land in an "
-        "ocean; ``None`` for none.",
-        Form(
-            "Colour of the Earth where a field with a projection has no data, or none.", or_none()
-        ),
+        "ocean, or ``None``.",
+        Form(read=or_none()),
     )
 
     def __post_init__(self) -> None:
@@ -370,10 +347,7 @@ class ViewOptions:
     focus: tuple[float, ...] | None = _option(
         None,
         "Point of the mesh to look at, two or three coordinates; the middle by default.",
-        Form(
-            "Point of the mesh to look at, as x,y or x,y,z; the middle by default.",
-            read=numbers(2, 3, expected="two or three coordinates, as 1.5,0"),
-        ),
+        Form(read=numbers(2, 3, expected="two or three coordinates, as 1.5,0")),
     )
     camera: Any | None = _option(
         None,
@@ -390,11 +364,7 @@ class ViewOptions:
         None,
         "What is different in a second view to the right of the first one, such as "
         '``{"lod": False}``; both views move together.',
-        Form(
-            "What is different in a second view to the right of the first one, such as lod=false.",
-            read=_read_differences,
-            repeated=True,
-        ),
+        Form(read=_read_differences, repeated=True),
     )
 
     def __post_init__(self) -> None:

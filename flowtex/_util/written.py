@@ -35,7 +35,7 @@ class Form:
     Attributes
     ----------
     words
-        What a shell says that the argument is for; empty where that is what Python says.
+        What a shell says that the argument is for, where that is not what Python says.
     read
         Returns the value of a text; an UnreadableError says what was expected.
     write

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import fields
@@ -11,7 +12,7 @@ from typing import Any
 
 from trame.app import get_server
 
-from flowtex._util.arguments import is_number
+from flowtex._util.arguments import checked_number
 from flowtex.app.controllers import Controllers
 from flowtex.app.controllers.context import Context
 from flowtex.app.controllers.library import Choice, Library
@@ -242,15 +243,12 @@ def serve(
     >>> import flowtex
     >>> flowtex.app.serve("runs/", port=8080, limit=12)  # doctest: +SKIP
     """
-    if not (limit is None or (is_number(limit) and limit >= 1)):
-        msg = f"limit is {limit}; expected 1 or more pages"
-        raise ServeError(msg)
-    if not (is_number(port) and 0 <= port <= 65535):
-        msg = f"port is {port}; expected 0 to 65535"
-        raise ServeError(msg)
-    if not (is_number(idle) and idle > 0):
-        msg = f"idle is {idle}; expected a positive number of minutes"
-        raise ServeError(msg)
+    for name, value, low, high, expected in (
+        ("limit", 1 if limit is None else limit, 1, math.inf, "1 or more pages"),
+        ("port", port, 0, 65535, "0 to 65535"),
+        ("idle", idle, math.ulp(0.0), math.inf, "a positive number of minutes"),
+    ):
+        checked_number(name, value, low, high, expected=expected, error=ServeError)
     site = run_site(
         _app_maker(field, folder, options),
         host,

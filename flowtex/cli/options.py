@@ -6,6 +6,7 @@ They follow from the fields of the option classes of :mod:`flowtex.options` and 
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, fields, make_dataclass
 from dataclasses import field as data_field
 from pathlib import Path
@@ -85,7 +86,7 @@ def _option_flags(kind: type, group: Group) -> dict[str, Any]:
             continue
         of_python = {"bool": bool, "bool | None": bool, "float": float}.get(str(option.type), str)
         value: Any = tuple[str, ...] if form.repeated else of_python
-        text = form.words or option.metadata["text"]
+        text = form.words or _in_shell(option.metadata["text"])
         plain = isinstance(option.default, (str, float)) and "default" not in text
         flags[option.name] = Annotated[
             value | None,
@@ -98,6 +99,13 @@ def _option_flags(kind: type, group: Group) -> dict[str, Any]:
             ),
         ]
     return flags
+
+
+def _in_shell(text: str) -> str:
+    """Return a text with the values of Python as a shell has them."""
+    text = re.sub(r'``\{"(\w+)": (\w+)\}``', r"``\1=\2``", text)
+    text = re.sub(r'``"([^" ]*)"``', lambda match: f"``{match[1] or 'none'}``", text)
+    return re.sub(r"``(False|None)``", "``none``", text)
 
 
 def _setting_flag(row: Setting) -> Any:
