@@ -16,7 +16,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
-from flowtex.earth import GLOBE
+from flowtex.earth import GLOBE, Projection
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import (
     FACES,
@@ -163,57 +163,105 @@ def read_datasets(
         raise FieldError(msg)
     times, numbers = drawn_steps(known.u, known.pair.u)
     scalars = _scalars(known, as_datasets(data), Choice(dict(sel), dict(isel or {})))
-    words = {"name": ", ".join(filter(None, (name, known.level))), **_words(scalars)}
-    if known.mesh is not None:
-        return _mesh_arrays(known, known.mesh, scalars, times, numbers, projection, words)
-    if regions and (found := _regions(known, scalars, times, numbers, projection, words)):
-        return found
-    return _grid_arrays(known, scalars, times, numbers, projection, words)
-
-
-def _grid_arrays(
-    known: Recognised,
-    scalars: Mapping[str, _Scalar],
-    times: Any,
-    numbers: list[int],
-    projection: str | None,
-    words: dict[str, Any],
-) -> GridArrays:
-    """Return what a field on rows and columns needs; steps but the first are read later."""
-    places, lines, speeds = known.places, (slice(None), slice(None)), False
-    if not places.is_earth:
-        words |= {"points": np.stack([places.a, places.b], axis=-1), "length_unit": places.unit}
-
-        def vectors(u: Floats, v: Floats) -> Floats:
-            return _in_plane(*known.turned(u, v))
-    else:
-        drawn = on_map(places, projection)
-        lines, speeds = drawn.lines, not drawn.projection.is_globe
-        words |= {"points": drawn.points, "length_unit": "m", "periodic": drawn.periodic}
-        words["projection"] = drawn.projection
-
-        def vectors(u: Floats, v: Floats) -> Floats:
-            east, north = known.turned(u, v)
-            return drawn.vectors(east[lines], north[lines])
+    words: dict[str, Any] = {
+        "name": ", ".join(filter(None, (name, known.level))),
+        **_words(scalars),
+    }
+    if regions and known.mesh is None:
+        found = _regions(known, scalars, times, numbers, projection, words)
+        if found is not None:
+            return found
+    make, drawn = (
+        (GridArrays, _on_grid(known, projection))
+        if known.mesh is None
+        else (TriangleArrays, _on_mesh_nodes(known, known.mesh, projection, numbers))
+    )
 
     def later(read: Callable[[int], Floats]) -> LazySteps:
-        return LazySteps(len(numbers), lambda n: read(numbers[n]))
+        return LazySteps(len(numbers), lambda step: read(numbers[step]))
 
-    def speed(number: int) -> Floats:
-        return np.asarray(np.hypot(*known.steps(number))[lines])
+    def value(read: Callable[[int], Floats], number: int) -> Floats:
+        return drawn.at(read(number))
 
-    def velocity(number: int) -> Floats:
-        return vectors(*known.steps(number))
-
-    def on_lines(read: Callable[[int], Floats], number: int) -> Floats:
-        return np.asarray(read(number)[lines])
-
-    extra = {key: later(partial(on_lines, scalar.read)) for key, scalar in scalars.items()}
-    if speeds:
-        extra["speed"] = later(speed)
+    extra = {key: later(partial(value, scalar.read)) for key, scalar in scalars.items()}
+    if drawn.projection is not None and not drawn.projection.is_globe:
+        extra["speed"] = later(lambda number: np.hypot(*map(drawn.at, known.steps(number))))
         words["units"]["speed"] = "m/s"
-    moving = later(velocity) if len(numbers) > 1 else velocity(numbers[0])
-    return GridArrays(velocity=moving, scalars=extra, times=times, time_unit="s", **words)
+    moving = later(lambda number: drawn.vectors(*known.steps(number)))
+    return make(
+        points=drawn.points,
+        velocity=moving if len(numbers) > 1 else moving[0],
+        times=times,
+        scalars=extra,
+        time_unit="s",
+        projection=drawn.projection,
+        **drawn.more,
+        **words,
+    )
+
+
+class _Drawn(NamedTuple):
+    """Where nodes are drawn.
+
+    ``at`` gives what data have there, ``vectors`` what components are there, and ``more`` has
+    further arguments of a field.
+    """
+
+    points: Floats
+    at: Callable[[Floats], Floats]
+    vectors: Callable[[Floats, Floats], Floats]
+    projection: Projection | None
+    more: dict[str, Any]
+
+
+def _on_grid(known: Recognised, projection: str | None) -> _Drawn:
+    """Return where the nodes of rows and columns are drawn."""
+    places = known.places
+    if not places.is_earth:
+        points = np.stack([places.a, places.b], axis=-1)
+
+        def in_plane(u: Floats, v: Floats) -> Floats:
+            return _in_plane(*known.turned(u, v))
+
+        return _Drawn(points, np.asarray, in_plane, None, {"length_unit": places.unit})
+    drawn = on_map(places, projection)
+
+    def at(values: Floats) -> Floats:
+        return np.asarray(values[drawn.lines])
+
+    def vectors(u: Floats, v: Floats) -> Floats:
+        return drawn.vectors(*map(at, known.turned(u, v)))
+
+    more = {"length_unit": "m", "periodic": drawn.periodic}
+    return _Drawn(drawn.points, at, vectors, drawn.projection, more)
+
+
+def _on_mesh_nodes(
+    known: Recognised, mesh: Mesh, projection: str | None, numbers: list[int]
+) -> _Drawn:
+    """Return where the nodes of a mesh are drawn; those are valid that have data at some time."""
+    drawn = mesh_on_map(mesh, known.places, projection) if mesh.is_earth else None
+    if drawn is not None and drawn.lost:
+        notify(
+            f"{drawn.lost:,} triangles are left out, for the map tears them apart, as at a "
+            "pole; a globe has them all, as in globe=True"
+        )
+    at = np.asarray if drawn is None else drawn.at
+    vectors = _in_plane if drawn is None else drawn.vectors
+    some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
+    valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
+    more = {
+        "length_unit": known.places.unit or "m",
+        "triangles": mesh.triangles if drawn is None else drawn.triangles,
+        "valid": at(valid * 1.0) > 1 - 1e-9,
+    }
+
+    def moving(u: Floats, v: Floats) -> Floats:
+        # What is dry now and was not always is at rest.
+        return np.nan_to_num(vectors(u, v))
+
+    points = mesh.positions if drawn is None else drawn.points
+    return _Drawn(points, at, moving, None if drawn is None else drawn.projection, more)
 
 
 def _regions(
@@ -250,70 +298,11 @@ def _regions(
     )
 
 
-def _mesh_arrays(
-    known: Recognised,
-    mesh: Mesh,
-    scalars: Mapping[str, _Scalar],
-    times: Any,
-    numbers: list[int],
-    projection: str | None,
-    words: dict[str, Any],
-) -> TriangleArrays:
-    """Return what a field on a mesh needs."""
-    words |= {"length_unit": known.places.unit or "m", "time_unit": "s"}
-    at: Callable[[Floats], Floats] = np.asarray
-    has_speed = False
-    vectors: Callable[[Floats, Floats], Floats] = _in_plane
-    if mesh.is_earth:
-        drawn = mesh_on_map(mesh, known.places, projection)
-        if drawn.lost:
-            notify(
-                f"{drawn.lost:,} triangles are left out, for the map tears them apart, as at a "
-                "pole; a globe has them all, as in globe=True"
-            )
-        points, triangles, at = drawn.points, drawn.triangles, drawn.at
-        words["projection"] = drawn.projection
-        vectors = drawn.vectors
-        has_speed = not drawn.projection.is_globe
-        if has_speed:
-            words["units"]["speed"] = "m/s"
-    else:
-        points, triangles = mesh.positions, mesh.triangles
-
-    def velocity(number: int) -> Floats:
-        # What is dry now and was not always is at rest.
-        return np.nan_to_num(vectors(*known.steps(numbers[number])))
-
-    def value(reader: Callable[[int], Floats], number: int) -> Floats:
-        return at(reader(numbers[number]))
-
-    def speed(number: int) -> Floats:
-        return np.asarray(np.hypot(*map(at, known.steps(numbers[number]))))
-
-    data: dict[str, Callable[[int], Floats]] = {
-        key: partial(value, scalar.read) for key, scalar in scalars.items()
-    }
-    if has_speed:
-        data["speed"] = speed
-    some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
-    valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
-    count = len(numbers)
-    return TriangleArrays(
-        points=points,
-        triangles=triangles,
-        velocity=LazySteps(count, velocity) if count > 1 else velocity(0),
-        times=times,
-        valid=at(valid * 1.0) > 1 - 1e-9,
-        scalars={key: LazySteps(count, read) for key, read in data.items()},
-        **words,
-    )
-
-
 def _in_plane(u: Floats, v: Floats) -> Floats:
     return np.stack([u, v, np.zeros_like(u)], axis=-1)
 
 
-def _words(scalars: Mapping[str, _Scalar]) -> dict[str, dict[str, str]]:
+def _words(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
     """Return units, and long names for which there is room, of variables."""
     attributes = {key: scalar.attributes for key, scalar in scalars.items()}
     words = {
