@@ -131,7 +131,16 @@ class FlowField(FieldConstructors):
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:
-        """Return the field of what a source gives."""
+        """Make a field of what a source gives.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> from flowtex.field.io.arrays import GridArrays
+        >>> arrays = GridArrays(points=([0, 1, 2], [0, 1]), velocity=[[(1, 0)] * 3] * 2)
+        >>> flowtex.FlowField.of(arrays).shape
+        (2, 3)
+        """
         on_triangles = isinstance(arrays, TriangleArrays)
         make: Any = cls.from_triangles if on_triangles else cls.from_arrays
         field: FlowField = make(**vars(arrays))
@@ -169,8 +178,7 @@ class FlowField(FieldConstructors):
         velocity
             Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a field that varies
             in time, in units of length per unit of time. NaN and masked entries blank a node.
-            Steps that are read late (``LazySteps``) stay so: those nodes are blanked that have no
-            data in the first.
+            Steps that are read late (``LazySteps``) stay so, on the nodes that the first one has.
         times
             Time of each step, (T,), strictly increasing, in any unit of time. Steps are
             numbered 0, 1, 2, ... when it is left out. Dates (``datetime64``, or cftime's) become
@@ -226,9 +234,6 @@ class FlowField(FieldConstructors):
         >>> flowtex.FlowField.from_arrays((x, y), v, name="a vortex").shape
         (31, 41)
         """
-        if scalars is not None and not isinstance(scalars, Mapping):
-            msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
-            raise FieldError(msg)
         times, time_unit, start = as_seconds(times, time_unit)
         t = None if times is None else with_gaps("times", times)
         nodes = grid_nodes(
@@ -237,7 +242,7 @@ class FlowField(FieldConstructors):
             t,
             valid,
             periodic,
-            scalars or {},
+            {} if scalars is None else scalars,
             sign_free=sign_free,
             on_globe=projection is not None and projection.is_globe,
         )
@@ -520,8 +525,7 @@ class FlowField(FieldConstructors):
 
     def at_step(self, step: int) -> FlowField:
         """Return one time step, as for :meth:`step_number`, as a steady field."""
-        step = self.step_number(step)
-        return self.at_steps([step])
+        return self.at_steps([self.step_number(step)])
 
     def at_steps(self, steps: Sequence[int]) -> FlowField:
         """Return some of the time steps, by increasing numbers from 0, in memory."""
@@ -566,11 +570,8 @@ class FlowField(FieldConstructors):
         if self.triangles is not None:
             msg = f"{self!r} has no lines of nodes; make the mesh coarser, as by mesh.decimate(0.5)"
             raise FieldError(msg)
-        rows, columns = (
-            every_line(count, factor, closed=closed)
-            for count, closed in zip(self.shape, self.periodic, strict=True)
-        )
-        return self.at_lines(rows, columns)
+        axes = zip(self.shape, self.periodic, strict=True)
+        return self.at_lines(*(every_line(n, factor, closed=closed) for n, closed in axes))
 
     def at_lines(self, rows: Indices, columns: Indices) -> FlowField:
         """Return the field on some of its lines of nodes, whose numbers along j and i increase.

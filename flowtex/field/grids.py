@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex.errors import raise_faults
+from flowtex.errors import FieldError, raise_faults
 from flowtex.field.periodic import NodalArrays, close_axes
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.steps import LazySteps, Steps, first_step
@@ -61,6 +61,9 @@ def grid_nodes(
     Parameters and errors are those of :meth:`FlowField.from_arrays`. Of a velocity that is read
     late the first step is looked at, and of scalars that are, none.
     """
+    if not isinstance(scalars, Mapping):
+        msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
+        raise FieldError(msg)
     p, masked_points = as_numbers("points", node_positions(points))
     v, masked_velocity = as_numbers("velocity", first_step(velocity))
     late = {name: steps for name, steps in scalars.items() if isinstance(steps, LazySteps)}
