@@ -159,8 +159,8 @@ class FieldOptions:
         Form(read=named_texts(int, "an axis and a whole number, as number=2"), repeated=True),
     )
 
-    def field(self, mesh: Any) -> FlowField:
-        """Return the field of a mesh or of a file, or a field as it is.
+    def field(self, mesh: Any, time: float | str | None = None) -> FlowField:
+        """Return the field of a mesh or of a file, or a field as it is; of a file at one time.
 
         Raises
         ------
@@ -169,7 +169,7 @@ class FieldOptions:
             When something is chosen of a field that is made already, or the times of a file.
         """
         choices = {name: value for name, value in vars(self).items() if value is not None}
-        if (stored := self._of_store(mesh, choices)) is not None:
+        if (stored := self._of_store(mesh, choices, time)) is not None:
             return stored
         if is_dataset(mesh):
             return FlowField.from_xarray(mesh, **self._of_dataset(choices))
@@ -177,7 +177,7 @@ class FieldOptions:
             if "times" in choices:
                 msg = f"times is given, and {str(mesh)!r} has its own; leave it out"
                 raise FieldError(msg)
-            return FlowField.from_file(mesh, **choices)
+            return FlowField.from_file(mesh, time=time, **choices)
         if not isinstance(mesh, FlowField):
             self._refuse(choices, OF_EARTH, "data of the Earth, and this is a mesh")
             return FlowField.from_pyvista(mesh, **choices)
@@ -189,7 +189,9 @@ class FieldOptions:
             raise FieldError(msg)
         return mesh
 
-    def _of_store(self, place: Any, choices: dict[str, Any]) -> FlowField | None:
+    def _of_store(
+        self, place: Any, choices: dict[str, Any], time: float | str | None
+    ) -> FlowField | None:
         """Return the field of a pyramid in a store, where there is one."""
         from flowtex.pyramid import is_store, open_store
         from flowtex.pyramid.others import has_parts
@@ -197,7 +199,10 @@ class FieldOptions:
         if not has_parts(place):
             return None
         if is_store(place):
-            self._refuse(choices, tuple(choices), "what a pyramid is built from")
+            given = choices if time is None else {**choices, "time": time}
+            self._refuse(given, tuple(given), "what a pyramid is built from")
+        if time is not None:
+            choices = {**choices, "sel": {**choices.get("sel", {}), "time": time}}
         return open_store(place, **self._of_dataset(choices))
 
     def _of_dataset(self, choices: dict[str, Any]) -> dict[str, Any]:
@@ -484,6 +489,10 @@ def option_form(kind: type, name: str) -> Form:
     return form
 
 
+#: What of the appearance is an attribute; the image is changed by a method.
+LIVE = tuple(name for name in Appearance.__dataclass_fields__ if name != "image")
+
+
 def _attribute(name: str) -> Any:
     def get(self: AppearanceAttributes) -> Any:
         return getattr(self.scene.appearance, name)
@@ -497,13 +506,18 @@ def _attribute(name: str) -> Any:
 class AppearanceAttributes:
     """The field, settings and appearance of a scene as attributes of what shows it.
 
-    Each of the appearance is to be set at any time.
+    Each of the appearance is to be set at any time; ``{appearance}`` in the docstring of a class
+    becomes their names.
 
     Once it is made, other attributes cannot be set, so that a slip of the pen is no silent one.
     """
 
     scene: Any
     _is_made = False
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        cls.__doc__ = (cls.__doc__ or "").replace("{appearance}", ", ".join(LIVE))
 
     if TYPE_CHECKING:
 
@@ -535,9 +549,8 @@ class AppearanceAttributes:
         super().__setattr__(name, value)
 
 
-for _name in Appearance.__dataclass_fields__:
-    if _name != "image":  # which is changed by a method
-        setattr(AppearanceAttributes, _name, _attribute(_name))
+for _name in LIVE:
+    setattr(AppearanceAttributes, _name, _attribute(_name))
 
 
 def _described(text: str, options: list[Any]) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from flowtex._util.progress import waiting
 from flowtex.cli.console import in_flags, say
 from flowtex.cli.options import UsageError
+from flowtex.options import FieldOptions
 
 if TYPE_CHECKING:
     from flowtex.field import FlowField
@@ -20,25 +21,13 @@ __all__ = ["load_field", "notices"]
 
 def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
     """Return the flow of a file, or of several that belong together."""
-    from flowtex.field import FlowField
-    from flowtex.options import FieldOptions
-    from flowtex.pyramid import is_store
-    from flowtex.pyramid.others import has_parts
-
     if not files:
         msg = "there is no file; name one"
         raise UsageError(msg)
-    options = dict(choice)
+    options, whole = dict(choice), files[0] if len(files) == 1 else files
+    time = options.pop("time", None)
     with waiting(f"Reading {files[0].name}"), notices():
-        if len(files) == 1 and has_parts(files[0]):
-            if options and is_store(files[0]):
-                msg = f"--{next(iter(options))} is for what a pyramid is built from; leave it out"
-                raise UsageError(msg)
-            if (time := options.pop("time", None)) is not None:
-                options["sel"] = {**options.get("sel", {}), "time": time}
-            return FieldOptions(**options).field(files[0])
-        whole: Any = files[0] if len(files) == 1 else files
-        return FlowField.from_file(whole, **options)
+        return FieldOptions(**options).field(whole, time)
 
 
 @contextmanager

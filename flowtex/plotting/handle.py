@@ -38,8 +38,7 @@ class FlowHandle(AppearanceAttributes):
         The flow.
     settings
         Every setting, live.
-    scalars, cmap, clim, log_scale, color, opacity, visible, lighting, show_scalar_bar, \
-    coastlines, graticule, land
+    {appearance}
         Arguments of ``plotter.flowtex.add``, live.
     actor
         PyVista's actor, for its position and the like.

@@ -47,8 +47,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     Attributes
     ----------
-    scalars, cmap, clim, log_scale, color, opacity, visible, lighting, show_scalar_bar, \
-    coastlines, graticule, land
+    {appearance}
         Arguments that the widget was made with, live.
     camera
         Where it is seen from: ``position``, ``focal_point``, ``up`` (three numbers each, in the
