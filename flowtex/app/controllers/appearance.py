@@ -321,14 +321,15 @@ class Appearance(Controller):
         settings = {k: v for k, v in saved.get("settings", {}).items() if v != "image"}
         self.settings.update(**settings)
         self.show_settings()
-        names = {"split": "compare"}
-        names |= {name: name for name in ("colour", "theme", "background", *LOOK) if name != "clim"}
+        names = {"split": "compare", "theme": "theme", "background": "background"}
         self.state.set(**{ours: saved[name] for name, ours in names.items() if name in saved})
-        self.take_colour()
-        if saved.get("clim"):
-            low, high = saved["clim"]
-            self.state.set(low=low, high=high)
-            self.take_range()
+        look = {name: saved[name] for name in LOOK if name in saved}
+        if not name_among(look.get("cmap"), CMAPS):
+            look.pop("cmap", None)
+        if name_among(name := saved.get("colour"), (PLAIN, *self.area.scene.scalar_names)):
+            look = {"clim": None, **look, "scalars": False if name == PLAIN else name}
+        self._change(**look)
+        self.show_colours()
         self.take_background()
         self.take_comparison()
         if saved.get("time_beside") is not None:

@@ -190,7 +190,7 @@ def test_the_python_lines_draw_the_same_picture(
 ) -> None:
     monkeypatch.chdir(file.parent)
     field = flowtex.FlowField.from_file(file.name)
-    changed: dict[str, Any] = {"samples": 15, "seed": 3, "motion": "speed"}
+    changed: dict[str, Any] = {"samples": 15, "seed": 3, "motion": "speed", "opacity": 0.6}
     scene = Viewport(field, zoom=3.0, scalars="vorticity", cmap="magma", clim=(-1, 2.0), **changed)
     flowtex.examples.double_gyre(7.0).save(file.parent / "later.vts")
     later = {"field": flowtex.FlowField.from_file("later.vts")}
@@ -205,6 +205,7 @@ def test_the_python_lines_draw_the_same_picture(
         "colour": "vorticity",
         "cmap": "magma",
         "clim": (-1, 2.0),
+        "opacity": 0.6,
         "clock": 0.7,
         "theme": "light",
         "split": split,
