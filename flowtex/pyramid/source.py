@@ -19,7 +19,8 @@ from flowtex.field.datasets.detect import is_dataset
 from flowtex.field.datasets.files import dataset_paths
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import RegionNodes, Regions
-from flowtex.field.io.file_fields import read_files
+from flowtex.field.io.arrays import FieldArrays
+from flowtex.field.io.file_fields import errors_of, read_files
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid.places import is_store
 from flowtex.tiles import Pyramid, drawn_speeds, ends_of
@@ -249,13 +250,17 @@ def source_of(given: Any, **options: Any) -> Source:
     if is_store(given):
         msg = f"{given} is a pyramid already; give what one is built from"
         raise FieldError(msg)
+    if is_dataset(given):
+        return _source_from(read_datasets(given, regions=True, **options))
     one: str | Path | Sequence[str | Path] = given
-    options["regions"] = True
-    arrays = read_datasets(given, **options) if is_dataset(given) else read_files(one, **options)
-    if not isinstance(arrays, Regions):
-        return FieldSource(FlowField.of(arrays))
-    source = RegionSource(arrays)
-    if not is_dataset(given):
-        del options["regions"]
+    with errors_of(one):
+        source = _source_from(read_files(one, regions=True, **options))
+    if isinstance(source, RegionSource):
         source.files, source.choice = dataset_paths(one), repr(sorted(options.items()))
     return source
+
+
+def _source_from(arrays: FieldArrays | Regions) -> Source:
+    if isinstance(arrays, Regions):
+        return RegionSource(arrays)
+    return FieldSource(FlowField.of(arrays))

@@ -183,12 +183,14 @@ class FieldConstructors:
         >>> flowtex.FlowField.from_file("airfoil.vts").shape
         (65, 193)
         """
-        from flowtex.field.io.file_fields import read_files
+        from flowtex.field.io.file_fields import errors_of, read_files
 
         options: dict[str, Any] = {"plane": plane, "slice": slice, "contour": contour}
         options |= {"block": block, "periodic": periodic, "sign_free": sign_free, "level": level}
         options |= {"projection": projection, "globe": globe, "sel": sel, "isel": isel}
-        return cls.of(cast("FieldArrays", read_files(path, vectors=vectors, time=time, **options)))
+        with errors_of(path):
+            arrays = read_files(path, vectors=vectors, time=time, **options)
+            return cls.of(cast("FieldArrays", arrays))
 
     @classmethod
     def from_xarray(

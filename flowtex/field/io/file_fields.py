@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.io.files import read_file
 from flowtex.field.io.reader_errors import errors_of_file
 
-__all__ = ["read_files"]
+__all__ = ["errors_of", "read_files"]
 
 #: Arguments that are for meshes; the others are for data of the Earth.
 OF_MESHES = ("plane", "slice", "contour", "block", "periodic", "sign_free")
@@ -31,27 +32,33 @@ def read_files(
 ) -> GridArrays | TriangleArrays | Regions:
     """Read what a field needs; :meth:`FlowField.from_file` has the parameters.
 
-    ``regions`` is that of :func:`~flowtex.field.datasets.read.read_datasets`.
+    ``regions`` is that of :func:`~flowtex.field.datasets.read.read_datasets`. Whatever this raises
+    is to be named by :func:`errors_of`.
     """
     paths = dataset_paths(path)
-    first = paths[0] if paths else path
     of_meshes = {name: options.pop(name) for name in OF_MESHES if name in options}
     chosen = {name: value for name, value in options.items() if value is not None}
-    with errors_of_file(first if isinstance(first, (str, Path)) else "several files"):
-        if paths:
-            _refuse(of_meshes, "meshes, and this is data of the Earth")
-            if time is not None:
-                chosen["sel"] = {**chosen.get("sel", {}), "time": time}
-            chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
-            return read_datasets(open_datasets(paths), **chosen)
-        _refuse(chosen, "data of the Earth, and this is a mesh")
-        if not isinstance(path, (str, Path)):
-            msg = f"{len(path)} files are given, and a mesh is read from one; name one of them"
-            raise FieldError(msg)
-        if isinstance(time, str):
-            msg = f"time is {time!r}; expected a number, one of the times of the file"
-            raise FieldError(msg)
-        return read_file(path, time=time, vectors=vectors, **of_meshes)
+    if paths:
+        _refuse(of_meshes, "meshes, and this is data of the Earth")
+        if time is not None:
+            chosen["sel"] = {**chosen.get("sel", {}), "time": time}
+        chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
+        return read_datasets(open_datasets(paths), **chosen)
+    _refuse(chosen, "data of the Earth, and this is a mesh")
+    if not isinstance(path, (str, Path)):
+        msg = f"{len(path)} files are given, and a mesh is read from one; name one of them"
+        raise FieldError(msg)
+    if isinstance(time, str):
+        msg = f"time is {time!r}; expected a number, one of the times of the file"
+        raise FieldError(msg)
+    return read_file(path, time=time, vectors=vectors, **of_meshes)
+
+
+def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager[None]:
+    """Name a file, or the first of several, in what goes wrong until a field is made of it."""
+    paths = dataset_paths(path)
+    first = paths[0] if paths else path
+    return errors_of_file(first if isinstance(first, (str, Path)) else "several files")
 
 
 def _refuse(choices: Mapping[str, Any], what: str) -> None:

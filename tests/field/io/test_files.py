@@ -596,6 +596,16 @@ def test_a_file_tells_what_it_holds(tmp_path: Path) -> None:
     )
 
 
+def test_what_makes_no_field_names_its_file(tmp_path: Path) -> None:
+    for n, mesh in enumerate((flowing(), pv.Plane().triangulate())):
+        mesh["v"] = np.ones((mesh.n_points, 3))
+        mesh["IBlank"] = np.zeros(mesh.n_points, dtype=int)
+        path = tmp_path / f"still{n}.{'vtp' if n else 'vts'}"
+        mesh.save(path)
+        with pytest.raises(FieldError, match=f"^{re.escape(str(path))}: .*usable"):
+            FlowField.from_file(path, vectors="v")
+
+
 def test_a_file_that_can_be_drawn_has_no_problem(tmp_path: Path) -> None:
     flowing().save(tmp_path / "flow.vts")
     summary = describe(tmp_path / "flow.vts")
