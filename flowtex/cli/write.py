@@ -57,9 +57,7 @@ def render(
 ) -> int:
     """Draw a file as a picture."""
     start = time.perf_counter()
-    choice, options = arguments(flow), drawing(look, settings)
-    frame = frame or FrameFlags()
-    options |= {**vars(frame), "size": pixels(frame.size)}
+    choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_picture_file(output)
     begin_opengl()
     shown: dict[str, Any] = {"clock": clock}
@@ -111,9 +109,7 @@ def movie(
 ) -> int:
     """Write a file as a movie: a loop without a seam, or all times of a flow that varies."""
     start = time.perf_counter()
-    choice, options = arguments(flow), drawing(look, settings)
-    frame = frame or FrameFlags()
-    options |= {**vars(frame), "size": pixels(frame.size)}
+    choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_movie_file(output, options["size"], fps, quality)
     check_lines(choice, options)
     begin_opengl()
@@ -176,6 +172,10 @@ def export(
     seconds = time.perf_counter() - start
     say((str(output), "bold"), "  ", (f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s", "dim"))
     return 0
+
+
+def _drawing(look: LookFlags | None, frame: FrameFlags, settings: Any) -> dict[str, Any]:
+    return {**drawing(look, settings), **vars(frame), "size": pixels(frame.size)}
 
 
 def _size(options: Mapping[str, Any]) -> str:
