@@ -9,6 +9,7 @@ browser in the header, so that both sides move the camera alike.
 from __future__ import annotations
 
 import math
+import re
 import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
@@ -17,8 +18,9 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import is_number
+from flowtex._util.arguments import checked_number, is_number
 from flowtex._util.array_types import Floats
+from flowtex._util.written import number_or_text
 from flowtex.earth import EARTH_RADIUS
 from flowtex.errors import FieldError
 from flowtex.field import Surface
@@ -196,16 +198,12 @@ class Camera:
         FieldError
             When ``zoom`` is not positive, ``focus`` is no point, or ``margin`` is out of range.
         """
-        if not (is_number(margin) and 0 <= margin < 0.5):
-            msg = f"margin is {margin!r}; expected a number from 0 to less than 0.5, such as 0.04"
-            raise FieldError(msg)
-        share = 1 - 2 * margin
-        if not (is_number(zoom) and NEAREST_REACH <= zoom <= FARTHEST_REACH):
-            msg = (
-                f"zoom is {zoom!r}; expected a positive number, 1 for the whole surface, from "
-                f"{NEAREST_REACH:g} to {FARTHEST_REACH:g}"
-            )
-            raise FieldError(msg)
+        expected = "a number from 0 to less than 0.5, such as 0.04"
+        most = math.nextafter(0.5, 0.0)
+        share = 1 - 2 * checked_number("margin", margin, 0.0, most, expected=expected)
+        ends = NEAREST_REACH, FARTHEST_REACH
+        expected = "a positive number, 1 for the whole surface, from {:g} to {:g}".format(*ends)
+        zoom = checked_number("zoom", zoom, *ends, expected=expected)
         center = surface.center.copy()
         if focus is not None:
             if not (_is_point(focus, 2) or _is_point(focus, 3)):
@@ -339,6 +337,33 @@ class Camera:
             msg = f"camera is {points!r}; expected position, focal point and up, three points"
             raise CameraError(msg) from error
         return cls(position, focal_point, up)
+
+    @classmethod
+    def from_text(cls, text: str) -> Self:
+        """Return the camera of :meth:`to_text`, or of the nine numbers of :meth:`from_points`.
+
+        Raises
+        ------
+        CameraError
+            When the text is none of these, or the camera sees nothing.
+        """
+        kind, *words = re.split(r"[,\s]+", text.strip())
+        numbers = [number_or_text(word) for word in ([kind, *words] if len(words) == 8 else words)]
+        points = [tuple(numbers[start : start + 3]) for start in (0, 3, 6)]
+        if len(words) == 8:
+            return cls.from_points(points)
+        if kind not in ("parallel", "perspective") or len(numbers) != 11:
+            msg = f"camera is {text!r}; expected nine numbers: position, focal point and up"
+            raise CameraError(msg)
+        scale, angle = numbers[9:]
+        position, focal_point, up = points
+        return cls(position, focal_point, up, kind == "parallel", scale, angle)  # type: ignore[arg-type]
+
+    def to_text(self) -> str:
+        """Return all of it as one text without blanks."""
+        numbers = (*self.position, *self.focal_point, *self.up)
+        words = map(repr, (*numbers, self.parallel_scale, self.view_angle))
+        return ",".join(["parallel" if self.parallel else "perspective", *words])
 
     def to_dict(self) -> dict[str, Any]:
         """Return the attributes by name: lists of numbers, numbers, and a bool, for JSON."""

@@ -14,19 +14,30 @@ from __future__ import annotations
 import inspect
 import math
 import textwrap
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from flowtex._util.arguments import near_names
+from flowtex._util.arguments import is_number, near_names
 from flowtex._util.colours import DEFAULT_CMAP, colour_table, rgb
+from flowtex._util.written import (
+    NUMBER,
+    PLAIN,
+    SWITCH,
+    Form,
+    UnreadableError,
+    named_texts,
+    number_or_text,
+    numbers,
+    or_none,
+)
 from flowtex.camera import Camera
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.datasets.detect import is_dataset
 from flowtex.field.datasets.pairs import two_names
-from flowtex.settings import TABLE, Settings, SettingsError
+from flowtex.settings import TABLE, Settings, SettingsError, setting
 
 __all__ = [
     "LAND_COLOR",
@@ -34,10 +45,12 @@ __all__ = [
     "ROBUST",
     "SPEED",
     "Appearance",
+    "AppearanceAttributes",
     "FieldOptions",
     "Options",
     "ViewOptions",
     "accepts_options",
+    "option_form",
     "option_text",
 ]
 
@@ -57,9 +70,36 @@ SPEED, ROBUST = "speed", "robust"
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def _option(default: Any, text: str) -> Any:
-    """Return a field with the text that tells a person what it is for."""
-    return field(default=default, metadata={"text": text})
+def _option(default: Any, text: str, form: Form | None = PLAIN) -> Any:
+    """Return a field with the text that tells a person what it is for.
+
+    ``form`` is how its values are written in a shell or a link; ``None`` for what is not.
+    """
+    return field(default=default, metadata={"text": text, "form": form})
+
+
+def _read_ends(text: str) -> str | tuple[float, ...]:
+    if text == ROBUST:
+        return ROBUST
+    low, high = numbers(2, expected="two numbers, as 1.5,3")(text)
+    if not low < high:
+        msg = "a lower number and a higher one"
+        raise UnreadableError(msg)
+    return low, high
+
+
+def _read_differences(words: Sequence[str]) -> dict[str, Any]:
+    """Read words such as ``lod=false`` as settings, and as what :class:`Appearance` has."""
+    expected = "name=value, as in --beside lod=false"
+    texts = named_texts(str, expected)(words)
+    values: dict[str, Any] = {}
+    for name, text in texts.items():
+        own = name.strip().replace("-", "_")
+        if (row := Appearance.__dataclass_fields__.get(own)) is not None:
+            values[own] = row.metadata["form"].read(text)
+        else:
+            values[own] = setting(own).parse(text)
+    return values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,11 +121,17 @@ class FieldOptions:
         None, 'Surface in a volume where an array has a value: ``"pressure=101325"``.'
     )
     block: int | str | None = _option(
-        None, "Number or path of the block to draw, where there are several."
+        None,
+        "Number or path of the block to draw, where there are several.",
+        Form(read=lambda text: int(text) if text.isdecimal() else text),
     )
-    times: Any | None = _option(None, "Times of a list of meshes; their positions by default.")
+    times: Any | None = _option(
+        None, "Times of a list of meshes; their positions by default.", form=None
+    )
     periodic: str | None = _option(
-        None, 'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.'
+        None,
+        'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.',
+        Form(read=or_none("")),
     )
     sign_free: bool | None = _option(
         None, "Whether the vectors have no sign, so that v and -v mean the same."
@@ -98,15 +144,23 @@ class FieldOptions:
     )
     globe: bool | None = _option(None, "Whether data of the Earth are put on a sphere.")
     level: float | str | None = _option(
-        None, "Level of a data set, such as ``500``; the one nearest to the surface by default."
+        None,
+        "Level of a data set, such as ``500``; the one nearest to the surface by default.",
+        Form(read=number_or_text),
     )
     sel: Mapping[str, Any] | None = _option(
-        None, 'What to draw along other axes of a data set, by value: ``{"number": 3}``.'
+        None,
+        'What to draw along other axes of a data set, by value: ``{"number": 3}``.',
+        Form(read=named_texts(number_or_text, "an axis and a value, as number=3"), repeated=True),
     )
-    isel: Mapping[str, Any] | None = _option(None, "The same by number.")
+    isel: Mapping[str, Any] | None = _option(
+        None,
+        'The same by number from 0: ``{"number": 2}``.',
+        Form(read=named_texts(int, "an axis and a whole number, as number=2"), repeated=True),
+    )
 
-    def field(self, mesh: Any) -> FlowField:
-        """Return the field of a mesh or of a file, or a field as it is.
+    def field(self, mesh: Any, time: float | str | None = None) -> FlowField:
+        """Return the field of a mesh or of a file, or a field as it is; of a file at one time.
 
         Raises
         ------
@@ -115,7 +169,7 @@ class FieldOptions:
             When something is chosen of a field that is made already, or the times of a file.
         """
         choices = {name: value for name, value in vars(self).items() if value is not None}
-        if (stored := self._of_store(mesh, choices)) is not None:
+        if (stored := self._of_store(mesh, choices, time)) is not None:
             return stored
         if is_dataset(mesh):
             return FlowField.from_xarray(mesh, **self._of_dataset(choices))
@@ -123,7 +177,7 @@ class FieldOptions:
             if "times" in choices:
                 msg = f"times is given, and {str(mesh)!r} has its own; leave it out"
                 raise FieldError(msg)
-            return FlowField.from_file(mesh, **choices)
+            return FlowField.from_file(mesh, time=time, **choices)
         if not isinstance(mesh, FlowField):
             self._refuse(choices, OF_EARTH, "data of the Earth, and this is a mesh")
             return FlowField.from_pyvista(mesh, **choices)
@@ -135,7 +189,9 @@ class FieldOptions:
             raise FieldError(msg)
         return mesh
 
-    def _of_store(self, place: Any, choices: dict[str, Any]) -> FlowField | None:
+    def _of_store(
+        self, place: Any, choices: dict[str, Any], time: float | str | None
+    ) -> FlowField | None:
         """Return the field of a pyramid in a store, where there is one."""
         from flowtex.pyramid import is_store, open_store
         from flowtex.pyramid.others import has_parts
@@ -143,7 +199,10 @@ class FieldOptions:
         if not has_parts(place):
             return None
         if is_store(place):
-            self._refuse(choices, tuple(choices), "what a pyramid is built from")
+            given = choices if time is None else {**choices, "time": time}
+            self._refuse(given, tuple(given), "what a pyramid is built from")
+        if time is not None:
+            choices = {**choices, "sel": {**choices.get("sel", {}), "time": time}}
         return open_store(place, **self._of_dataset(choices))
 
     def _of_dataset(self, choices: dict[str, Any]) -> dict[str, Any]:
@@ -177,29 +236,39 @@ class Appearance:
         None,
         'What to colour by: the name of an array, ``"speed"`` (the default), or ``False`` for a '
         "plain surface.",
+        Form(read=or_none(value=False)),
     )
     cmap: Any | None = _option(
         None,
         "Colour map: a name, a map of matplotlib's, a table of PyVista's, or an array (N, 3 or "
         "4), uint8 or from 0 to 1; viridis by default.",
+        Form("Colour map, by matplotlib's name; viridis by default."),
     )
     clim: tuple[float, float] | str | None = _option(
         None,
-        "Values at the ends of the colour map; by default the range over all times, with zero in "
-        "the middle where the map diverges, such as coolwarm, and the values have both signs. "
+        "Values at the ends of the colour map, low and high; by default the range over all times, "
+        "with zero in the middle where the map diverges, such as coolwarm, and the values have "
+        "both signs. "
         '``"robust"`` leaves 2 % out at either end.',
+        Form(read=_read_ends, write=lambda ends: ",".join(repr(float(end)) for end in ends)),
     )
     log_scale: bool = _option(
-        default=False, text="Whether colours go by the logarithm, for values above 0."
+        default=False,
+        text="Whether colours go by the logarithm, for values above 0.",
+        form=SWITCH,
     )
     color: Any = _option(PLAIN_COLOR, "Colour of a plain surface, as PyVista takes it.")
-    opacity: float = _option(1.0, "1 is opaque, 0 invisible.")
-    visible: bool = _option(default=True, text="Whether the surface is drawn.")
+    opacity: float = _option(1.0, "1 is opaque, 0 invisible.", NUMBER)
+    visible: bool = _option(default=True, text="Whether the surface is drawn.", form=SWITCH)
     lighting: bool | None = _option(
-        None, "Whether the surface is lit; by default a curved one is and a flat one is not."
+        None,
+        "Whether the surface is lit; by default a curved one is and a flat one is not.",
+        SWITCH,
     )
     show_scalar_bar: bool | None = _option(
-        None, "Whether there is a legend of the colours; by default unless an image covers them."
+        None,
+        "Whether there is a legend of the colours; by default unless an image covers them.",
+        SWITCH,
     )
     image: Any | None = _option(
         None,
@@ -208,18 +277,21 @@ class Appearance:
         "surface once, its left at the first i and its top, row 0, at the last j; ``tiles`` "
         "repeats it. Where it is transparent the surface's colour shows. It sets "
         '``noise="image"``, and ``strength=1`` unless that is given.',
+        Form("PNG or JPEG that the flow smears, in place of the noise.", Path),
     )
     coastlines: bool | None = _option(
-        None, "Whether coasts are drawn; by default where the field has a projection."
+        None, "Whether coasts are drawn; by default where the field has a projection.", SWITCH
     )
     graticule: bool | None = _option(
         None,
         "Whether meridians and parallels are drawn; by default where the field has a projection.",
+        SWITCH,
     )
     land: Any = _option(
         LAND_COLOR,
         "Colour of the Earth where a field with a projection has no data, such as land in an "
-        "ocean; ``None`` for none.",
+        "ocean, or ``None``.",
+        Form(read=or_none()),
     )
 
     def __post_init__(self) -> None:
@@ -231,7 +303,7 @@ class Appearance:
             faults.append(f"scalars is {self.scalars!r}; expected the name of an array, or False")
         if self.cmap is None:
             object.__setattr__(self, "cmap", DEFAULT_CMAP)
-        if not _is_between(self.opacity, 0, 1):
+        if not (is_number(self.opacity) and 0 <= self.opacity <= 1):
             faults.append(f"opacity is {self.opacity!r}; expected a number from 0 to 1")
         if self.clim is not None and not (isinstance(self.clim, str) and self.clim == ROBUST):
             try:
@@ -278,18 +350,26 @@ class ViewOptions:
 
     zoom: float = _option(1.0, "How far in: 1 shows the whole surface, 8 an eighth of its width.")
     focus: tuple[float, ...] | None = _option(
-        None, "Point of the mesh to look at, two or three coordinates; the middle by default."
+        None,
+        "Point of the mesh to look at, two or three coordinates; the middle by default.",
+        Form(read=numbers(2, 3, expected="two or three coordinates, as 1.5,0")),
     )
     camera: Any | None = _option(
         None,
         "Another view: a :class:`flowtex.camera.Camera`, its numbers by name, or position, focal "
         "point and direction upwards, three points.",
+        Form(
+            "Position, focal point and direction upwards, nine numbers with commas between; or "
+            "the camera of a page's link.",
+            Camera.from_text,
+        ),
     )
     background: Any = _option("white", "Colour behind the surface.")
     beside: Mapping[str, Any] | None = _option(
         None,
         "What is different in a second view to the right of the first one, such as "
         '``{"lod": False}``; both views move together.',
+        Form(read=_read_differences, repeated=True),
     )
 
     def __post_init__(self) -> None:
@@ -403,6 +483,76 @@ def option_text(kind: type, name: str) -> str:
     return str(kind.__dataclass_fields__[name].metadata["text"])  # type: ignore[attr-defined]
 
 
+def option_form(kind: type, name: str) -> Form:
+    """Return how the values of a field of an option class are written."""
+    form: Form = kind.__dataclass_fields__[name].metadata["form"]  # type: ignore[attr-defined]
+    return form
+
+
+#: What of the appearance is an attribute; the image is changed by a method.
+LIVE = tuple(name for name in Appearance.__dataclass_fields__ if name != "image")
+
+
+def _attribute(name: str) -> Any:
+    def get(self: AppearanceAttributes) -> Any:
+        return getattr(self.scene.appearance, name)
+
+    def change(self: AppearanceAttributes, value: Any) -> None:
+        self.scene.appearance = replace(self.scene.appearance, **{name: value})
+
+    return property(get, change, doc=option_text(Appearance, name))
+
+
+class AppearanceAttributes:
+    """The field, settings and appearance of a scene as attributes of what shows it.
+
+    Each of the appearance is to be set at any time; ``{appearance}`` in the docstring of a class
+    becomes their names.
+
+    Once it is made, other attributes cannot be set, so that a slip of the pen is no silent one.
+    """
+
+    scene: Any
+    _is_made = False
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        cls.__doc__ = (cls.__doc__ or "").replace("{appearance}", ", ".join(LIVE))
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    @property
+    def field(self) -> FlowField:
+        """The flow."""
+        field: FlowField = self.scene.field
+        return field
+
+    @property
+    def settings(self) -> Settings:
+        """Every setting, live."""
+        settings: Settings = self.scene.settings
+        return settings
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set an attribute that there is; the error for another one names those that are near."""
+        is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
+        if self._is_made and not is_known:
+            own = [n for n in dir(type(self)) if not n.startswith("_")]
+            msg = f"{type(self).__name__} has no attribute {name!r}"
+            if name in TABLE:
+                msg += f" of its own; it is a setting: settings.{name}"
+            else:
+                msg += f"; {near_names(name, own)}"
+            raise AttributeError(msg)
+        super().__setattr__(name, value)
+
+
+for _name in LIVE:
+    setattr(AppearanceAttributes, _name, _attribute(_name))
+
+
 def _described(text: str, options: list[Any]) -> str:
     """Put the description of options into a docstring."""
     lines = []
@@ -421,10 +571,3 @@ def _described(text: str, options: list[Any]) -> str:
                 break_on_hyphens=False,
             )
     return "\n".join(lines)
-
-
-def _is_between(value: Any, low: float, high: float) -> bool:
-    try:
-        return bool(low <= value <= high)
-    except (TypeError, ValueError):
-        return False

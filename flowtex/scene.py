@@ -14,7 +14,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
 from flowtex._util.colours import colour_table, is_diverging
@@ -24,7 +23,14 @@ from flowtex.field.dates import seconds_since
 from flowtex.field.derived import DERIVED
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps, Steps
-from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options, option_text
+from flowtex.options import (
+    ROBUST,
+    SPEED,
+    Appearance,
+    AppearanceAttributes,
+    FieldOptions,
+    Options,
+)
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet, check_noise
@@ -456,59 +462,13 @@ class Scene:
             notice(affects)
 
 
-def _attribute(name: str) -> Any:
-    def get(self: AppearanceAttributes) -> Any:
-        return getattr(self.scene.appearance, name)
-
-    def change(self: AppearanceAttributes, value: Any) -> None:
-        self.scene.appearance = replace(self.scene.appearance, **{name: value})
-
-    return property(get, change, doc=option_text(Appearance, name))
-
-
-class AppearanceAttributes:
-    """The appearance of a scene as attributes of what shows it, each to be set at any time.
-
-    Once it is made, other attributes cannot be set, so that a slip of the pen is no silent one.
-    """
-
-    scene: Any
-    _is_made = False
-
-    scalars = _attribute("scalars")
-    cmap = _attribute("cmap")
-    clim = _attribute("clim")
-    log_scale = _attribute("log_scale")
-    color = _attribute("color")
-    opacity = _attribute("opacity")
-    visible = _attribute("visible")
-    lighting = _attribute("lighting")
-    show_scalar_bar = _attribute("show_scalar_bar")
-    coastlines = _attribute("coastlines")
-    graticule = _attribute("graticule")
-    land = _attribute("land")
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        """Set an attribute that there is; the error for another one names those that are near."""
-        is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
-        if self._is_made and not is_known:
-            own = [n for n in dir(type(self)) if not n.startswith("_")]
-            msg = f"{type(self).__name__} has no attribute {name!r}"
-            if name in TABLE:
-                msg += f" of its own; it is a setting: settings.{name}"
-            else:
-                msg += f"; {near_names(name, own)}"
-            raise AttributeError(msg)
-        super().__setattr__(name, value)
-
-
 def steps_of(field: FlowField, name: str) -> Steps:
     """Return nodal values at all times, (T or 1, J, I); a FieldError lists the names there are."""
     if name in field.scalars:
         return field.scalars[name]
-    if name == "speed":
+    if name == SPEED:
         return field.speed
-    names = ", ".join(repr(n) for n in dict.fromkeys(("speed", *field.scalars, *DERIVED)))
+    names = ", ".join(map(repr, dict.fromkeys((SPEED, *field.scalars, *DERIVED))))
     msg = f"there is no scalar {name!r} on this field; there are {names}"
     raise FieldError(msg)
 

@@ -197,8 +197,8 @@ class Setting:
 def _row(
     *,
     default: Any,
-    affects: Affects,
     text: str,
+    affects: Affects = "uniform",
     span: tuple[float, float] | None = None,
     choices: tuple[str, ...] = (),
 ) -> Any:
@@ -232,36 +232,30 @@ class Settings:
 
     samples: int = _row(
         default=49,
-        affects="uniform",
         text="Noise samples summed along each path (K of the paper).",
         span=(1, 200),
     )
     spacing: float = _row(
         default=0.7,
-        affects="uniform",
         text="Distance between two samples, in grains of noise.",
         span=(0.1, 10),
     )
     texture: str = _row(
         default="dense",
-        affects="uniform",
         text="Streaks everywhere, or sparse ones with a bright head, which show which way it goes.",
         choices=("dense", "streaklets"),
     )
     kernel: str = _row(
         default="hann",
-        affects="uniform",
         text="Weight of the samples: smooth, even as in the paper, or falling behind the particle.",
         choices=("hann", "box", "ramp"),
     )
     two_sided: bool = _row(
         default=True,
-        affects="uniform",
         text="Follow the flow forward as well as backward from each point.",
     )
     lod: bool = _row(
         default=True,
-        affects="uniform",
         text="Fit the grain to each pixel; off, it is blobs from near and flickers from afar.",
     )
     noise: str = _row(
@@ -272,7 +266,6 @@ class Settings:
     )
     tiles: int = _row(
         default=1,
-        affects="uniform",
         text="Repeats of an image along each side; makes a checkerboard's squares smaller.",
         span=(1, 64),
     )
@@ -287,53 +280,40 @@ class Settings:
         text="Texels of the noise texture along the surface; the grain where it is fixed on it.",
         span=(16, 8192),
     )
-    grain: float = _row(
-        default=1.5, affects="uniform", text="Size of a grain of noise, in pixels.", span=(0.25, 32)
-    )
+    grain: float = _row(default=1.5, text="Size of a grain of noise, in pixels.", span=(0.25, 32))
     fixed_grain: bool = _row(
         default=False,
-        affects="uniform",
         text="Fix the size of a grain on the surface, so that it grows as the view comes closer.",
     )
-    contrast: float = _row(
-        default=1.0, affects="uniform", text="Contrast of the texture, 0 for none.", span=(0, 4)
-    )
+    contrast: float = _row(default=1.0, text="Contrast of the texture, 0 for none.", span=(0, 4))
     strength: float = _row(
         default=0.8,
-        affects="uniform",
         text="How strongly the texture darkens and lightens the colour.",
         span=(0, 1),
     )
-    seed: int = _row(
-        default=0, affects="uniform", text="Number of the noise pattern.", span=(0, 65535)
-    )
+    seed: int = _row(default=0, text="Number of the noise pattern.", span=(0, 65535))
     motion: str = _row(
         default="off",
-        affects="uniform",
         text="Let a steady flow stream: everywhere at one speed, or faster where the flow is.",
         choices=("off", "uniform", "speed"),
     )
     speed: float = _row(
         default=40.0,
-        affects="uniform",
         text="How far the streaming goes in a second; with motion='speed', at the typical speed.",
         span=(0, 1e12),
     )
     speed_in: str = _row(
         default="pixels",
-        affects="uniform",
         text="What speed counts: pixels, the same at every zoom, or the mesh's units.",
         choices=("pixels", "units"),
     )
     period: float = _row(
         default=4.0,
-        affects="uniform",
         text="Seconds after which the streaming begins again, without a seam.",
         span=(0.1, 600),
     )
     show_level: bool = _row(
         default=False,
-        affects="uniform",
         text="Colour by the level of detail: one hue for each doubling of the grain.",
     )
     lines: str = _row(

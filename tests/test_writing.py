@@ -29,7 +29,7 @@ OF_MODULES = {"os.open", "os.replace", "shutil.copy", "shutil.move"}
 #: What these write is a file of the piece, ...
 WHOLE = {
     "app/controllers/export_jobs.py: Image.fromarray(picture).save",
-    "cli/write.py: Image.fromarray(pixels).save",
+    "cli/write.py: Image.fromarray(picture).save",
     "offscreen/encoders.py: av.open",
     "offscreen/encoders.py: next(pictures).save",
     "trace/slices.py: np.savez_compressed",

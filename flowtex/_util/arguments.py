@@ -35,12 +35,18 @@ def is_number(value: Any) -> bool:
 
 
 def checked_number(
-    name: str, value: Any, low: float = -math.inf, high: float = math.inf, *, expected: str
+    name: str,
+    value: Any,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    expected: str,
+    error: type[FieldError] = FieldError,
 ) -> float:
-    """Return a number from ``low`` to ``high``; a FieldError has what was expected."""
+    """Return a number from ``low`` to ``high``; an error, such as this, has what was expected."""
     if not (is_number(value) and low <= value <= high):
         msg = f"{name} is {value!r}; expected {expected}"
-        raise FieldError(msg)
+        raise error(msg)
     return float(value)
 
 

@@ -48,7 +48,8 @@ def rgb(colour: Any) -> tuple[float, float, float]:
     try:
         red, green, blue = pv.Color(colour).float_rgb
     except (TypeError, ValueError, OverflowError) as error:
-        raise FieldError(str(error)) from error
+        msg = f"there is no colour {colour!r}; expected a name such as black, #rrggbb, or (r, g, b)"
+        raise FieldError(msg) from error
     return red, green, blue
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import fields
@@ -11,7 +12,7 @@ from typing import Any
 
 from trame.app import get_server
 
-from flowtex._util.arguments import is_number
+from flowtex._util.arguments import checked_number
 from flowtex.app.controllers import Controllers
 from flowtex.app.controllers.context import Context
 from flowtex.app.controllers.library import Choice, Library
@@ -27,6 +28,7 @@ from flowtex.app.ui.layout import build_page
 from flowtex.diagnostics import has_display
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.options import ViewOptions
 
 __all__ = ["FlowApp", "first_choice", "serve"]
 
@@ -48,8 +50,8 @@ class FlowApp(NotebookPage):
     server
         A trame server; one of its own by default.
     **options
-        Arguments and settings of ``plotter.flowtex.add``, and ``zoom`` and ``focus`` as for
-        :func:`flowtex.render`.
+        Arguments and settings of ``plotter.flowtex.add``, and ``zoom``, ``focus`` and ``camera``
+        as for :func:`flowtex.render`.
 
     Attributes
     ----------
@@ -81,8 +83,10 @@ class FlowApp(NotebookPage):
         library = Library.of(flow, **{name: options.pop(name, None) for name in FIELD_ARGUMENTS})
         name, choice = first_choice(library, options)
         options = {k: v for k, v in options.items() if k not in CHOICE_ARGUMENTS}
-        field = library.field(name, choice)
+        field, camera = library.field(name, choice), options.pop("camera", None)
         self.area = FlowArea(field, server=self.server, state=self.state, **options)
+        if camera is not None:
+            self.viewport.camera = ViewOptions(camera=camera).first_camera(field.surface)
         self.context = Context(self.state, self.area, library.branch())
         self.server.state.trame__favicon = None
         self.state.set(panel=None, group=None, help=False, problem="")
@@ -239,15 +243,12 @@ def serve(
     >>> import flowtex
     >>> flowtex.app.serve("runs/", port=8080, limit=12)  # doctest: +SKIP
     """
-    if not (limit is None or (is_number(limit) and limit >= 1)):
-        msg = f"limit is {limit}; expected 1 or more pages"
-        raise ServeError(msg)
-    if not (is_number(port) and 0 <= port <= 65535):
-        msg = f"port is {port}; expected 0 to 65535"
-        raise ServeError(msg)
-    if not (is_number(idle) and idle > 0):
-        msg = f"idle is {idle}; expected a positive number of minutes"
-        raise ServeError(msg)
+    for name, value, low, high, expected in (
+        ("limit", 1 if limit is None else limit, 1, math.inf, "1 or more pages"),
+        ("port", port, 0, 65535, "0 to 65535"),
+        ("idle", idle, math.ulp(0.0), math.inf, "a positive number of minutes"),
+    ):
+        checked_number(name, value, low, high, expected=expected, error=ServeError)
     site = run_site(
         _app_maker(field, folder, options),
         host,

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import importlib.util
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flowtex._util.extras import install_extra
-from flowtex.cli.options import FieldFlags, UsageError, number_or_text
-
-if TYPE_CHECKING:
-    from flowtex.field import FlowField
+from flowtex.cli.options import UsageError, arguments
+from flowtex.options import Options
+from flowtex.textures.images import load_image
 
 __all__ = [
     "begin_opengl",
-    "check_colours",
-    "check_image",
     "check_lines",
     "check_movie_file",
     "check_page_file",
     "check_picture_file",
-    "check_time",
+    "drawing",
     "require_app",
     "require_opengl",
 ]
@@ -64,68 +62,24 @@ def _check_folder(output: Path) -> None:
         raise UsageError(msg)
 
 
-def check_image(options: dict[str, Any]) -> None:
-    """Read the picture of ``image``; refuse one that cannot be read, or that is missing."""
-    if options["image"] is None:
-        if options.get("noise") == "image":
-            msg = "--noise is image and there is no picture; name one with --image FILE"
-            raise UsageError(msg)
-        return
-    if options.get("noise", "image") != "image":
-        msg = f"--noise is {options['noise']} and --image is given; leave out one of them"
+def drawing(*groups: Any) -> dict[str, Any]:
+    """Return how flags have a flow drawn; refuse, before a file is read, what does not fit."""
+    values = arguments(*groups)
+    if values.get("noise") == "image" and "image" not in values:
+        msg = "--noise is image and there is no picture; name one with --image FILE"
         raise UsageError(msg)
-    from flowtex.textures.images import load_image
+    options = Options.split("appearance", "view", **values)
+    options.make_settings()
+    if options.appearance.image is not None:
+        load_image(options.appearance.image)
+    return values
 
-    options["image"] = load_image(options["image"])
 
-
-def check_lines(flow: FieldFlags | None, options: dict[str, Any]) -> None:
+def check_lines(choice: Mapping[str, Any], values: Mapping[str, Any]) -> None:
     """Refuse pathlines of one time that is read alone."""
-    if flow is not None and flow.time is not None and options.get("lines") == "pathlines":
+    if "time" in choice and values.get("lines") == "pathlines":
         msg = "--lines is pathlines, which need all times; leave out --time, or use flowtex render"
         raise UsageError(msg)
-
-
-def check_time(field: FlowField, time: str | None) -> float | None:
-    """Return a time in the field's own unit; refuse one that the file has not."""
-    if time is None:
-        return None
-    from flowtex.field.dates import seconds_since
-
-    first, last = field.times[0], field.times[-1]
-    try:
-        value = seconds_since(field.start, number_or_text(time))
-    except ValueError as error:
-        msg = f"--{error}"
-        raise UsageError(msg) from error
-    if not first <= value <= last:
-        msg = f"--time is {time}; expected {first:g} to {last:g}, the times of the file"
-        raise UsageError(msg)
-    return value
-
-
-def check_colours(field: FlowField, options: dict[str, Any]) -> None:
-    """Refuse a scalar or a colour map that there is not."""
-    from flowtex.field.derived import DERIVED
-
-    names = dict.fromkeys(("speed", *field.scalars, *DERIVED))
-    if options["scalars"] is not False and options["scalars"] not in names:
-        msg = f"--scalars is {options['scalars']!r}; there are {', '.join(names)} and none"
-        raise UsageError(msg)
-    from flowtex._util.colours import colour_table, rgb
-
-    try:
-        rgb(options.get("background", "white"))
-    except ValueError as error:
-        msg = f"--background is {options['background']!r}; expected a colour, such as black"
-        raise UsageError(msg) from error
-    if options["cmap"] is None:
-        return
-    try:
-        colour_table(options["cmap"])
-    except (ValueError, KeyError, ImportError) as error:
-        msg = f"--cmap is {options['cmap']!r}; expected a colour map such as viridis or cividis"
-        raise UsageError(msg) from error
 
 
 def begin_opengl() -> None:

@@ -12,13 +12,15 @@ import signal
 import sys
 import warnings
 from collections.abc import Sequence
+from difflib import get_close_matches
 from typing import Any
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CycloptsError, UnknownOptionError
 
 from flowtex._util.ending import Ended, ended_by_signals
 from flowtex.cli.console import complain
 from flowtex.cli.info import info
+from flowtex.cli.options import UsageError
 from flowtex.cli.pyramid import pyramid
 from flowtex.cli.serve import serve
 from flowtex.cli.write import export, movie, render
@@ -76,11 +78,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = _exit_code(error)
         if debug or code is None:
             raise
-        complain(error)
+        complain(_unknown(error) if isinstance(error, UnknownOptionError) else error)
         return code
     finally:
         warnings.showwarning = print_warning
     return result if isinstance(result, int) else 0
+
+
+def _unknown(error: UnknownOptionError) -> UsageError:
+    """Return the error for a flag that a command has not, with those of it that may be meant.
+
+    A word that is meant is near without ``--no-``, which every switch has.
+    """
+    flag = (error.token.keyword or error.token.value).partition("=")[0]
+    off = "--no-" if flag.startswith("--no-") else "--"
+    names = [name for argument in error.argument_collection or () for name in argument.names]
+    words = [name.removeprefix(off) for name in names if name.startswith(off)]
+    near = get_close_matches(flag.removeprefix(off), words, n=1)
+    command = " ".join(["flowtex", *(error.command_chain or ())])
+    hint = f"did you mean {off}{near[0]}?" if near else f"`{command} --help` lists what there is"
+    return UsageError(f"there is no {flag} of {command}; {hint}")
 
 
 def _warn(message: Warning | str, *_: Any) -> None:

@@ -26,11 +26,9 @@ def in_flags(text: str) -> str:
 
     A value with blanks keeps its quotes.
     """
-    from flowtex.cli.options import FieldFlags, FrameFlags, ServeFlags
-    from flowtex.settings import TABLE
+    from flowtex.cli.options import flag_names
 
-    flags = (FieldFlags(), FrameFlags(), ServeFlags())
-    names = "|".join([*(name for some in flags for name in vars(some)), *TABLE, "fresh"])
+    names = "|".join([*flag_names(), "fresh"])
 
     def flag(match: re.Match[str]) -> str:
         return f"--{match['name'].replace('_', '-')} {match['value']}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from flowtex._util.terminal.console import terminal
 from flowtex.cli.console import in_flags
 from flowtex.cli.load import load_field
-from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError
+from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,22 +33,22 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     from flowtex.pyramid import is_store
     from flowtex.pyramid.others import has_parts
 
-    console = terminal()
+    console, options = terminal(), arguments(flow)
     if len(files) == 1 and has_parts(files[0]):
         console.print(Text(str(files[0]), "bold"), soft_wrap=True)
         if is_store(files[0]):
             console.print(_store_table(files[0]))
-        console.print(_field_table(load_field(files, flow)))
+        console.print(_field_table(load_field(files, options)))
         return 0
     if paths := dataset_paths(files):
         console.print(Text(" ".join(map(str, files)), "bold"), soft_wrap=True)
         console.print(_recognised_table(paths))
-        console.print(_field_table(load_field(files, flow)))
+        console.print(_field_table(load_field(files, options)))
         return 0
     if len(files) != 1:
         msg = f"there are {len(files)} files; name one, or several of data of the Earth"
         raise UsageError(msg)
-    file, options = files[0], (flow or FieldFlags()).arguments()
+    file = files[0]
     summary = describe(file, options.get("block"))
     console.print(Text(str(file), "bold"), soft_wrap=True)
     console.print(_file_table(summary))
@@ -59,7 +59,7 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     if summary.problem and not options:
         console.print(Text(f"To draw it: {in_flags(summary.problem)}", "yellow"))
         return 0
-    console.print(_field_table(load_field(files, flow)))
+    console.print(_field_table(load_field(files, options)))
     return 0
 
 

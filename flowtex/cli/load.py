@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flowtex._util.progress import waiting
 from flowtex.cli.console import in_flags, say
-from flowtex.cli.options import FieldFlags, UsageError
+from flowtex.cli.options import UsageError
+from flowtex.options import FieldOptions
 
 if TYPE_CHECKING:
     from flowtex.field import FlowField
@@ -18,27 +19,15 @@ if TYPE_CHECKING:
 __all__ = ["load_field", "notices"]
 
 
-def load_field(files: Sequence[Path], flow: FieldFlags | None) -> FlowField:
+def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
     """Return the flow of a file, or of several that belong together."""
-    from flowtex.field import FlowField
-    from flowtex.options import FieldOptions
-    from flowtex.pyramid import is_store
-    from flowtex.pyramid.others import has_parts
-
     if not files:
         msg = "there is no file; name one"
         raise UsageError(msg)
-    arguments = (flow or FieldFlags()).arguments()
+    options, whole = dict(choice), files[0] if len(files) == 1 else files
+    time = options.pop("time", None)
     with waiting(f"Reading {files[0].name}"), notices():
-        if len(files) == 1 and has_parts(files[0]):
-            if arguments and is_store(files[0]):
-                msg = f"--{next(iter(arguments))} is for what a pyramid is built from; leave it out"
-                raise UsageError(msg)
-            if (time := arguments.pop("time", None)) is not None:
-                arguments["sel"] = {**arguments.get("sel", {}), "time": time}
-            return FieldOptions(**arguments).field(files[0])
-        whole: Any = files[0] if len(files) == 1 else files
-        return FlowField.from_file(whole, **arguments)
+        return FieldOptions(**options).field(whole, time)
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from cyclopts import Parameter
 from flowtex._util.progress import waiting
 from flowtex.cli.console import complain, say
 from flowtex.cli.load import notices
-from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError
+from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
 
 __all__ = ["pyramid"]
 
@@ -65,7 +65,7 @@ def pyramid(
     start = time.perf_counter()
     with waiting(f"Reading {files[0].name}"), notices():
         whole: Any = files[0] if len(files) == 1 else files
-        source = source_of(whole, **(flow or FieldFlags()).arguments())
+        source = source_of(whole, **arguments(flow))
     built = build(
         source,
         output,

@@ -11,18 +11,19 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from flowtex._util.progress import waiting
-from flowtex.cli.checks import check_colours, require_app
+from flowtex.cli.checks import drawing, require_app
 from flowtex.cli.console import announcer
 from flowtex.cli.options import (
-    ALLOW_HOST,
     FLAT,
+    HOST,
+    HOSTS,
+    OPEN,
     PAGE,
     PICTURE,
     PORT,
     LookFlags,
     SettingFlags,
     UsageError,
-    settings_from,
 )
 
 if TYPE_CHECKING:
@@ -37,13 +38,9 @@ def serve(
     ],
     /,
     *,
-    port: Annotated[
-        int, Parameter(group=PAGE, help="Port; 0 takes a free one.", validator=PORT)
-    ] = 0,
-    host: Annotated[
-        str, Parameter(group=PAGE, help="Address to listen on: others may reach another one.")
-    ] = "127.0.0.1",
-    allow_host: Annotated[tuple[str, ...], ALLOW_HOST] = (),
+    port: PORT = 0,
+    host: HOST = "127.0.0.1",
+    allow_host: HOSTS = (),
     token: Annotated[
         str | None,
         Parameter(
@@ -52,7 +49,7 @@ def serve(
             "be guessed.",
         ),
     ] = None,
-    browser: Annotated[bool, Parameter(group=PAGE, help="Open the page in the browser.")] = True,
+    browser: OPEN = True,
     title: Annotated[
         str | None, Parameter(group=PICTURE, help="Title of the page; the flow's name by default.")
     ] = None,
@@ -60,7 +57,7 @@ def serve(
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Serve a pyramid as a page that streams it."""
-    options = {**(look or LookFlags()).arguments(), **settings_from(settings)}
+    options = drawing(look, settings)
     require_app()
     if token is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,}", token):
         msg = (
@@ -80,7 +77,6 @@ def serve(
 
     with waiting(f"Reading {store.name}") as end_waiting:
         field = open_store(store)
-        check_colours(field, options)
         served = ServedStore(store)
         page = _page(field, title, options, f"store/{served.run}/")
         print_address = announcer(field, host)

@@ -10,25 +10,19 @@ from cyclopts import Parameter
 
 from flowtex import examples
 from flowtex._util.progress import waiting
-from flowtex.cli.checks import (
-    begin_opengl,
-    check_colours,
-    check_image,
-    check_lines,
-    require_app,
-    require_opengl,
-)
+from flowtex.cli.checks import begin_opengl, check_lines, drawing, require_app, require_opengl
 from flowtex.cli.console import announcer, describe
 from flowtex.cli.load import load_field, notices
 from flowtex.cli.options import (
     FLAT,
-    DrawFlags,
+    SIZE,
     FieldFlags,
     LookFlags,
     ServeFlags,
     SettingFlags,
     UsageError,
-    settings_from,
+    arguments,
+    pixels,
 )
 from flowtex.examples import NAMES
 
@@ -45,7 +39,7 @@ FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
 #: Options that change the field of a file; the others choose a part of it.
 FIELD_OPTIONS = (
     *("slice", "contour", "periodic", "time", "sign_free"),
-    *("projection", "globe", "level", "sel"),
+    *("projection", "globe", "level", "sel", "isel"),
 )
 
 FILE = Annotated[
@@ -66,7 +60,7 @@ def demo(
     if example not in NAMES:
         msg = f"there is no example {example!r}; there are {', '.join(NAMES)}"
         raise UsageError(msg)
-    options = settings_from(settings)
+    options = drawing(settings)
     begin_opengl()
     require_app()
     from flowtex.app import Library
@@ -91,7 +85,8 @@ def demo(
 def show(
     *files: FILE,
     flow: Annotated[FieldFlags | None, FLAT] = None,
-    draw: Annotated[DrawFlags | None, FLAT] = None,
+    look: Annotated[LookFlags | None, FLAT] = None,
+    size: SIZE = "1024x768",
     page: Annotated[ServeFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
@@ -99,29 +94,25 @@ def show(
 
     Several files, or a folder, are shown on a page where one can be chosen.
     """
-    draw = draw or DrawFlags()
-    options = {**draw.arguments(), **settings_from(settings)}
-    size = draw.pixels()
-    check_image(options)
-    check_lines(flow, options)
+    choice, options, window = arguments(flow), drawing(look, settings), pixels(size)
+    check_lines(choice, options)
     require_opengl()
     from flowtex import diagnostics
 
     on_page = page is not None or not diagnostics.has_display()
     together = _belong_together(files)
     if on_page or not (together or len(files) == 1) or _is_folder(files[0]):
-        return _show_page(files, flow, page, options)
-    field = load_field(files, flow)
-    check_colours(field, options)
+        return _show_page(files, choice, page, options)
+    field = load_field(files, choice)
     from flowtex import show as show_window
 
-    show_window(field, size=size, **options)
+    show_window(field, size=window, **options)
     return 0
 
 
 def _show_page(
     files: tuple[Path, ...],
-    flow: FieldFlags | None,
+    choice: dict[str, Any],
     page: ServeFlags | None,
     options: dict[str, Any],
 ) -> int:
@@ -134,19 +125,19 @@ def _show_page(
     if not files:
         msg = "there is no file to show; name one, or a folder, or try `flowtex demo`"
         raise UsageError(msg)
-    if options.pop("background") != LookFlags.background:
-        msg = "--background is for pictures and windows; the page has its own, under Colours"
-        raise UsageError(msg)
+    for name, group in (("background", "Colours"), ("beside", "View")):
+        if name in options:
+            msg = f"--{name} is for pictures and windows; the page has its own, under {group}"
+            raise UsageError(msg)
     from flowtex.pyramid.others import has_parts
 
     if len(files) == 1 and has_parts(files[0]):
-        return _serve(Library.of(load_field(files, flow)), page, options)
-    choice = (flow or FieldFlags()).arguments()
+        return _serve(Library.of(load_field(files, choice)), page, options)
     one = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))
     if one and (library := _earth_library(files, choice)) is not None:
         return _serve(library, page, {**options, **choice})
     if one and any(name in choice for name in FIELD_OPTIONS):
-        return _serve(Library.of(load_field(files, flow)), page, options)
+        return _serve(Library.of(load_field(files, choice)), page, options)
     if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
         msg = f"--{misplaced[0].replace('_', '-')} goes with one file, not with several or a folder"
         raise UsageError(msg)
@@ -198,12 +189,14 @@ def _belong_together(files: Sequence[Path]) -> bool:
 def _serve(library: Library, page: ServeFlags | None, options: dict[str, Any]) -> int:
     from flowtex.app import serve
     from flowtex.app.flow_app import first_choice
+    from flowtex.options import Appearance
+    from flowtex.scene import Scene
 
     page = page or ServeFlags()
     with waiting(f"Reading {library.names[0]}"):
         field = library.field(*first_choice(library, options))
-    if "scalars" in options:
-        check_colours(field, options)
+    look = {name: options[name] for name in vars(Appearance()) if name in options}
+    Scene.of(field, **look).close()  # what does not fit is told before a page asks for it
     with waiting(f"Tracing {describe(field)}") as end_waiting:
         print_address = announcer(field, page.host)
 

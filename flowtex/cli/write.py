@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
 from flowtex._util.whole_file import whole_file
 from flowtex.cli.checks import (
     begin_opengl,
-    check_colours,
-    check_image,
     check_lines,
     check_movie_file,
     check_page_file,
     check_picture_file,
-    check_time,
+    drawing,
     require_opengl,
 )
 from flowtex.cli.console import describe, say
@@ -34,7 +31,8 @@ from flowtex.cli.options import (
     LookFlags,
     SettingFlags,
     UsageError,
-    settings_from,
+    arguments,
+    pixels,
 )
 
 __all__ = ["export", "movie", "render"]
@@ -53,31 +51,28 @@ def render(
         float, Parameter(group=PICTURE, help="Moment of the streaming (--motion), in seconds.")
     ] = 0.0,
     flow: Annotated[FieldFlags | None, FLAT] = None,
+    look: Annotated[LookFlags | None, FLAT] = None,
     frame: Annotated[FrameFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Draw a file as a picture."""
     start = time.perf_counter()
-    frame = frame or FrameFlags()
-    options, size = {**frame.arguments(), **settings_from(settings), "clock": clock}, frame.pixels()
+    choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_picture_file(output)
-    check_image(options)
     begin_opengl()
-    time_shown = None
-    if options.get("lines") == "pathlines" and flow is not None:
+    shown: dict[str, Any] = {"clock": clock}
+    if options.get("lines") == "pathlines" and "time" in choice:
         # Pathlines of a moment go through the times around it.
-        flow, time_shown = replace(flow, time=None), flow.time
-    field = load_field(files, flow)
+        shown["time"] = choice.pop("time")
+    field = load_field(files, choice)
     require_opengl()
-    check_colours(field, options)
-    moment = check_time(field, time_shown)
     from PIL import Image
 
     from flowtex import render as draw
 
-    pixels = draw(field, size=size, time=moment, **options)
+    picture = draw(field, **shown, **options)
     with _writing(output), whole_file(output) as file:
-        Image.fromarray(pixels).save(file, Image.EXTENSION[output.suffix.lower()])
+        Image.fromarray(picture).save(file, Image.EXTENSION[output.suffix.lower()])
     lost = (
         f", {field.normal_share:.0%} of the flow leaves the surface"
         if field.normal_share > NOTABLE_LOSS
@@ -86,7 +81,7 @@ def render(
     say(
         (str(output), "bold"),
         f"  {describe(field)}{lost}  ",
-        (f"{size[0]} × {size[1]}, {time.perf_counter() - start:.1f} s", "dim"),
+        (f"{_size(options)}, {time.perf_counter() - start:.1f} s", "dim"),
     )
     return 0
 
@@ -108,29 +103,25 @@ def movie(
         int, Parameter(group=PICTURE, help="1 to 100: the more, the truer and the larger.")
     ] = 80,
     flow: Annotated[FieldFlags | None, FLAT] = None,
+    look: Annotated[LookFlags | None, FLAT] = None,
     frame: Annotated[FrameFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Write a file as a movie: a loop without a seam, or all times of a flow that varies."""
     start = time.perf_counter()
-    frame = frame or FrameFlags()
-    options, size = {**frame.arguments(), **settings_from(settings)}, frame.pixels()
-    check_movie_file(output, size, fps, quality)
-    check_image(options)
-    check_lines(flow, options)
+    choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
+    check_movie_file(output, options["size"], fps, quality)
+    check_lines(choice, options)
     begin_opengl()
-    field = load_field(files, flow)
+    field = load_field(files, choice)
     require_opengl()
-    check_colours(field, options)
     from flowtex import movie as write_movie
 
     with _writing(output):
-        result = write_movie(
-            field, output, size=size, seconds=seconds, fps=fps, quality=quality, **options
-        )
+        result = write_movie(field, output, seconds=seconds, fps=fps, quality=quality, **options)
     loop = ", a loop without a seam" if result.closed else ""
     figures = (
-        f"{size[0]} × {size[1]}, {result.frames} frames in {result.seconds:g} s, "
+        f"{_size(options)}, {result.frames} frames in {result.seconds:g} s, "
         f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s"
     )
     say((str(output), "bold"), f"  {describe(field)}{loop}  ", (figures, "dim"))
@@ -161,12 +152,10 @@ def export(
 ) -> int:
     """Write a file as one page that draws in any browser, without a server or a network."""
     start = time.perf_counter()
-    options = {**(look or LookFlags()).arguments(), **settings_from(settings)}
+    choice, options = arguments(flow), drawing(look, settings)
     check_page_file(output)
-    check_image(options)
-    check_lines(flow, options)
-    field = load_field(files, flow)
-    check_colours(field, options)
+    check_lines(choice, options)
+    field = load_field(files, choice)
     if steps is not None and steps < 1:
         msg = f"--steps is {steps}; expected 1 to {len(field.times)}, the steps of the file"
         raise UsageError(msg)
@@ -183,6 +172,15 @@ def export(
     seconds = time.perf_counter() - start
     say((str(output), "bold"), "  ", (f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s", "dim"))
     return 0
+
+
+def _drawing(look: LookFlags | None, frame: FrameFlags, settings: Any) -> dict[str, Any]:
+    return {**drawing(look, settings), **vars(frame), "size": pixels(frame.size)}
+
+
+def _size(options: Mapping[str, Any]) -> str:
+    width, height = options["size"]
+    return f"{width} × {height}"
 
 
 @contextmanager

@@ -17,32 +17,29 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.notices import notify
 from flowtex.earth import Projection
-from flowtex.errors import FieldError, raise_faults
+from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds
-from flowtex.field.derived import FOLLOWED, LONG_NAMES, derived_steps, derived_unit, followed_steps
+from flowtex.field.derived import (
+    FOLLOWED,
+    LONG_NAMES,
+    derived_steps,
+    derived_unit,
+    followed_steps,
+    speed_unit,
+)
+from flowtex.field.grids import grid_nodes
 from flowtex.field.interpolation import every_line
+from flowtex.field.io.arrays import FieldArrays, TriangleArrays
 from flowtex.field.io.constructors import FieldConstructors
 from flowtex.field.metric import IndexVelocity, to_index_space
-from flowtex.field.periodic import NodalArrays, close_axes
-from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.steps import LazySteps, Steps, typical_steps
-from flowtex.field.surface import Surface, known_positions
-from flowtex.field.triangles.arrays import triangle_arrays
+from flowtex.field.surface import Surface
+from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.creases import velocity_on_triangles
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.field.units import speed_unit
-from flowtex.field.validation import (
-    as_numbers,
-    finite_nodes,
-    node_faults,
-    node_positions,
-    range_faults,
-    scalar_steps,
-    shape_faults,
-    three_components,
-    with_gaps,
-)
+from flowtex.field.validation import with_gaps
 
 __all__ = ["WHOLE_SHAPE", "FlowField"]
 
@@ -54,6 +51,8 @@ _SHARED = ("surface", "index_velocity")
 #: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
 #: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
 NOTABLE_SHARE = 0.05
+#: Share of the flow that may be normal to a surface of triangles before it is told.
+MOST_LOST = 0.5
 ALL_AT_REST = (
     "The velocity is zero at every node, so the picture is plain noise; check the array that was "
     "chosen and the region it covers."
@@ -131,20 +130,41 @@ class FlowField(FieldConstructors):
     triangles: Indices | None = None
 
     @classmethod
+    def of(cls, arrays: FieldArrays) -> FlowField:
+        """Make a field of what a source gives.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> from flowtex.field.io.arrays import GridArrays
+        >>> arrays = GridArrays(points=([0, 1, 2], [0, 1]), velocity=[[(1, 0)] * 3] * 2)
+        >>> flowtex.FlowField.of(arrays).shape
+        (2, 3)
+        """
+        on_triangles = isinstance(arrays, TriangleArrays)
+        make: Any = cls.from_triangles if on_triangles else cls.from_arrays
+        field: FlowField = make(**vars(arrays))
+        late = isinstance(field.velocity, LazySteps)
+        if on_triangles and not late and (lost := field.normal_share) > MOST_LOST:
+            notify(f"{lost:.0%} of the flow points out of the surface and is not drawn")
+        return field
+
+    @classmethod
     def from_arrays(
         cls,
         points: ArrayLike,
-        velocity: ArrayLike,
+        velocity: Any,
         *,
         times: ArrayLike | None = None,
         valid: ArrayLike | None = None,
         periodic: str | None = None,
-        scalars: Mapping[str, ArrayLike] | None = None,
+        scalars: Mapping[str, Any] | None = None,
         name: str = "",
         length_unit: str = "",
         time_unit: str = "",
         sign_free: bool = False,
         units: Mapping[str, str] | None = None,
+        long_names: Mapping[str, str] | None = None,
         projection: Projection | None = None,
     ) -> FlowField:
         """Make a field from arrays.
@@ -158,6 +178,7 @@ class FlowField(FieldConstructors):
         velocity
             Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a field that varies
             in time, in units of length per unit of time. NaN and masked entries blank a node.
+            Steps that are read late (``LazySteps``) stay so, on the nodes that the first one has.
         times
             Time of each step, (T,), strictly increasing, in any unit of time. Steps are
             numbered 0, 1, 2, ... when it is left out. Dates (``datetime64``, or cftime's) become
@@ -180,6 +201,8 @@ class FlowField(FieldConstructors):
         units
             Unit of each scalar by its name, for legends; that of the speed follows from those of
             length and time.
+        long_names
+            Words for scalars, where there are other ones than their names.
         projection
             How points followed from longitude and latitude, for a field of the Earth: what tells
             the place of a point, and draws coastlines.
@@ -211,59 +234,37 @@ class FlowField(FieldConstructors):
         >>> flowtex.FlowField.from_arrays((x, y), v, name="a vortex").shape
         (31, 41)
         """
-        p, masked_points = as_numbers("points", node_positions(points))
-        v, masked_velocity = as_numbers("velocity", velocity)
-        if scalars is not None and not isinstance(scalars, Mapping):
-            msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
-            raise FieldError(msg)
-        given = {key: with_gaps(f"scalars[{key!r}]", s) for key, s in (scalars or {}).items()}
         times, time_unit, start = as_seconds(times, time_unit)
-        t, shown = (
-            None if values is None else with_gaps(name, values)
-            for name, values in (("times", times), ("valid", valid))
+        t = None if times is None else with_gaps("times", times)
+        nodes = grid_nodes(
+            points,
+            velocity,
+            t,
+            valid,
+            periodic,
+            {} if scalars is None else scalars,
+            sign_free=sign_free,
+            on_globe=projection is not None and projection.is_globe,
         )
-        faults = shape_faults(p, v, t, shown, periodic, given)
-        raise_faults(faults + (sign_free_faults(v) if sign_free else []))
-        v = v[None] if v.ndim == 3 else v
-        # What was given is not changed, and copied once.
-        p, v = (three_components(a) if a.shape[-1] == 2 else a.copy("C") for a in (p, v))
-        t = np.arange(len(v), dtype=float) if t is None else t.copy()
-        ok = finite_nodes(p) & ~masked_points
-        ok &= finite_nodes(v) & ~masked_velocity
-        if shown is not None:
-            ok &= np.nan_to_num(shown) != 0
-        # What stands for missing data must not be computed with.
-        v[:, ~ok] = np.nan
-        raise_faults(range_faults(p, v, ok) or node_faults(p, ok))
-        p[~known_positions(p, ok)] = np.nan
-        v = with_equal_ends(v) if sign_free else v
-        data = {key: scalar_steps(values, p.shape[:2]) for key, values in given.items()}
-        nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
-        v, ok = nodal.velocity, nodal.valid
-        on_globe = projection is not None and projection.is_globe
-        surface = Surface(nodal.points, ok, closed, on_globe=on_globe)
-        if sign_free:
-            v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
-            v = with_equal_ends(v[None], closed, surface.poles)
-        v[:, ~ok] = 0.0
         flow = cls(
-            points=surface.points,
-            velocity=v,
-            times=t,
-            valid=ok,
-            periodic=closed,
-            scalars=nodal.scalars,
+            points=nodes.surface.points,
+            velocity=nodes.velocity,
+            times=np.arange(len(nodes.velocity), dtype=float) if t is None else t.copy(),
+            valid=nodes.valid,
+            periodic=nodes.periodic,
+            scalars=nodes.scalars,
             name=name,
             length_unit=length_unit,
             time_unit=time_unit,
-            has_position=surface.has_position,
+            has_position=nodes.surface.has_position,
             sign_free=sign_free,
             units=dict(units or {}),
+            long_names=dict(long_names or {}),
             start=start,
             projection=projection,
         )
-        flow.__dict__["surface"] = surface  # the same that the property would make again
-        if not flow.velocity.any():
+        flow.__dict__["surface"] = nodes.surface  # the same that the property would make again
+        if not nodes.moves:
             warnings.warn(ALL_AT_REST, stacklevel=2)
         return flow
 
@@ -281,6 +282,7 @@ class FlowField(FieldConstructors):
         length_unit: str = "",
         time_unit: str = "",
         units: Mapping[str, str] | None = None,
+        long_names: Mapping[str, str] | None = None,
         projection: Projection | None = None,
     ) -> FlowField:
         """Make a field on a surface of triangles from arrays.
@@ -295,9 +297,8 @@ class FlowField(FieldConstructors):
         velocity
             Velocity at the nodes, (N, 2 or 3), or (T, N, 2 or 3) for a field that varies in time,
             in units of length per unit of time. NaN and masked entries blank a node. What of it
-            is normal to the surface is not drawn (:attr:`normal_share`). Steps that are read
-            late (``LazySteps``) stay so: those nodes are blanked that have no data in the first.
-        times, name, length_unit, time_unit, units, projection
+            is normal to the surface is not drawn (:attr:`normal_share`). It may be read late.
+        times, name, length_unit, time_unit, units, long_names, projection
             As for :meth:`from_arrays`.
         valid
             Nodes that carry data, (N,). All of them by default.
@@ -331,7 +332,7 @@ class FlowField(FieldConstructors):
         """
         times, time_unit, start = as_seconds(times, time_unit)
         t = None if times is None else with_gaps("times", times)
-        arrays = triangle_arrays(points, triangles, velocity, t, valid, scalars or {})
+        arrays = triangle_nodes(points, triangles, velocity, t, valid, scalars or {})
         count = len(arrays.velocity)
         flow = cls(
             points=arrays.points,
@@ -344,6 +345,7 @@ class FlowField(FieldConstructors):
             length_unit=length_unit,
             time_unit=time_unit,
             units=dict(units or {}),
+            long_names=dict(long_names or {}),
             start=start,
             projection=projection,
             triangles=arrays.triangles,
@@ -523,8 +525,7 @@ class FlowField(FieldConstructors):
 
     def at_step(self, step: int) -> FlowField:
         """Return one time step, as for :meth:`step_number`, as a steady field."""
-        step = self.step_number(step)
-        return self.at_steps([step])
+        return self.at_steps([self.step_number(step)])
 
     def at_steps(self, steps: Sequence[int]) -> FlowField:
         """Return some of the time steps, by increasing numbers from 0, in memory."""
@@ -569,11 +570,8 @@ class FlowField(FieldConstructors):
         if self.triangles is not None:
             msg = f"{self!r} has no lines of nodes; make the mesh coarser, as by mesh.decimate(0.5)"
             raise FieldError(msg)
-        rows, columns = (
-            every_line(count, factor, closed=closed)
-            for count, closed in zip(self.shape, self.periodic, strict=True)
-        )
-        return self.at_lines(rows, columns)
+        axes = zip(self.shape, self.periodic, strict=True)
+        return self.at_lines(*(every_line(n, factor, closed=closed) for n, closed in axes))
 
     def at_lines(self, rows: Indices, columns: Indices) -> FlowField:
         """Return the field on some of its lines of nodes, whose numbers along j and i increase.

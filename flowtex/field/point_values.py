@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import check_field, checked_number
 from flowtex._util.array_types import Floats
+from flowtex.field.derived import speed_unit
 from flowtex.field.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.field.locate import surface_point
 from flowtex.field.signs import weighted_axis
-from flowtex.field.units import speed_unit
 
 __all__ = ["PointValues", "values_at"]
 

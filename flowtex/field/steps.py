@@ -10,7 +10,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex._util.cache import ByteCache
 
-__all__ = ["LazySteps", "Steps", "map_steps", "typical_steps"]
+__all__ = ["LazySteps", "Steps", "first_step", "map_steps", "typical_steps"]
 
 #: Bytes of steps that are kept once they have been read, and their number.
 KEPT_BYTES, MOST_KEPT = 256_000_000, 8
@@ -108,6 +108,11 @@ class _Step:
 
     def __init__(self, values: Floats) -> None:
         self.values, self.nbytes = values, values.nbytes
+
+
+def first_step(values: Any) -> Any:
+    """Return the first of steps that are read late; others as they are."""
+    return values[0] if isinstance(values, LazySteps) else values
 
 
 def typical_steps(count: int) -> list[int]:

@@ -100,6 +100,7 @@ def with_gaps(name: str, values: ArrayLike) -> Floats:
 def shape_faults(
     p: Floats,
     v: Floats,
+    steps: int,
     times: Floats | None,
     valid: Floats | None,
     periodic: Any,
@@ -120,10 +121,10 @@ def shape_faults(
         )
     faults += _velocity_faults(v, grid)
     if not faults:
-        faults += time_faults(times, len(v) if v.ndim == 4 else 1)
+        faults += time_faults(times, steps)
     if valid is not None and np.shape(valid) != grid:
         faults.append(f"valid has shape {np.shape(valid)}; expected {grid} as points has")
-    allowed = [grid, (len(v) if v.ndim == 4 else 1, *grid)]
+    allowed = [grid, (steps, *grid)]
     for name, array in scalars.items():
         if np.shape(array) not in allowed:
             faults.append(

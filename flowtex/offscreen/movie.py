@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import is_number
+from flowtex._util.arguments import checked_number
 from flowtex._util.array_types import Bytes
 from flowtex._util.progress import track
 from flowtex.field import FlowField
@@ -78,9 +78,8 @@ def frame_times(
     MovieError
         When a number is out of its range, or a steady flow would stand still.
     """
-    if not (is_number(fps) and 0 < fps <= MAX_FPS):
-        msg = f"fps is {fps!r}; expected more than 0 and at most {MAX_FPS:g} frames a second"
-        raise MovieError(msg)
+    expected = f"more than 0 and at most {MAX_FPS:g} frames a second"
+    checked_number("fps", fps, math.ulp(0.0), MAX_FPS, expected=expected, error=MovieError)
     if field.steady:
         _check_motion(field, settings)
     whole = _seconds(field, settings, seconds)
@@ -110,10 +109,8 @@ def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> flo
         return settings.period if field.steady else run_seconds(len(field.times))
     row = TABLE["period"]
     low, high = row.low or 0.0, row.high or math.inf
-    if not (is_number(seconds) and low <= seconds <= high):
-        msg = f"seconds is {seconds!r}; expected a number from {low:g} to {high:g}"
-        raise MovieError(msg)
-    return float(seconds)
+    expected = f"a number from {low:g} to {high:g}"
+    return checked_number("seconds", seconds, low, high, expected=expected, error=MovieError)
 
 
 def _check_motion(field: FlowField, settings: Settings) -> None:

@@ -11,14 +11,12 @@ import pyvista as pv
 
 from flowtex._util.arguments import checked_number
 from flowtex._util.colours import colour_table
-from flowtex.field import FlowField
-from flowtex.options import NO_VALUE_COLOR, Appearance, FieldOptions
+from flowtex.options import NO_VALUE_COLOR, Appearance, AppearanceAttributes, FieldOptions
 from flowtex.plotting.map_overlay import MapOverlay
 from flowtex.plotting.scalar_bar import SCALAR_BAR, arrange_with
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
-from flowtex.scene import AppearanceAttributes, Change, Scene, share_field
-from flowtex.settings import Settings
+from flowtex.scene import Change, Scene, share_field
 
 __all__ = ["FlowHandle"]
 
@@ -40,8 +38,7 @@ class FlowHandle(AppearanceAttributes):
         The flow.
     settings
         Every setting, live.
-    scalars, cmap, clim, log_scale, color, opacity, visible, lighting, show_scalar_bar, \
-    coastlines, graticule, land
+    {appearance}
         Arguments of ``plotter.flowtex.add``, live.
     actor
         PyVista's actor, for its position and the like.
@@ -98,16 +95,6 @@ class FlowHandle(AppearanceAttributes):
         self._shown_time = scene.time
         self._end = scene.observe(self._changed)
         self._is_made = True
-
-    @property
-    def field(self) -> FlowField:
-        """The flow."""
-        return self.scene.field
-
-    @property
-    def settings(self) -> Settings:
-        """Every setting, live."""
-        return self.scene.settings
 
     @property
     def time(self) -> float:

@@ -22,6 +22,7 @@ from flowtex._util.extras import import_extra
 from flowtex._util.notices import Notice, notify
 from flowtex.field import FlowField
 from flowtex.field.datasets.pairs import find_pairs
+from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid.places import (
@@ -33,7 +34,7 @@ from flowtex.pyramid.places import (
     place_text,
     store_at,
 )
-from flowtex.pyramid.source import Opened, RegionSource
+from flowtex.pyramid.source import RegionSource
 from flowtex.tiles.pyramid import ROOT_NODES, Nodes, level_lines, root_level
 
 __all__ = ["OtherLevels", "has_parts", "levels_of_others"]
@@ -79,15 +80,16 @@ def levels_of_others(place: str, options: Mapping[str, Any]) -> OtherLevels | Fl
     """
     datasets = _datasets(place)
     named = {"name": Path(place).stem, **options}
-    finest: Any = Opened.from_xarray(datasets[0], **named)
-    if isinstance(finest, FlowField):
-        return finest
+    arrays = read_datasets(datasets[0], regions=True, **named)
+    if not isinstance(arrays, Regions):
+        return FlowField.of(arrays)
+    finest = RegionSource(arrays)
     if math.prod(finest.shape) <= WHOLE_NODES:
         return FlowField.from_xarray(datasets[0], **named)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Notice)  # what the finest one has told
-        others: list[Any] = [Opened.from_xarray(one, **named) for one in datasets[1:]]
-    return OtherLevels(place, [finest, *others])
+        others: list[Any] = [read_datasets(one, regions=True, **named) for one in datasets[1:]]
+    return OtherLevels(place, [finest, *map(RegionSource, others)])
 
 
 def _datasets(place: str) -> list[Any]:

@@ -17,14 +17,16 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.datasets.detect import is_dataset
 from flowtex.field.datasets.files import dataset_paths
+from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import RegionNodes, Regions
-from flowtex.field.io.constructors import FieldConstructors
+from flowtex.field.io.arrays import FieldArrays
+from flowtex.field.io.file_fields import errors_of, read_files
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid.places import is_store
 from flowtex.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
 
-__all__ = ["FieldSource", "Opened", "RegionSource", "Source", "source_of"]
+__all__ = ["FieldSource", "RegionSource", "Source", "source_of"]
 
 
 class Source(ABC):
@@ -235,14 +237,6 @@ class RegionSource(Source):
                 yield one.resolve(), one.stat()
 
 
-class Opened(FieldConstructors):
-    """Opens what makes a field; a dataset of which any region can be read alone is not read."""
-
-    from_arrays = FlowField.from_arrays
-    from_triangles = FlowField.from_triangles
-    from_regions = RegionSource
-
-
 def source_of(given: Any, **options: Any) -> Source:
     """Return what a pyramid is built from: a field, a dataset of xarray's, or files.
 
@@ -256,12 +250,17 @@ def source_of(given: Any, **options: Any) -> Source:
     if is_store(given):
         msg = f"{given} is a pyramid already; give what one is built from"
         raise FieldError(msg)
-    made: Any
     if is_dataset(given):
-        made = Opened.from_xarray(given, **options)
-    else:
-        one: str | Path | Sequence[str | Path] = given
-        made = Opened.from_file(one, **options)
-        if isinstance(made, RegionSource):
-            made.files, made.choice = dataset_paths(one), repr(sorted(options.items()))
-    return made if isinstance(made, Source) else FieldSource(made)
+        return _source_from(read_datasets(given, regions=True, **options))
+    one: str | Path | Sequence[str | Path] = given
+    with errors_of(one):
+        source = _source_from(read_files(one, regions=True, **options))
+    if isinstance(source, RegionSource):
+        source.files, source.choice = dataset_paths(one), repr(sorted(options.items()))
+    return source
+
+
+def _source_from(arrays: FieldArrays | Regions) -> Source:
+    if isinstance(arrays, Regions):
+        return RegionSource(arrays)
+    return FieldSource(FlowField.of(arrays))

@@ -13,11 +13,17 @@ import numpy as np
 import traitlets
 
 from flowtex.errors import FieldError
-from flowtex.field import FlowField
 from flowtex.field.locate import locate
-from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
-from flowtex.scene import NO_IMAGE, AppearanceAttributes, Change, Scene
-from flowtex.settings import TABLE, Settings
+from flowtex.options import (
+    Appearance,
+    AppearanceAttributes,
+    FieldOptions,
+    Options,
+    ViewOptions,
+    accepts_options,
+)
+from flowtex.scene import NO_IMAGE, Change, Scene
+from flowtex.settings import TABLE
 from flowtex.textures.images import load_image
 from flowtex.web.assets import asset
 from flowtex.web.export import PREVIEW, page_text, write_page
@@ -41,8 +47,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     Attributes
     ----------
-    scalars, cmap, clim, log_scale, color, opacity, visible, lighting, show_scalar_bar, \
-    coastlines, graticule, land
+    {appearance}
         Arguments that the widget was made with, live.
     camera
         Where it is seen from: ``position``, ``focal_point``, ``up`` (three numbers each, in the
@@ -138,16 +143,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         self._ends = [self.settings.observe(self._set), self.scene.observe(self._scene_changed)]
         self._views.start()
         self._is_made = True
-
-    @property
-    def field(self) -> FlowField:
-        """The flow."""
-        return self.scene.field
-
-    @property
-    def settings(self) -> Settings:
-        """Every setting; the traits of the same names follow it."""
-        return self.scene.settings
 
     @property
     def scene(self) -> Scene:

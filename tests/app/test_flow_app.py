@@ -16,7 +16,7 @@ pytest.importorskip("trame_rca")
 
 from small_pages import played, small, small_page
 
-from flowtex import examples
+from flowtex import Camera, examples
 from flowtex.app import FlowApp, Library
 from flowtex.app.flow_app import first_choice
 from flowtex.errors import FieldError
@@ -55,6 +55,16 @@ def test_examples_make_an_app() -> None:
     assert (
         app.state.get("colour") == "none"
         and app.state.get("about") == "161 × 65 nodes · 31 times · periodic along i"
+    )
+    app.close()
+
+
+def test_the_first_look_may_be_any_camera() -> None:
+    camera = Camera((0.5, 0.2, 3.0), (0.5, 0.2, 0.0), (0.0, 1.0, 0.0), view_angle=12.0)
+    app = FlowApp(examples.airfoil_field(), camera=camera, samples=5)
+    assert (
+        app.viewport.camera == camera
+        and app.controllers.camera.describe()["camera"] == camera.to_dict()
     )
     app.close()
 

@@ -14,6 +14,7 @@ from PIL import Image
 from flowtex import diagnostics, examples
 from flowtex.cli import commands, main
 from flowtex.cli.console import in_flags
+from flowtex.options import Appearance, FieldOptions, ViewOptions
 from flowtex.settings import TABLE
 
 Run = Callable[..., tuple[int, str, str]]
@@ -154,8 +155,14 @@ def test_flow_that_leaves_the_surface_is_told(
         (("render", "{gyre}", "-o", "{tmp}/a.png", "--size", "10"), "expected width x height"),
         (("render", "{gyre}", "-o", "{tmp}/a.png", "--zoom", "0"), "--zoom is 0"),
         (("render", "{gyre}", "-o", "{tmp}/a.png", "--focus", "1"), "two or three coordinates"),
-        (("render", "{gyre}", "-o", "{tmp}/a.png", "--scalars", "heat"), "there are speed"),
-        (("render", "{gyre}", "-o", "{tmp}/a.png", "--cmap", "mud"), "expected a colour map"),
+        (
+            ("render", "{gyre}", "-o", "{tmp}/a.png", "--scalars", "heat"),
+            "there is no scalar 'heat'",
+        ),
+        (
+            ("render", "{gyre}", "-o", "{tmp}/a.png", "--cmap", "mud"),
+            "there is no colour map 'mud'",
+        ),
         (("render", "{gyre}", "-o", "{tmp}/a.png", "--vectors", "wind"), "wind"),
         (("render", "{block}", "-o", "{tmp}/a.png", "--vectors", "wind"), "plane"),
         (("render", "{gyre}"), "--output"),
@@ -164,7 +171,13 @@ def test_flow_that_leaves_the_surface_is_told(
         (("demo", "--example", "soup"), "there is no example 'soup'; there are cylinder"),
         (("show", "{tmp}/no.vts"), "no such file"),
         (("shwo",), "Unknown command"),
-        (("info", "{gyre}", "--colour"), "Unknown option"),
+        (
+            ("info", "{gyre}", "--colour"),
+            "there is no --colour of flowtex info; did you",
+        ),
+        (("demo", "--no-opne"), "there is no --no-opne of flowtex demo; did you mean --no-open?"),
+        (("demo", "--no-eyes"), "; `flowtex demo --help` lists what there is"),
+        (("render", "{gyre}", "--opacty", "1"), "did you mean --opacity?"),
     ],
 )
 def test_what_cannot_be_is_told_in_one_paragraph(
@@ -364,7 +377,7 @@ def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path:
         (("-o", "page.png"), "page.png: expected a name that ends in .html"),
         (("-o", "nowhere/page.html"), "there is no folder 'nowhere'"),
         (("-o", "page.html", "--steps", "0"), "--steps is 0; expected 1 to 1"),
-        (("-o", "page.html", "--scalars", "heat"), "--scalars is 'heat'; there are"),
+        (("-o", "page.html", "--scalars", "heat"), "there is no scalar 'heat'"),
     ],
 )
 def test_export_refuses_what_it_cannot_do(
@@ -408,7 +421,60 @@ def test_range_and_background_are_flags(run: Run, gyre: Path, tmp_path: Path) ->
     with Image.open(tmp_path / "a.png") as picture:
         assert picture.getpixel((0, 0)) == (0, 0, 0)
     assert "--clim is '1'; expected two numbers" in run(*words, "--clim", "1")[2]
-    assert "expected a colour" in run(*words, "--background", "blurple")[2]
+    assert "there is no colour 'blurple'" in run(*words, "--background", "blurple")[2]
+
+
+def test_every_option_is_a_flag_with_its_sentence(run: Run) -> None:
+    _, out, _ = run("render", "--help")
+    for kind in (FieldOptions, Appearance, ViewOptions):
+        for name in set(kind.__dataclass_fields__) - {"times"}:  # a file has its own
+            assert f"--{name.replace('_', '-')}" in out
+    for words in (
+        "1 is opaque, 0 invisible",
+        "[default: 1.0]",
+        "--no-lighting",
+        "[default: white]",
+    ):
+        assert words in out
+
+
+@pytest.mark.parametrize(
+    "flags",
+    [
+        ("--opacity", "0.3"),
+        ("--scalars", "none", "--color", "tomato"),
+        ("--log-scale", "--clim", "0.01,1"),
+        ("--lighting", "--cmap", "magma"),
+        ("--camera", "1,0.5,3,1,0.5,0,0.5,1,0"),
+        ("--camera", "parallel,1.0,0.5,3.0,1.0,0.5,0.0,1.0,1.0,0.0,0.4,30.0"),
+    ],
+)
+def test_the_look_is_chosen_by_flags(
+    run: Run, gyre: Path, tmp_path: Path, flags: tuple[str, ...], opengl: object
+) -> None:
+    base = ("render", gyre, "--size", "80x60", "--samples", 5)
+    assert run(*base, "-o", tmp_path / "a.png")[::2] == (0, "")
+    assert run(*base, *flags, "-o", tmp_path / "b.png")[::2] == (0, "")
+    before, after = (np.asarray(Image.open(tmp_path / f"{n}.png"), dtype=float) for n in "ab")
+    assert np.abs(after - before).mean() > 3
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (("--opacity", "3"), "--opacity is 3.0; expected a number from 0 to 1"),
+        (("--color", "blurple"), "there is no colour 'blurple'; expected a name such as black"),
+        (("--camera", "1,2"), "--camera is '1,2'; expected nine numbers"),
+        (("--isel", "number=x"), "--isel is number=x; expected an axis and a whole number"),
+        (("--isel", "number=2"), "isel is for data of the Earth"),
+        (("--log-scale", "--clim", "0,1"), "--log-scale is for values above 0"),
+    ],
+)
+def test_a_look_that_cannot_be_is_told(
+    run: Run, gyre: Path, tmp_path: Path, flags: tuple[str, ...], message: str
+) -> None:
+    code, _, err = run("render", gyre, "-o", tmp_path / "a.png", *flags)
+    assert code == 2 and message in err, err
 
 
 @pytest.mark.filterwarnings("default:Nothing of the surface")
@@ -430,7 +496,7 @@ def test_lines_of_a_series(run: Run, tmp_path: Path) -> None:
     words = [series, "--size", "80x60", "--lines", "pathlines", "--time"]
     # A moment between the times of the file.
     assert run("render", *words, 1.5, "-o", tmp_path / "a.png")[0] == 0
-    assert "--time is 9; expected 0 to 2" in run("render", *words, 9, "-o", tmp_path / "a.png")[2]
+    assert "--time is 9.0; expected 0 to 2" in run("render", *words, 9, "-o", tmp_path / "a.png")[2]
     assert "need all times" in run("movie", *words, 1, "-o", tmp_path / "a.gif")[2]
 
 

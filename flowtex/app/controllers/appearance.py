@@ -16,6 +16,7 @@ from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.offscreen.annotations import time_text
 from flowtex.options import ROBUST
+from flowtex.options import Appearance as Look
 from flowtex.scene import Scene
 from flowtex.settings import TABLE, SettingsError, named_values
 
@@ -25,16 +26,20 @@ __all__ = [
     "BACKGROUNDS",
     "COLOUR_BY",
     "COMPARISONS",
+    "LOOK",
     "MAP_LINES",
     "PLAIN",
     "Appearance",
     "comparison",
+    "look_shown",
 ]
 
 #: The choice of no colours.
 PLAIN = "none"
-#: Lines of a map, where the field has a projection.
+#: Lines of a map, where the field has a projection; and all of how a surface looks that the page
+#: has under the name of the argument.
 MAP_LINES = ("coastlines", "graticule")
+LOOK = ("cmap", "clim", "log_scale", "opacity", *MAP_LINES)
 #: What lies behind the surface.
 BACKGROUNDS = ("theme", "black", "white", "gray")
 #: What a second pane shows, by what it is called.
@@ -71,6 +76,14 @@ def comparison(name: str, time: float) -> dict[str, Any]:
     if name == ANOTHER_FILE:
         return {}
     return COMPARISONS[name]
+
+
+def look_shown(look: Look) -> dict[str, Any]:
+    """Return how a surface looks as the page shows it, where nothing is left to choose later."""
+    shown = {name: getattr(look, name) for name in LOOK}
+    shown |= {name: shown[name] is not False for name in MAP_LINES}
+    # A map that has no name here is shown as the first one.
+    return {**shown, "cmap": look.cmap if isinstance(look.cmap, str) else CMAPS[0]}
 
 
 class Appearance(Controller):
@@ -129,11 +142,8 @@ class Appearance(Controller):
         low, high = self._shown_span = self._span()
         self.state.set(
             colour=area.scalars or PLAIN,
-            cmap=self._cmap(),
-            log_scale=area.log_scale,
-            opacity=area.opacity,
             has_map=area.scene.field.projection is not None,
-            **self._map_lines(),
+            **{n: v for n, v in look_shown(area.scene.appearance).items() if n != "clim"},
             bar=self._bar(self.area.scene),
             bar_beside=self._bar_beside(),
             low=low,
@@ -170,21 +180,20 @@ class Appearance(Controller):
 
     def take_colour(self) -> None:
         """Colour by what the page asks for, and draw lines of a map."""
-        area, get = self.area, self.state.get
-        name, cmap, log_scale = get("colour"), get("cmap"), get("log_scale")
-        opacity = number(get("opacity"), 0, 1)
-        changes: dict[str, Any] = {}
+        area, name = self.area, self.state.get("colour")
+        shown = look_shown(area.scene.appearance)
+        asked = {option: self.state.get(option) for option in shown}
+        asked["opacity"] = number(asked["opacity"], 0, 1)
+        changes = {
+            option: value
+            for option, value in asked.items()
+            if value != shown[option] and isinstance(value, type(shown[option]))
+        }
+        if not name_among(changes.get("cmap"), CMAPS):
+            changes.pop("cmap", None)
         if name_among(name, (PLAIN, *area.scene.scalar_names)) and name != (area.scalars or PLAIN):
             # A range is that of one scalar.
             changes |= {"scalars": False if name == PLAIN else name, "clim": None}
-        if name_among(cmap, CMAPS) and cmap != area.cmap:
-            changes["cmap"] = cmap
-        if isinstance(log_scale, bool) and log_scale != area.log_scale:
-            changes["log_scale"] = log_scale
-        if opacity is not None and opacity != area.opacity:
-            changes["opacity"] = opacity
-        lines = self._map_lines()
-        changes |= {n: get(n) for n in lines if get(n) is not lines[n] and isinstance(get(n), bool)}
         if changes:
             self._change(**changes)
         self.show_colours()
@@ -299,9 +308,8 @@ class Appearance(Controller):
         return {
             "settings": dict(self.settings),
             "colour": self.area.scalars or PLAIN,
-            "cmap": self._cmap(),
+            **look_shown(self.area.scene.appearance),
             "clim": None if self.area.clim is None else self.area.scene.scalar_limits,
-            **self._map_lines(),
             "theme": self.theme,
             "background": self.background,
             "split": self.compared,
@@ -313,14 +321,15 @@ class Appearance(Controller):
         settings = {k: v for k, v in saved.get("settings", {}).items() if v != "image"}
         self.settings.update(**settings)
         self.show_settings()
-        names = {"colour": "colour", "cmap": "cmap", "theme": "theme", "split": "compare"}
-        names |= {name: name for name in ("background", *MAP_LINES)}
+        names = {"split": "compare", "theme": "theme", "background": "background"}
         self.state.set(**{ours: saved[name] for name, ours in names.items() if name in saved})
-        self.take_colour()
-        if saved.get("clim"):
-            low, high = saved["clim"]
-            self.state.set(low=low, high=high)
-            self.take_range()
+        look = {name: saved[name] for name in LOOK if name in saved}
+        if not name_among(look.get("cmap"), CMAPS):
+            look.pop("cmap", None)
+        if name_among(name := saved.get("colour"), (PLAIN, *self.area.scene.scalar_names)):
+            look = {"clim": None, **look, "scalars": False if name == PLAIN else name}
+        self._change(**look)
+        self.show_colours()
         self.take_background()
         self.take_comparison()
         if saved.get("time_beside") is not None:
@@ -342,14 +351,6 @@ class Appearance(Controller):
         first, *others = (pane.handle.scene for pane in self.viewport.panes)
         tells = [(s.scalar_name, s.scalar_name and s.legend_limits) for s in (first, *others)]
         return self._bar(others[0]) if len(set(tells)) > 1 else None
-
-    def _map_lines(self) -> dict[str, bool]:
-        """Return which lines of a map are drawn, where there is one."""
-        return {name: getattr(self.area, name) is not False for name in MAP_LINES}
-
-    def _cmap(self) -> str:
-        """Name of the colour map; the first one for a map that has no name here."""
-        return self.area.cmap if isinstance(self.area.cmap, str) else CMAPS[0]
 
     def _noise_choices(self) -> list[str]:
         """Kinds of noise to choose from; an image only where there is one."""

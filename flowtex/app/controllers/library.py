@@ -12,8 +12,9 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, Concatenate, ParamSpec, TypeVar
 from weakref import WeakKeyDictionary
 
 from flowtex._util.cache import ByteCache
@@ -57,6 +58,8 @@ FOLDER_DEPTH, MOST_FILES = 4, 500
 MOST_SOURCES, MOST_FLOWS = 4, 12
 SOURCE_BYTES, FLOW_BYTES = 2_000_000_000, 1_000_000_000
 
+P = ParamSpec("P")
+T = TypeVar("T")
 Opener = Callable[[], Source]
 #: How far in, and on what point of the mesh.
 Look = tuple[float, tuple[float, ...] | None]
@@ -93,6 +96,19 @@ class TracedFlow:
         return self.field.nbytes + self.store.nbytes
 
 
+def _at_home(
+    method: Callable[Concatenate[Library, str, P], T],
+) -> Callable[Concatenate[Library, str, P], T]:
+    """Have a method called on the library that the flow of a name belongs to."""
+
+    @wraps(method)
+    def called(library: Library, name: str, /, *arguments: P.args, **options: P.kwargs) -> T:
+        shared = None if name in library._named else library._shared
+        return method(shared or library, name, *arguments, **options)
+
+    return called
+
+
 class Library:
     """Names of flows, and how each is opened.
 
@@ -106,6 +122,8 @@ class Library:
         Expressions of Python that make the fields, by name, as far as they are known.
     looks
         How far in, and on what point, some of them are first seen; the others as a whole.
+    shared
+        A library whose flows are offered, and stay open there, besides those of this one.
 
     Raises
     ------
@@ -129,7 +147,10 @@ class Library:
         folder: Path | None = None,
         python: Mapping[str, str] | None = None,
         looks: Mapping[str, Look] | None = None,
+        *,
+        shared: Library | None = None,
     ) -> None:
+        self._shared = shared
         self._named = dict(openers)
         self._python = dict(python or {})
         self._looks = dict(looks or {})
@@ -152,7 +173,7 @@ class Library:
 
     def branch(self) -> Library:
         """Return a library of the same flows, to which a page adds others for itself."""
-        return _Branch(self)
+        return Library({}, shared=self)
 
     def add(self, name: str, path: Path) -> str:
         """Add a file; return the name under which it can be opened.
@@ -199,13 +220,14 @@ class Library:
             openers |= {n: _Files((path,)) for n, path in found if not _reason(path)}
             self._unshown = {name: why for name, path in found if (why := _reason(path))}
         self._openers = openers
-        return tuple(openers)
+        return (*(self._shared.names if self._shared else ()), *openers)
 
     @property
     def unshown(self) -> Mapping[str, str]:
         """Files that were found and cannot be shown, and why."""
-        return self._unshown
+        return self._shared.unshown if self._shared else self._unshown
 
+    @_at_home
     def source(self, name: str) -> Source:
         """Open one, or return it when it is open; a file that has changed is opened anew.
 
@@ -229,14 +251,17 @@ class Library:
             raise FieldError(msg)
         return opener
 
+    @_at_home
     def is_file(self, name: str) -> bool:
         """Whether a name is that of a file."""
         return isinstance(self._named.get(name, _Files(())), _Files)
 
+    @_at_home
     def look(self, name: str) -> Look:
         """Return how far in, and on what point of the mesh, a flow is first seen."""
         return self._looks.get(name, (1.0, None))
 
+    @_at_home
     def python(self, name: str) -> str | None:
         """Return the expression that makes a flow, or ``None`` for what comes from a file."""
         if self.is_file(name):
@@ -261,6 +286,7 @@ class Library:
         plane = "" if part.plane_number(choice.plane) is None else choice.plane
         return self.complete(name, Choice(vectors, plane, block))
 
+    @_at_home
     def field(self, name: str, choice: Choice) -> FlowField:
         """Make a flow, or return it when it is at hand; nothing is traced.
 
@@ -282,6 +308,7 @@ class Library:
         self._identities[field] = source.identity
         return field
 
+    @_at_home
     def trace(self, name: str, choice: Choice, field: FlowField, settings: Settings) -> TracedFlow:
         """Trace what the first picture of a flow needs, and let it stay open.
 
@@ -297,59 +324,6 @@ class Library:
             flow = TracedFlow(field, store, pyramid, self._identities.get(field, ()))
             self._flows.put((name, choice), flow)
         return flow
-
-
-class _Branch(Library):
-    """The flows of a library, whose sources and traces are shared, and some of a page's own."""
-
-    def __init__(self, shared: Library) -> None:
-        self._shared = shared
-        super().__init__({})
-
-    def _home(self, name: str) -> Library | None:
-        """Return the shared library for what is not this page's own."""
-        return None if name in self._named else self._shared
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of all that can be opened; a folder is searched anew."""
-        self._openers = dict(self._named)
-        return (*self._shared.names, *self._named)
-
-    @property
-    def unshown(self) -> Mapping[str, str]:
-        """Files that were found and cannot be shown, and why."""
-        return self._shared.unshown
-
-    def source(self, name: str) -> Source:
-        """Open one, or return it when it is open; a file that has changed is opened anew."""
-        home = self._home(name)
-        return super().source(name) if home is None else home.source(name)
-
-    def is_file(self, name: str) -> bool:
-        """Whether a name is that of a file."""
-        home = self._home(name)
-        return home is None or home.is_file(name)
-
-    def look(self, name: str) -> Look:
-        """Return how far in, and on what point of the mesh, a flow is first seen."""
-        return self._shared.look(name)
-
-    def python(self, name: str) -> str | None:
-        """Return the expression that makes a flow, or ``None`` for what comes from a file."""
-        return self._shared.python(name) if name not in self._named else None
-
-    def field(self, name: str, choice: Choice) -> FlowField:
-        """Make a flow, or return it when it is at hand; nothing is traced."""
-        home = self._home(name)
-        return super().field(name, choice) if home is None else home.field(name, choice)
-
-    def trace(self, name: str, choice: Choice, field: FlowField, settings: Settings) -> TracedFlow:
-        """Trace what the first picture of a flow needs, and let it stay open."""
-        home = self._home(name)
-        if home is None:
-            return super().trace(name, choice, field, settings)
-        return home.trace(name, choice, field, settings)
 
 
 def _is_folder(path: str | Path) -> bool:

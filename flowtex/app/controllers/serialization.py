@@ -5,6 +5,7 @@ What a page shows is a mapping with the names below, each of which may be missin
     file vectors plane block   which flow: names as a library has them; k=20 or x=0.5
     time clock                 the field's own time; seconds of the streaming
     colour cmap clim           scalar, colour map, and the values at its ends
+    log_scale opacity          as :class:`flowtex.options.Appearance` has them
     coastlines graticule       whether these lines of a map are drawn
     settings                   a mapping of settings by name
     camera                     as :meth:`flowtex.camera.Camera.to_dict` has it
@@ -19,29 +20,32 @@ exactly. A link may come from anybody: what is unknown or out of range is left o
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
+from flowtex._util.written import NUMBER, Form, UnreadableError
 from flowtex.app.controllers.appearance import (
     ANOTHER_FILE,
     ANOTHER_TIME,
     BACKGROUNDS,
     COLOUR_BY,
     COMPARISONS,
-    MAP_LINES,
+    LOOK,
     PLAIN,
     comparison,
+    look_shown,
 )
+from flowtex.app.server.validation import shortened
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
-from flowtex.camera import Camera, CameraError
+from flowtex.camera import Camera
 from flowtex.errors import FieldError
 from flowtex.field.datasets.files import is_dataset_file
 from flowtex.field.source import OUTER
+from flowtex.options import Appearance as Look
+from flowtex.options import option_form
 from flowtex.settings import TABLE, SettingsError
 
 __all__ = ["DEFAULTS", "from_link", "to_link", "to_python"]
@@ -50,20 +54,16 @@ __all__ = ["DEFAULTS", "from_link", "to_link", "to_python"]
 DEFAULTS: dict[str, Any] = {
     "clock": 0.0,
     "colour": "speed",
-    "cmap": "viridis",
-    "coastlines": True,
-    "graticule": True,
+    **look_shown(Look()),
     "theme": "dark",
     "background": BACKGROUNDS[0],
     "split": "nothing",
 }
-#: Characters and values of a link, and characters of a name, at most.
-LINK_LENGTH, MOST_VALUES, NAME_LENGTH = 8_000, 100, 400
+#: Characters and values of a link, and characters of a name and of a fault, at most.
+LINK_LENGTH, MOST_VALUES, NAME_LENGTH, FAULT_LENGTH = 8_000, 100, 400, 250
 #: What is the page's own and no part of its state.
 IGNORED = ("secret",)
 
-#: Numbers of a camera: three points, the parallel scale and the view angle.
-CAMERA_NUMBERS = 11
 #: Longest line of Python.
 LINE_LENGTH = 88
 #: Arguments of ``FlowField.from_file``.
@@ -76,10 +76,6 @@ PLANE, CMAP = (
 )
 
 
-class _ValueError(ValueError):
-    """A value of a link is of no use; the text says what was expected."""
-
-
 def to_link(state: Mapping[str, Any]) -> str:
     """Return a state as the text of a link.
 
@@ -87,8 +83,8 @@ def to_link(state: Mapping[str, Any]) -> str:
     ``file=post.vtk&plane=k=20&lod=off``, for behind a ``?`` or a ``#``.
     """
     pairs = [
-        (name, _WRITE.get(name, str)(state[name]))
-        for name in _READ
+        (name, form.write(state[name]))
+        for name, form in _FORMS.items()
         if state.get(name) is not None and state[name] != DEFAULTS.get(name)
     ]
     for name, value in (state.get("settings") or {}).items():
@@ -111,16 +107,16 @@ def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
     state: dict[str, Any] = {}
     for name, value in _pairs(text, messages):
         try:
-            if name in _READ:
-                state[name] = _READ[name](value)
+            if name in _FORMS:
+                state[name] = _FORMS[name].read(value)
             elif name in TABLE:
                 state.setdefault("settings", {})[name] = TABLE[name].parse(value)
             elif name not in IGNORED:
                 messages.append(f"the link says {_quoted(name)}, which means nothing here")
-        except _ValueError as fault:
+        except UnreadableError as fault:
             messages.append(f"the link's {name} is {_quoted(value)}; expected {fault}")
-        except SettingsError as fault:
-            messages.append(f"in the link {fault}")
+        except FieldError as fault:
+            messages.append(f"in the link {shortened(str(fault), FAULT_LENGTH)}")
     return state
 
 
@@ -141,119 +137,54 @@ def _quoted(text: str) -> str:
     return repr(text if len(text) <= 60 else f"{text[:57]}...")
 
 
+def _matching(pattern: re.Pattern[str], expected: str) -> Form:
+    def read(text: str) -> str:
+        if not pattern.fullmatch(text):
+            raise UnreadableError(expected)
+        return text
+
+    return Form(read=read)
+
+
+def _one_of(*choices: str) -> Form:
+    pattern = re.compile("|".join(map(re.escape, choices)))
+    return _matching(pattern, " or ".join(map(repr, choices)))
+
+
 def _name(text: str) -> str:
     if not text.isprintable() or len(text) > NAME_LENGTH:
         msg = f"a name of at most {NAME_LENGTH} characters that can be printed"
-        raise _ValueError(msg)
+        raise UnreadableError(msg)
     return text
-
-
-def _matching(pattern: re.Pattern[str], expected: str) -> Callable[[str], str]:
-    def read(text: str) -> str:
-        if not pattern.fullmatch(text):
-            raise _ValueError(expected)
-        return text
-
-    return read
-
-
-def _one_of(*choices: str) -> Callable[[str], str]:
-    pattern = re.compile("|".join(map(re.escape, choices)))
-    return _matching(pattern, " or ".join(map(repr, choices)))
 
 
 def _comparison(text: str) -> str:
     if text.startswith(COLOUR_BY):
         return _name(text)
-    return _one_of(*COMPARISONS, ANOTHER_TIME, ANOTHER_FILE)(text)
+    return str(_one_of(*COMPARISONS, ANOTHER_TIME, ANOTHER_FILE).read(text))
 
 
-def _number(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        msg = "a number"
-        raise _ValueError(msg)
-    return value
-
-
-def _numbers(text: str, count: int) -> list[float]:
-    words = text.split(",")
-    if len(words) != count:
-        msg = f"{count} numbers with commas between them"
-        raise _ValueError(msg)
-    return [_number(word) for word in words]
-
-
-def _span(text: str) -> tuple[float, float]:
-    low, high = _numbers(text, 2)
-    if not low < high:
-        msg = "a lower number and a higher one"
-        raise _ValueError(msg)
-    return low, high
-
-
-def _span_text(span: Any) -> str:
-    return ",".join(repr(float(end)) for end in span)
-
-
-def _switch(text: str) -> bool:
-    return _one_of("on", "off")(text) == "on"
-
-
-def _switch_text(value: Any) -> str:
-    return "on" if value else "off"
-
-
-def _camera(text: str) -> dict[str, Any]:
-    kind, _, rest = text.partition(",")
-    numbers = _numbers(rest, CAMERA_NUMBERS)
-    position, focal_point, up = (
-        (x, y, z) for x, y, z in zip(*[iter(numbers[:9])] * 3, strict=True)
-    )
-    with suppress(CameraError):
-        if kind in ("parallel", "perspective"):
-            return Camera(position, focal_point, up, kind == "parallel", *numbers[9:]).to_dict()
-    msg = "a camera that looks at something"
-    raise _ValueError(msg)
-
-
-def _camera_text(camera: Mapping[str, Any]) -> str:
-    points = [*camera["position"], *camera["focal_point"], *camera["up"]]
-    numbers = map(float, [*points, camera["parallel_scale"], camera["view_angle"]])
-    return ",".join(["parallel" if camera["parallel"] else "perspective", *map(repr, numbers)])
-
-
-#: How each name is read, in the order of a link, and how it is written.
-_READ: dict[str, Callable[[str], Any]] = {
-    "file": _name,
-    "block": _name,
-    "vectors": _name,
+NAME = Form(read=_name)
+#: How each name is read and written, in the order of a link.
+_FORMS: dict[str, Form] = {
+    "file": NAME,
+    "block": NAME,
+    "vectors": NAME,
     "plane": _matching(PLANE, "an axis and a number, such as k=20 or x=0.5"),
-    "time": _number,
-    "clock": _number,
-    "colour": _name,
+    "time": NUMBER,
+    "clock": NUMBER,
+    "colour": NAME,
+    **{name: option_form(Look, name) for name in LOOK},
     "cmap": _matching(CMAP, "the name of a colour map, such as viridis"),
-    "clim": _span,
-    "coastlines": _switch,
-    "graticule": _switch,
-    "theme": _one_of("dark", "light"),
+    "theme": _one_of(*THEMES),
     "background": _one_of(*BACKGROUNDS),
-    "split": _comparison,
-    "time_beside": _number,
-    "beside_file": _name,
-    "camera": _camera,
-}
-_WRITE: dict[str, Callable[[Any], str]] = {
-    "time": lambda value: repr(float(value)),
-    "clock": lambda value: repr(float(value)),
-    "time_beside": lambda value: repr(float(value)),
-    "clim": _span_text,
-    "coastlines": _switch_text,
-    "graticule": _switch_text,
-    "camera": _camera_text,
+    "split": Form(read=_comparison),
+    "time_beside": NUMBER,
+    "beside_file": NAME,
+    "camera": Form(
+        read=lambda text: Camera.from_text(text).to_dict(),
+        write=lambda camera: Camera.from_dict(camera).to_text(),
+    ),
 }
 
 
@@ -345,7 +276,8 @@ def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[s
     appearance = {"scalars": False if colour == PLAIN else colour}
     if colour != PLAIN:
         appearance |= {name: state[name] for name in ("cmap", "clim") if state.get(name)}
-    appearance |= {name: False for name in MAP_LINES if state.get(name) is False}
+    others = (name for name in LOOK if name not in ("cmap", "clim"))
+    appearance |= {n: state[n] for n in others if state.get(n) not in (None, DEFAULTS[n])}
     if "scalars" in different:  # with a range of its own
         appearance = {**appearance, "scalars": different["scalars"]}
         appearance.pop("clim", None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flowtex._util.array_types import Floats
+from flowtex.earth import GLOBE, Projection
 from flowtex.field.datasets.places import Places, over_sphere
 
 __all__ = ["turned"]
@@ -15,26 +16,14 @@ def turned(places: Places, ahead: tuple[int, int], u: Floats, v: Floats) -> tupl
 
     ``ahead`` tells the ways of (rows, columns), 1 or -1.
     """
-    if not places.is_earth:
-        p = np.stack([places.a, places.b], axis=-1)
-        basis = [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
-    else:
-        p = over_sphere(places)
-        lon, lat = np.radians(places.a), np.radians(places.b)
-        zero = np.zeros_like(lon)
-        basis = [
-            np.stack([-np.sin(lon), np.cos(lon), zero], axis=-1),
-            np.stack(
-                [-np.sin(lat) * np.cos(lon), -np.sin(lat) * np.sin(lon), np.cos(lat)], axis=-1
-            ),
-        ]
+    flat = np.stack([places.a, places.b], axis=-1)
+    p = over_sphere(places) if places.is_earth else flat
     ahead_j, ahead_i = ahead
     along_i, along_j = ahead_i * _unit(_along(p, 1)), ahead_j * _unit(_along(p, 0))
     vector = u[..., None] * along_i + v[..., None] * along_j
-    east, north = (
-        np.einsum("jic,...c->ji" if b.ndim == 1 else "jic,jic->ji", vector, b) for b in basis
-    )
-    return east, north
+    if places.is_earth:
+        return Projection(GLOBE).components(places.a, places.b, vector)
+    return vector[..., 0], vector[..., 1]
 
 
 def _along(p: Floats, axis: int) -> Floats:

@@ -10,12 +10,13 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
+from flowtex.earth import GLOBE, Projection
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import (
     FACES,
@@ -44,14 +45,13 @@ from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places
 from flowtex.field.datasets.regions import Regions, Words, numbers_in, region_lines
 from flowtex.field.datasets.staggered import centred
 from flowtex.field.dates import as_seconds
+from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.steps import LazySteps
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Recognised", "as_datasets", "field_of", "recognise"]
-
-F = TypeVar("F")
+__all__ = ["Recognised", "as_datasets", "read_datasets", "recognise"]
 
 #: Longest name that a legend has room for.
 LONGEST_NAME = 40
@@ -129,22 +129,28 @@ class Recognised:
         return turned(self.places, self.ahead, u, v)
 
 
-def field_of(
-    make: type[F],
+def read_datasets(
     data: xr.Dataset | Sequence[xr.Dataset],
     u: str | None = None,
     v: str | None = None,
     *,
     projection: str | None = None,
+    globe: bool = False,
     name: str = "",
     sel: Mapping[str, Any] | None = None,
     isel: Mapping[str, Any] | None = None,
-) -> F:
-    """Make a field, as :meth:`FlowField.from_xarray` does; ``make`` is the class.
+    regions: bool = False,
+    **selection: Any,
+) -> GridArrays | TriangleArrays | Regions:
+    """Read what a field needs, as :meth:`FlowField.from_xarray` has the parameters.
 
-    One that has ``from_regions`` gets no nodes where any part of them can be read by itself, but
-    :class:`Regions`.
+    With ``regions`` no nodes are read where any part of them can be read by itself.
     """
+    if globe and projection not in (None, GLOBE):
+        msg = f"globe=True and projection={projection!r} are given; leave out one of them"
+        raise FieldError(msg)
+    projection = GLOBE if globe else projection
+    sel = {**(sel or {}), **selection}
     known = recognise(data, u, v, sel=sel, isel=isel)
     for note in known.notes:
         notify(note)
@@ -156,55 +162,106 @@ def field_of(
         )
         raise FieldError(msg)
     times, numbers = drawn_steps(known.u, known.pair.u)
-    scalars = _scalars(known, as_datasets(data), Choice(dict(sel or {}), dict(isel or {})))
-    name = ", ".join(filter(None, (name, known.level)))
-    if known.mesh is not None:
-        on_mesh: F = _mesh_field(make, known, known.mesh, scalars, times, numbers, projection, name)
-        return on_mesh
-    if make.from_regions is not None:  # type: ignore[attr-defined]
-        regions = _regions(known, scalars, times, numbers, projection, name)
-        if regions is not None:
-            return cast("F", make.from_regions(regions))  # type: ignore[attr-defined]
+    scalars = _scalars(known, as_datasets(data), Choice(dict(sel), dict(isel or {})))
+    words: dict[str, Any] = {
+        "name": ", ".join(filter(None, (name, known.level))),
+        **_words(scalars),
+    }
+    if regions and known.mesh is None:
+        found = _regions(known, scalars, times, numbers, projection, words)
+        if found is not None:
+            return found
+    make, drawn = (
+        (GridArrays, _on_grid(known, projection))
+        if known.mesh is None
+        else (TriangleArrays, _on_mesh_nodes(known, known.mesh, projection, numbers))
+    )
+
+    def later(read: Callable[[int], Floats]) -> LazySteps:
+        return LazySteps(len(numbers), lambda step: read(numbers[step]))
+
+    def value(read: Callable[[int], Floats], number: int) -> Floats:
+        return drawn.at(read(number))
+
+    extra = {key: later(partial(value, scalar.read)) for key, scalar in scalars.items()}
+    if drawn.projection is not None and not drawn.projection.is_globe:
+        extra["speed"] = later(lambda number: np.hypot(*map(drawn.at, known.steps(number))))
+        words["units"]["speed"] = "m/s"
+    moving = later(lambda number: drawn.vectors(*known.steps(number)))
+    return make(
+        points=drawn.points,
+        velocity=moving if len(numbers) > 1 else moving[0],
+        times=times,
+        scalars=extra,
+        time_unit="s",
+        projection=drawn.projection,
+        **drawn.more,
+        **words,
+    )
+
+
+class _Drawn(NamedTuple):
+    """Where nodes are drawn.
+
+    ``at`` gives what data have there, ``vectors`` what components are there, and ``more`` has
+    further arguments of a field.
+    """
+
+    points: Floats
+    at: Callable[[Floats], Floats]
+    vectors: Callable[[Floats, Floats], Floats]
+    projection: Projection | None
+    more: dict[str, Any]
+
+
+def _on_grid(known: Recognised, projection: str | None) -> _Drawn:
+    """Return where the nodes of rows and columns are drawn."""
+    places = known.places
     if not places.is_earth:
         points = np.stack([places.a, places.b], axis=-1)
 
-        def vectors(u: Floats, v: Floats) -> Floats:
+        def in_plane(u: Floats, v: Floats) -> Floats:
             return _in_plane(*known.turned(u, v))
 
-        lines: Any = (slice(None), slice(None))
-        options: dict[str, Any] = {"length_unit": places.unit, "time_unit": "s"}
-        speeds = False
-    else:
-        drawn = on_map(places, projection)
-        points, lines = drawn.points, drawn.lines
-        options = {"length_unit": "m", "time_unit": "s", "projection": drawn.projection}
-        options["periodic"] = drawn.periodic
-        speeds = not drawn.projection.is_globe
+        return _Drawn(points, np.asarray, in_plane, None, {"length_unit": places.unit})
+    drawn = on_map(places, projection)
 
-        def vectors(u: Floats, v: Floats) -> Floats:
-            east, north = known.turned(u, v)
-            return drawn.vectors(east[lines], north[lines])
+    def at(values: Floats) -> Floats:
+        return np.asarray(values[drawn.lines])
 
-    def velocity(number: int) -> Floats:
-        return vectors(*known.steps(number))
+    def vectors(u: Floats, v: Floats) -> Floats:
+        return drawn.vectors(*map(at, known.turned(u, v)))
 
-    def on_lines(read: Callable[[int], Floats], number: int) -> Floats:
-        return np.asarray(read(number)[lines])
+    more = {"length_unit": "m", "periodic": drawn.periodic}
+    return _Drawn(drawn.points, at, vectors, drawn.projection, more)
 
-    def speed(number: int) -> Floats:
-        return np.asarray(np.hypot(*known.steps(number))[lines])
 
-    first = velocity(numbers[0])
-    base = make.from_arrays(points, first, name=name, **options)  # type: ignore[attr-defined]
-    extra: dict[str, Callable[[int], Floats]] = {}
-    for key, scalar in scalars.items():
-        extra[key] = partial(on_lines, scalar.read)
-    words = _words(scalars)
-    if speeds:
-        extra["speed"] = speed
-        words["units"]["speed"] = "m/s"
-    field: F = _with_steps(base, first, velocity, extra, times, numbers, words)
-    return field
+def _on_mesh_nodes(
+    known: Recognised, mesh: Mesh, projection: str | None, numbers: list[int]
+) -> _Drawn:
+    """Return where the nodes of a mesh are drawn; those are valid that have data at some time."""
+    drawn = mesh_on_map(mesh, known.places, projection) if mesh.is_earth else None
+    if drawn is not None and drawn.lost:
+        notify(
+            f"{drawn.lost:,} triangles are left out, for the map tears them apart, as at a "
+            "pole; a globe has them all, as in globe=True"
+        )
+    at = np.asarray if drawn is None else drawn.at
+    vectors = _in_plane if drawn is None else drawn.vectors
+    some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
+    valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
+    more = {
+        "length_unit": known.places.unit or "m",
+        "triangles": mesh.triangles if drawn is None else drawn.triangles,
+        "valid": at(valid * 1.0) > 1 - 1e-9,
+    }
+
+    def moving(u: Floats, v: Floats) -> Floats:
+        # What is dry now and was not always is at rest.
+        return np.nan_to_num(vectors(u, v))
+
+    points = mesh.positions if drawn is None else drawn.points
+    return _Drawn(points, at, moving, None if drawn is None else drawn.projection, more)
 
 
 def _regions(
@@ -213,7 +270,7 @@ def _regions(
     times: Any,
     numbers: list[int],
     projection: str | None,
-    name: str,
+    words: dict[str, Any],
 ) -> Regions | None:
     """Return what reads a dataset by regions; ``None`` where it has to be read as a whole."""
     lines = None if known.staggered else region_lines(known.places, projection)
@@ -221,17 +278,15 @@ def _regions(
         return None
     on_earth = lines.projection is not None
     seconds, _, start = as_seconds(times, "s" if times is None else "")
-    words = _words(scalars)
     others = {key: scalar.section.array.variable for key, scalar in scalars.items()}
     if lines.projection is not None and not lines.projection.is_globe:
         others.pop("speed", None)
         words["units"]["speed"] = "m/s"
     return Regions(
         Words(
-            name,
-            "m" if on_earth else known.places.unit,
-            np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float),
-            start,
+            length_unit="m" if on_earth else known.places.unit,
+            times=np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float),
+            start=start,
             **words,
         ),
         lines,
@@ -243,75 +298,11 @@ def _regions(
     )
 
 
-def _mesh_field(
-    make: Any,
-    known: Recognised,
-    mesh: Mesh,
-    scalars: Mapping[str, _Scalar],
-    times: Any,
-    numbers: list[int],
-    projection: str | None,
-    name: str,
-) -> Any:
-    """Make a field on a mesh by ``FlowField.from_triangles``."""
-    options: dict[str, Any] = {"length_unit": known.places.unit or "m", "time_unit": "s"}
-    words = _words(scalars)
-    at: Callable[[Floats], Floats] = np.asarray
-    has_speed = False
-    vectors: Callable[[Floats, Floats], Floats] = _in_plane
-    if mesh.is_earth:
-        drawn = mesh_on_map(mesh, known.places, projection)
-        if drawn.lost:
-            notify(
-                f"{drawn.lost:,} triangles are left out, for the map tears them apart, as at a "
-                "pole; a globe has them all, as in globe=True"
-            )
-        points, triangles, at = drawn.points, drawn.triangles, drawn.at
-        options["projection"] = drawn.projection
-        vectors = drawn.vectors
-        has_speed = not drawn.projection.is_globe
-        if has_speed:
-            words["units"]["speed"] = "m/s"
-    else:
-        points, triangles = mesh.positions, mesh.triangles
-
-    def velocity(number: int) -> Floats:
-        # What is dry now and was not always is at rest.
-        return np.nan_to_num(vectors(*known.steps(numbers[number])))
-
-    def value(reader: Callable[[int], Floats], number: int) -> Floats:
-        return at(reader(numbers[number]))
-
-    def speed(number: int) -> Floats:
-        return np.asarray(np.hypot(*map(at, known.steps(numbers[number]))))
-
-    data: dict[str, Callable[[int], Floats]] = {
-        key: partial(value, scalar.read) for key, scalar in scalars.items()
-    }
-    if has_speed:
-        data["speed"] = speed
-    some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
-    valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
-    count = len(numbers)
-    field = make.from_triangles(
-        points,
-        triangles,
-        LazySteps(count, velocity) if count > 1 else velocity(0),
-        times=times,
-        valid=at(valid * 1.0) > 1 - 1e-9,
-        scalars={key: LazySteps(count, read) for key, read in data.items()},
-        name=name,
-        units=words["units"],
-        **options,
-    )
-    return replace(field, long_names=words["long_names"])
-
-
 def _in_plane(u: Floats, v: Floats) -> Floats:
     return np.stack([u, v, np.zeros_like(u)], axis=-1)
 
 
-def _words(scalars: Mapping[str, _Scalar]) -> dict[str, dict[str, str]]:
+def _words(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
     """Return units, and long names for which there is room, of variables."""
     attributes = {key: scalar.attributes for key, scalar in scalars.items()}
     words = {
@@ -556,45 +547,4 @@ def _scalar(known: Recognised, array: Any, steps: int, choice: Choice) -> _Scala
     nodal = NodalValues(known.mesh, horizontal_dims(array)[0])
     return _Scalar(
         section, lambda number: nodal.scalar(numbers_in(section.step(number))), array.attrs
-    )
-
-
-def _with_steps(
-    base: Any,
-    first: Floats,
-    velocity: Callable[[int], Floats],
-    scalars: Mapping[str, Callable[[int], Floats]],
-    times: Any,
-    numbers: list[int],
-    words: Mapping[str, Mapping[str, str]],
-) -> Any:
-    """Return a field with all its steps, read as they are needed, and closed as its first one."""
-    more = [n - m for n, m in zip(base.shape, first.shape[:2], strict=True)]
-
-    def closed(values: Floats) -> Floats:
-        for axis, count in enumerate(more):
-            if count:
-                values = np.concatenate([values, np.take(values, [0], axis=axis)], axis=axis)
-        return values
-
-    def moving(number: int) -> Floats:
-        v = closed(velocity(numbers[number]))
-        v[~base.valid] = 0.0
-        return np.nan_to_num(v)
-
-    def value(read: Callable[[int], Floats], number: int) -> Floats:
-        return closed(read(numbers[number]))
-
-    seconds, _, start = as_seconds(times, "s" if times is None else "")
-    data: dict[str, Any] = {}
-    for name, read in scalars.items():
-        data[name] = LazySteps(len(numbers), partial(value, read))
-    series = len(numbers) > 1
-    return replace(
-        base,
-        velocity=LazySteps(len(numbers), moving) if series else base.velocity,
-        times=base.times if seconds is None else np.asarray(seconds, dtype=float),
-        scalars=data,
-        **words,
-        start=start,
     )

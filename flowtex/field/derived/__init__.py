@@ -10,6 +10,7 @@ from flowtex.field.derived.scalars import (
     derived_steps,
     derived_unit,
     followed_steps,
+    speed_unit,
 )
 
 __all__ = [
@@ -21,5 +22,6 @@ __all__ = [
     "derived_unit",
     "followed_steps",
     "node_gradient",
+    "speed_unit",
     "true_positions",
 ]

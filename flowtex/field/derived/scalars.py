@@ -21,6 +21,7 @@ __all__ = [
     "derived_steps",
     "derived_unit",
     "followed_steps",
+    "speed_unit",
 ]
 
 
@@ -89,3 +90,12 @@ def derived_unit(name: str, time_unit: str) -> str:
     if not time_unit:
         return ""
     return f"1/{time_unit}²" if name == "okubo_weiss" else f"1/{time_unit}"
+
+
+def speed_unit(length: str, time: str) -> str:
+    """Return the word for the unit of speed; empty when one of the units is not known."""
+    if not length or not time:
+        return ""
+    if time.startswith(f"{length} / "):
+        return time.removeprefix(f"{length} / ")
+    return f"{length} / ({time})" if "/" in time else f"{length}/{time}"

@@ -8,26 +8,21 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 from numpy.typing import ArrayLike
 
-from flowtex._util.notices import notify
-from flowtex.errors import FieldError
+from flowtex.field.io.arrays import FieldArrays
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["FieldConstructors"]
 
-#: Share of the flow that may be normal to a surface before it is told.
-MOST_LOST = 0.5
-
 
 class FieldConstructors:
-    """Class methods that read something and hand its arrays to the field's own constructors."""
+    """Class methods that read something and make a field of what it gives."""
 
-    #: Those of arrays, which the field itself has.
-    from_arrays: Any
-    from_triangles: Any
-    #: Takes a dataset of which any region can be read alone, where its nodes are not to be read.
-    from_regions: Any = None
+    @classmethod
+    def of(cls, arrays: FieldArrays) -> Self:
+        """Return the field of what a source gives."""
+        raise NotImplementedError
 
     @classmethod
     def from_pyvista(
@@ -122,23 +117,9 @@ class FieldConstructors:
         """
         from flowtex.field.io.from_pyvista import read_meshes
 
-        options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
-        chosen: dict[str, Any] = {"plane": plane, "slice": slice, "contour": contour}
-        arguments = read_meshes(
-            mesh, vectors=vectors, times=times, block=block, **chosen, **options
-        )
-        return cls._of_mesh(arguments, name, options)
-
-    @classmethod
-    def _of_mesh(cls, arguments: Any, name: str, options: Mapping[str, Any]) -> Self:
-        """Make a field of what was read of a mesh; ``options`` are for structured ones."""
-        if "triangles" not in arguments:
-            made: Self = cls.from_arrays(**arguments, name=name, **options)
-            return made
-        surface: Any = cls.from_triangles(**arguments, name=name)
-        if (lost := surface.normal_share) > MOST_LOST:
-            notify(f"{lost:.0%} of the flow points out of the surface and is not drawn")
-        return cast("Self", surface)
+        options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free, "block": block}
+        options |= {"plane": plane, "slice": slice, "contour": contour, "times": times}
+        return cls.of(read_meshes(mesh, vectors=vectors, name=name, **options))
 
     @classmethod
     def from_file(
@@ -202,14 +183,14 @@ class FieldConstructors:
         >>> flowtex.FlowField.from_file("airfoil.vts").shape
         (65, 193)
         """
-        from flowtex.field.io.file_fields import field_of_file
+        from flowtex.field.io.file_fields import errors_of, read_files
 
-        of_meshes = {"plane": plane, "slice": slice, "contour": contour, "block": block}
-        of_meshes |= {"periodic": periodic, "sign_free": sign_free}
-        of_earth: dict[str, Any] = {"projection": projection, "globe": globe, "level": level}
-        of_earth |= {"sel": sel, "isel": isel}
-        field: Self = field_of_file(cls, path, vectors, time, of_meshes, of_earth)
-        return field
+        options: dict[str, Any] = {"plane": plane, "slice": slice, "contour": contour}
+        options |= {"block": block, "periodic": periodic, "sign_free": sign_free, "level": level}
+        options |= {"projection": projection, "globe": globe, "sel": sel, "isel": isel}
+        with errors_of(path):
+            arrays = read_files(path, vectors=vectors, time=time, **options)
+            return cls.of(cast("FieldArrays", arrays))
 
     @classmethod
     def from_xarray(
@@ -277,18 +258,8 @@ class FieldConstructors:
         >>> flowtex.FlowField.from_xarray(winds, level=500, projection="robinson").steady
         True
         """
-        from flowtex.field.datasets.read import field_of
+        from flowtex.field.datasets.read import read_datasets
 
-        if globe and projection not in (None, "globe"):
-            msg = f"globe=True and projection={projection!r} are given; leave out one of them"
-            raise FieldError(msg)
-        options: dict[str, Any] = {"sel": {**(sel or {}), **selection}, "isel": isel}
-        return field_of(
-            cls,
-            data,
-            u,
-            v,
-            projection="globe" if globe else projection,
-            name=name,
-            **options,
-        )
+        options: dict[str, Any] = {"projection": projection, "globe": globe, "name": name}
+        options |= {"sel": sel, "isel": isel, **selection}
+        return cls.of(cast("FieldArrays", read_datasets(data, u, v, **options)))

@@ -14,12 +14,12 @@ from typing import Any
 
 from flowtex.errors import FieldError
 from flowtex.field.io import plot3d
-from flowtex.field.io.from_pyvista import FieldArguments, read_meshes
+from flowtex.field.io.arrays import GridArrays, TriangleArrays
+from flowtex.field.io.from_pyvista import read_meshes
 from flowtex.field.io.inspection.files import inspect_file
 from flowtex.field.io.meshes import time_steps, times_of
 from flowtex.field.io.readers import open_reader
 from flowtex.field.io.surfaces import beside
-from flowtex.field.io.surfaces.steps import SurfaceArguments
 
 __all__ = ["OpenFile", "open_file", "read_file"]
 
@@ -54,7 +54,7 @@ def read_file(
     block: int | str | None = None,
     vectors: str | None = None,
     **options: Any,
-) -> FieldArguments | SurfaceArguments:
+) -> GridArrays | TriangleArrays:
     """Read what a field needs from a file, with the parameters of :meth:`FlowField.from_file`.
 
     Whatever this raises is to be named by :func:`~flowtex.field.io.reader_errors.errors_of_file`.
@@ -66,7 +66,7 @@ def read_file(
     if time is not None:
         source = _at_time(source, time)
     name = vectors if vectors is not None else file.velocity
-    return read_meshes(source, vectors=name, block=block, **options)
+    return read_meshes(source, vectors=name, block=block, name=Path(path).stem, **options)
 
 
 def open_file(path: str | Path) -> OpenFile:

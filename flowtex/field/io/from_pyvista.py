@@ -9,15 +9,16 @@ which checks the rest. All other meshes, and cuts, go through :mod:`flowtex.fiel
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import chain
-from typing import Any, TypedDict
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError, raise_faults
+from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.io.meshes import (
     TimeStep,
     check_arrays,
@@ -37,7 +38,7 @@ from flowtex.field.io.planes import (
     spread,
 )
 from flowtex.field.io.surfaces.cuts import find_cut
-from flowtex.field.io.surfaces.steps import SurfaceArguments, read_surfaces
+from flowtex.field.io.surfaces.steps import SheetStep, read_surfaces, stacked
 from flowtex.field.io.vectors import (
     MeshArray,
     catalogue,
@@ -48,34 +49,19 @@ from flowtex.field.io.vectors import (
 from flowtex.field.periodic import find_closure
 from flowtex.field.signs import axes, products
 
-__all__ = ["FieldArguments", "read_meshes"]
+__all__ = ["read_meshes"]
 
 
-class FieldArguments(TypedDict):
-    """Those arguments of :meth:`FlowField.from_arrays` that a mesh holds."""
+@dataclass(kw_only=True)
+class _PlaneStep(SheetStep):
+    """The arrays of one plane at one time, (J, I, ...).
 
-    points: Floats
-    velocity: Floats
-    times: ArrayLike | None
-    valid: Bools
-    scalars: dict[str, Floats]
-
-
-@dataclass
-class _PlaneStep:
-    """The arrays of one plane at one time.
-
-    Points and vectors are (J, I, 3), scalars (J, I) each. ``shown`` (J, I) marks nodes that the
-    mesh does not hide, ``cells`` (J - 1, I - 1) cells that it shows and
-    that have vectors. ``wrap`` says whether the last line along (j, i) is the first one again.
+    ``cells`` (J - 1, I - 1) are those that the mesh shows and that have vectors. ``wrap`` says
+    whether the last line along (j, i) is the first one again.
     """
 
-    points: Floats
-    vectors: Floats
-    shown: Bools
     cells: Bools
     wrap: tuple[bool, bool]
-    scalars: dict[str, Floats] = field(default_factory=dict)
 
 
 def read_meshes(
@@ -89,7 +75,8 @@ def read_meshes(
     periodic: str | None = None,
     sign_free: bool = False,
     block: int | str | None = None,
-) -> FieldArguments | SurfaceArguments:
+    name: str = "",
+) -> GridArrays | TriangleArrays:
     """Read what a field needs from a mesh or a series of them.
 
     Parameters and errors are those of :meth:`FlowField.from_pyvista`; the block is picked from
@@ -103,9 +90,9 @@ def read_meshes(
     steps = time_steps(mesh, block, cut=cut is not None)
     first = next(steps)
     if is_structured(first.grid) and cut is None:
-        return _read_planes(
-            chain([first], steps), vectors, plane, times, periodic, sign_free=sign_free
-        )
+        options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free}
+        arrays = _read_planes(chain([first], steps), vectors, plane, times, **options)
+        return GridArrays(**arrays, **options, name=name)
     given = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
     if wrong := [f"{name}={value!r}" for name, value in given.items() if value not in (None, "")]:
         msg = (
@@ -116,7 +103,7 @@ def read_meshes(
         if plane is not None:
             msg += '. A volume is cut by slice="x=0.5"'
         raise FieldError(msg)
-    return read_surfaces(chain([first], steps), vectors, cut, times)
+    return TriangleArrays(**read_surfaces(chain([first], steps), vectors, cut, times), name=name)
 
 
 def _read_planes(
@@ -124,37 +111,25 @@ def _read_planes(
     vectors: str | None,
     plane: str | None,
     times: ArrayLike | None,
-    periodic: str | None,
     *,
+    periodic: str | None,
     sign_free: bool,
-) -> FieldArguments:
+) -> dict[str, Any]:
     """Read planes of structured meshes."""
     sheets: list[_PlaneStep] = []
-    own_times: list[float | None] = []
     choice: tuple[Plane, MeshArray] | None = None
     for step in steps:
         if choice is None:
             choice = _choose(step.grid, plane, vectors)
         _check_step(step, *choice)
-        sheets.append(_plane_step(step.grid, *choice, periodic, sign_free=sign_free))
-        own_times.append(step.time)
+        sheets.append(_plane_step(step, *choice, periodic, sign_free=sign_free))
         start, sheet = sheets[0], sheets[-1]
         check_nodes(start.points, sheet.points, start.shown & sheet.shown, step.label)
         sheet.points = start.points
-    known = [t for t in own_times if t is not None]
-    if times is None and len(known) == len(sheets):
-        times = known
     shown = np.logical_and.reduce([sheet.shown for sheet in sheets])
     cells = np.logical_and.reduce([sheet.cells for sheet in sheets])
     shown &= nodes_to_keep(cells, sheets[0].wrap)
-    names = [n for n in sheets[0].scalars if all(n in sheet.scalars for sheet in sheets)]
-    return FieldArguments(
-        points=sheets[0].points,
-        velocity=np.stack([sheet.vectors for sheet in sheets]),
-        times=times,
-        valid=shown,
-        scalars={n: np.stack([sheet.scalars[n] for sheet in sheets]) for n in names},
-    )
+    return {**stacked(sheets, times), "valid": shown}
 
 
 def _choose(grid: Any, plane: str | None, vectors: str | None) -> tuple[Plane, MeshArray]:
@@ -181,9 +156,10 @@ def _check_step(step: TimeStep, plane: Plane, vectors: MeshArray) -> None:
 
 
 def _plane_step(
-    grid: Any, plane: Plane, vectors: MeshArray, periodic: str | None, *, sign_free: bool
+    step: TimeStep, plane: Plane, vectors: MeshArray, periodic: str | None, *, sign_free: bool
 ) -> _PlaneStep:
     """Take one plane out of one grid."""
+    grid, time = step.grid, step.time
     points = _positions(grid, plane)
     shown = ~plane.nodes(hidden_nodes(grid))
     wrap = _wrap(np.where(shown[..., None], points, np.nan), periodic)
@@ -198,7 +174,14 @@ def _plane_step(
             velocity = spread(layers, visible, wrap)
     else:
         velocity = plane.nodes(values).astype(np.float64)
-    sheet = _PlaneStep(points, velocity, shown, np.asarray(visible.any(axis=0)), wrap)
+    sheet = _PlaneStep(
+        time=time,
+        points=points,
+        vectors=velocity,
+        shown=shown,
+        cells=np.asarray(visible.any(axis=0)),
+        wrap=wrap,
+    )
     for array in catalogue(grid):
         if array.numeric and array.components == 1 and array != vectors:
             # Points come first in the catalogue, and win over cells of the same name.

@@ -64,14 +64,12 @@ class BlockSummary:
     """One block of a file.
 
     ``name`` is its path, ``number`` what counts those with cells, ``None`` for the others,
-    ``dimensions`` the nodes along I, J and K of a structured one, ``size`` words for how large it
-    is.
+    ``size`` words for how large it is.
     """
 
     name: str
     number: int | None
     grid: str
-    dimensions: tuple[int, ...] | None
     size: str = ""
 
 
@@ -83,8 +81,6 @@ class FileSummary:
     ----------
     grid
         Type of its mesh: of the block that is meant where it has several.
-    dimensions
-        Number of nodes (I, J, K), or ``None`` for an unstructured mesh.
     size
         Words for how large it is.
     cells
@@ -107,7 +103,6 @@ class FileSummary:
 
     path: Path
     grid: str
-    dimensions: tuple[int, int, int] | None
     size: str
     cells: dict[str, int]
     bounds: tuple[tuple[float, float], ...]
@@ -137,7 +132,6 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
     parts = list(leaves(mesh))
     meant = list(drawn_parts(mesh)[0].values())
     part = (meant or [p for _, p in parts] or [mesh])[0] if block is None else pick(mesh, block)
-    structured = is_structured(part)
     data = hasattr(part, "point_data")
     arrays = catalogue(part) if data else []
     found = candidates(part) if data else []
@@ -150,7 +144,6 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
     return FileSummary(
         path=file.path,
         grid=type(part).__name__,
-        dimensions=tuple(part.dimensions) if structured else None,
         size=part_size(part) if data else "",
         cells=_cells(part),
         bounds=tuple(zip(part.bounds[::2], part.bounds[1::2], strict=True)) if data else (),
@@ -186,9 +179,8 @@ def _cells(mesh: Any) -> dict[str, int]:
 def _blocks(parts: list[tuple[str, Any]], meshes: dict[str, Any]) -> Iterator[BlockSummary]:
     numbers = {name: number for number, name in enumerate(meshes)}
     for name, part in parts:
-        dimensions = tuple(part.dimensions) if is_structured(part) else None
         size = part_size(part) if name in meshes else ""
-        yield BlockSummary(name, numbers.get(name), type(part).__name__, dimensions, size)
+        yield BlockSummary(name, numbers.get(name), type(part).__name__, size)
 
 
 def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError, raise_faults
-from flowtex.field.steps import LazySteps, Steps, map_steps
+from flowtex.field.steps import LazySteps, Steps, first_step, map_steps
 from flowtex.field.triangles.topology import edges_of, merged_nodes, needle_edges, repeated
 from flowtex.field.validation import (
     as_numbers,
@@ -27,11 +27,11 @@ from flowtex.field.validation import (
 )
 
 __all__ = [
-    "TriangleArrays",
+    "TriangleNodes",
     "known_means",
     "nodal_means",
     "solid_triangles",
-    "triangle_arrays",
+    "triangle_nodes",
 ]
 
 #: Twice the area of a triangle over the square of its longest side, below which it has none.
@@ -39,7 +39,7 @@ FLAT_TRIANGLE = 1e-12
 
 
 @dataclass
-class TriangleArrays:
+class TriangleNodes:
     """Arrays of a field: nodes are a row, (1, N), as :mod:`flowtex.field.triangles` says."""
 
     points: Floats
@@ -49,28 +49,28 @@ class TriangleArrays:
     scalars: dict[str, Steps]
 
 
-def triangle_arrays(
+def triangle_nodes(
     points: ArrayLike,
     triangles: ArrayLike,
     velocity: Any,
     times: Floats | None,
     valid: ArrayLike | None,
     scalars: Mapping[str, Any],
-) -> TriangleArrays:
+) -> TriangleNodes:
     """Check arrays, join what lies at one place, and leave out what cannot be drawn, with a word.
 
     Parameters and errors are those of :meth:`FlowField.from_triangles`. Of steps that are read late
     the first one is looked at.
     """
     p, masked_points = as_numbers("points", points)
-    v, masked = as_numbers("velocity", _first(velocity))
+    v, masked = as_numbers("velocity", first_step(velocity))
     try:
         corners = np.asarray(triangles)
     except ValueError as error:
         msg = f"triangles is no array ({error}); expected three numbers of nodes in every row"
         raise FieldError(msg) from error
     shown = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
-    given = {name: with_gaps(f"scalars[{name!r}]", _first(s)) for name, s in scalars.items()}
+    given = {name: with_gaps(f"scalars[{name!r}]", first_step(s)) for name, s in scalars.items()}
     count = len(velocity) if v.ndim == 3 or isinstance(velocity, LazySteps) else 1
     raise_faults(_faults(p, corners, v, count, times, shown, given))
     p = three_components(p)
@@ -113,12 +113,7 @@ def triangle_arrays(
         ok, moving, data = _joined(number[same], len(used), ok, moving, data)
         p = p[used]
     moving = map_steps(moving, lambda step: np.where(ok[:, None], step, 0.0))
-    return TriangleArrays(p[None].copy("C"), number[corners], moving, ok[None], data)
-
-
-def _first(values: Any) -> Any:
-    """Return the first of steps that are read late; others as they are."""
-    return values[0] if isinstance(values, LazySteps) else values
+    return TriangleNodes(p[None].copy("C"), number[corners], moving, ok[None], data)
 
 
 def _row(ok: Bools, step: Floats) -> Floats:

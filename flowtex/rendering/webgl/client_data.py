@@ -22,8 +22,8 @@ from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.colours import CMAPS, colour_shares, colour_table, is_diverging
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
+from flowtex.field.derived import speed_unit
 from flowtex.field.interpolation import steps_around
-from flowtex.field.units import speed_unit
 from flowtex.rendering.mesh_levels import mesh_limits
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS

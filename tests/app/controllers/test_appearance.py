@@ -126,6 +126,20 @@ def test_what_is_changed_in_python_is_shown_on_the_page(flat: FlowApp) -> None:
     assert difference(picture(flat), speed) == 0
 
 
+def test_a_saved_look_comes_back_as_a_whole(flat: FlowApp) -> None:
+    area, appearance = flat.area, flat.controllers.appearance
+    before = area.scene.appearance
+    look = {"colour": "height", "cmap": "magma", "clim": (0.5, 2.0)}
+    appearance.restore({**look, "log_scale": True, "opacity": 0.25})
+    assert (area.scalars, area.cmap, area.clim) == ("height", "magma", (0.5, 2.0))
+    assert area.log_scale and area.opacity == 0.25 and flat.state.get("log_scale") is True
+    saved = appearance.describe()
+    assert saved["log_scale"] is True and saved["opacity"] == 0.25 and saved["clim"] == (0.5, 2.0)
+    appearance.restore({"colour": "no such", "cmap": "os_system", "opacity": 1.0})
+    assert (area.scalars, area.cmap, area.opacity) == ("height", "magma", 1.0)
+    area.scene.appearance = before
+
+
 def test_the_bar_has_the_colours_of_the_picture(flat: FlowApp) -> None:
     stops = flat.state.get("bar")["stops"]
     flat.state.set(set_strength=0.0)

@@ -39,6 +39,8 @@ STATE: dict[str, Any] = {
     "colour": "Geschwindigkeit ü",
     "cmap": "RdBu_r",
     "clim": (-1e-20, 1e20 / 3),
+    "log_scale": True,
+    "opacity": 0.25,
     "coastlines": False,
     "graticule": False,
     "theme": "light",
@@ -102,19 +104,21 @@ def test_an_unknown_setting_makes_no_link() -> None:
         ("plane=k=1e3", "plane is 'k=1e3'"),
         ("cmap=os.system", "cmap is 'os.system'; expected the name of a colour map"),
         ("clim=2,1", "clim is '2,1'; expected a lower number and a higher one"),
-        ("clim=0,inf", "clim is '0,inf'; expected a number"),
-        ("clim=0", "expected 2 numbers"),
+        ("clim=0,inf", "clim is '0,inf'; expected two numbers"),
+        ("clim=0", "expected two numbers"),
+        ("opacity=x", "opacity is 'x'; expected a number"),
+        ("log_scale=1", "log_scale is '1'; expected 'on' or 'off'"),
         ("time=nan", "time is 'nan'; expected a number"),
         ("theme=pink", "theme is 'pink'; expected 'dark' or 'light'"),
         ("split=all", "split is 'all'; expected 'nothing' or"),
         ("file=a%00b", "file is 'a\\x00b'; expected a name"),
         ("file=" + "a" * 500, "expected a name of at most 400 characters"),
-        ("camera=parallel,0,0", "camera is 'parallel,0,0'; expected 11 numbers"),
-        ("camera=parallel,0,0,1,0,0,1,0,1,0,1,30", "expected a camera that looks at something"),
-        ("camera=parallel,0,0,1,0,0,0,0,0,1,1,30", "expected a camera that looks at something"),
-        ("camera=parallel,0,0,1,0,0,0,0,1,0,-1,30", "expected a camera that looks at something"),
-        ("camera=parallel,0,0,1,0,0,0,0,1,0,1,200", "expected a camera that looks at something"),
-        ("camera=fisheye,0,0,1,0,0,0,0,1,0,1,30", "expected a camera that looks at something"),
+        ("camera=parallel,0,0", "camera is 'parallel,0,0'; expected nine numbers"),
+        ("camera=parallel,0,0,1,0,0,1,0,1,0,1,30", "on one line; expected up to point away"),
+        ("camera=parallel,0,0,1,0,0,0,0,0,1,1,30", "on one line; expected up to point away"),
+        ("camera=parallel,0,0,1,0,0,0,0,1,0,-1,30", "camera.parallel_scale is -1.0; expected"),
+        ("camera=parallel,0,0,1,0,0,0,0,1,0,1,200", "camera.view_angle is 200.0; expected"),
+        ("camera=fisheye,0,0,1,0,0,0,0,1,0,1,30", "expected nine numbers"),
         ("evil=1", "the link says 'evil', which means nothing here"),
         ("a=1&" * 101, "too many values"),
         ("x" * 9000, "has 9,000 characters"),
@@ -186,7 +190,7 @@ def test_the_python_lines_draw_the_same_picture(
 ) -> None:
     monkeypatch.chdir(file.parent)
     field = flowtex.FlowField.from_file(file.name)
-    changed: dict[str, Any] = {"samples": 15, "seed": 3, "motion": "speed"}
+    changed: dict[str, Any] = {"samples": 15, "seed": 3, "motion": "speed", "opacity": 0.6}
     scene = Viewport(field, zoom=3.0, scalars="vorticity", cmap="magma", clim=(-1, 2.0), **changed)
     flowtex.examples.double_gyre(7.0).save(file.parent / "later.vts")
     later = {"field": flowtex.FlowField.from_file("later.vts")}
@@ -201,6 +205,7 @@ def test_the_python_lines_draw_the_same_picture(
         "colour": "vorticity",
         "cmap": "magma",
         "clim": (-1, 2.0),
+        "opacity": 0.6,
         "clock": 0.7,
         "theme": "light",
         "split": split,

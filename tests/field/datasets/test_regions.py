@@ -11,21 +11,11 @@ import pytest
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex._util.blocks import even_runs
+from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
-from flowtex.field.io.constructors import FieldConstructors
+from flowtex.field.io.arrays import GridArrays
 
 xr = pytest.importorskip("xarray")
-
-
-class Opened(FieldConstructors):
-    """Opens datasets without reading them, where that can be."""
-
-    from_arrays = FlowField.from_arrays
-    from_triangles = FlowField.from_triangles
-
-    @classmethod
-    def from_regions(cls, regions: Regions) -> Regions:
-        return regions
 
 
 def dataset(lon: Floats, lat: Floats, *, steps: int = 1, plane: bool = False) -> Any:
@@ -71,7 +61,7 @@ LATITUDES = {"north": np.linspace(-78, 80, 61), "south": np.linspace(90, -90, 61
 
 def both(data: Any, **options: Any) -> tuple[FlowField, Regions]:
     """Return a field, and its regions as they come to a worker."""
-    regions = Opened.from_xarray(data, **options)
+    regions = read_datasets(data, regions=True, **options)
     assert isinstance(regions, Regions)
     return FlowField.from_xarray(data, **options), pickle.loads(pickle.dumps(regions))
 
@@ -134,7 +124,7 @@ def test_levels_are_chosen_as_in_a_field() -> None:
 @pytest.mark.parametrize("projection", ["north", "robinson", "lambert"])
 def test_maps_that_end_where_all_nodes_tell_are_read_whole(projection: str) -> None:
     data = dataset(LONGITUDES["region"], LATITUDES["north"])
-    assert isinstance(Opened.from_xarray(data, projection=projection), FlowField)
+    assert isinstance(read_datasets(data, projection=projection, regions=True), GridArrays)
 
 
 def test_grids_that_are_no_lines_are_read_whole() -> None:
@@ -145,9 +135,11 @@ def test_grids_that_are_no_lines_are_read_whole() -> None:
         lon=(("j", "i"), lon, {"units": "degrees_east"}),
         lat=(("j", "i"), lat, {"units": "degrees_north"}),
     )
-    assert isinstance(Opened.from_xarray(curved), FlowField)
+    assert isinstance(read_datasets(curved, regions=True), GridArrays)
     flat = dataset(np.arange(0.0, 360, 1.5), LATITUDES["north"], plane=True)
-    assert isinstance(Opened.from_xarray(flat), FlowField)  # it may close, as longitude does
+    assert isinstance(
+        read_datasets(flat, regions=True), GridArrays
+    )  # it may close, as longitude does
 
 
 def test_a_globe_closes_though_land_lies_at_its_seam() -> None:
@@ -170,7 +162,7 @@ def test_the_largest_models_are_recognised_by_their_lines() -> None:
             "lat": ("lat", np.linspace(-80, 80, 50_000), {"units": "degrees_north"}),
         },
     )
-    regions = Opened.from_xarray(data)
+    regions = read_datasets(data, regions=True)
     assert isinstance(regions, Regions)
     assert regions.lines.shape == (50_000, 200_001) and regions.lines.closed
     nodes = regions.nodes(0, slice(49_000, 49_100), slice(199_990, 200_001))

@@ -270,7 +270,7 @@ def test_plot3d_of_several_grids(tmp_path: Path) -> None:
         '1 (1, 3 x 6 x 2 nodes); choose one, as in block="0", or cut all '
         'volumes, as in slice="z"'
     )
-    assert describe(tmp_path / "a.g", block=1).dimensions == (3, 6, 2)
+    assert describe(tmp_path / "a.g", block=1).size == "3 x 6 x 2 nodes"
 
 
 @pytest.mark.parametrize(
@@ -360,7 +360,7 @@ def test_the_post(data_dir: Path) -> None:
 
 def test_the_post_tells_what_it_is(data_dir: Path) -> None:
     summary = describe(data_dir / "postxyz.bin")
-    assert summary.dimensions == (38, 76, 38)
+    assert summary.size == "38 x 76 x 38 nodes"
     assert summary.candidates == ("Velocity",)
     assert 'choose a plane, as in plane="k=19"' in summary.problem
 
@@ -578,7 +578,7 @@ def test_a_file_tells_what_it_holds(tmp_path: Path) -> None:
     grid.save(path)
     summary = describe(path)
     assert summary.grid == "StructuredGrid"
-    assert summary.dimensions == (4, 3, 2)
+    assert summary.size == "4 x 3 x 2 nodes"
     assert summary.blanked == 2
     assert summary.candidates == ("v",)
     assert summary.times == ()
@@ -594,6 +594,16 @@ def test_a_file_tells_what_it_holds(tmp_path: Path) -> None:
         'plane, as in plane="k=1"; there are i=0 to 3, j=0 to 2, k=0 to 1, and -1 is the last one; '
         'or cut it anywhere, as in slice="z"'
     )
+
+
+def test_what_makes_no_field_names_its_file(tmp_path: Path) -> None:
+    for n, mesh in enumerate((flowing(), pv.Plane().triangulate())):
+        mesh["v"] = np.ones((mesh.n_points, 3))
+        mesh["IBlank"] = np.zeros(mesh.n_points, dtype=int)
+        path = tmp_path / f"still{n}.{'vtp' if n else 'vts'}"
+        mesh.save(path)
+        with pytest.raises(FieldError, match=f"^{re.escape(str(path))}: .*usable"):
+            FlowField.from_file(path, vectors="v")
 
 
 def test_a_file_that_can_be_drawn_has_no_problem(tmp_path: Path) -> None:
@@ -614,10 +624,10 @@ def test_blocks_are_listed(tmp_path: Path) -> None:
     pv.MultiBlock({"hull": pv.Sphere(), "sea": flowing()}).save(path)
     summary = describe(path)
     assert summary.blocks == (
-        BlockSummary("hull", 0, "PolyData", None, "842 points, 1,680 cells"),
-        BlockSummary("sea", 1, "StructuredGrid", (4, 3, 1), "4 x 3 x 1 nodes"),
+        BlockSummary("hull", 0, "PolyData", "842 points, 1,680 cells"),
+        BlockSummary("sea", 1, "StructuredGrid", "4 x 3 x 1 nodes"),
     )
-    assert summary.dimensions == (4, 3, 1)
+    assert summary.size == "4 x 3 x 1 nodes"
     assert summary.problem == ""
 
 
@@ -625,6 +635,6 @@ def test_an_unstructured_file_tells_what_it_is(tmp_path: Path) -> None:
     pv.Sphere().save(tmp_path / "hull.vtp")
     summary = describe(tmp_path / "hull.vtp")
     assert summary.grid == "PolyData"
-    assert summary.dimensions is None
+    assert summary.size == "842 points, 1,680 cells"
     assert summary.cells == {"triangle": 1680} and not summary.volume
     assert summary.problem.startswith("the mesh has no vectors")

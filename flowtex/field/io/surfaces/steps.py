@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, TypedDict
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,40 +23,48 @@ from flowtex.field.io.vectors import (
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
 
-__all__ = ["SurfaceArguments", "read_surfaces"]
+__all__ = ["SheetStep", "read_surfaces", "stacked"]
 
 
-class SurfaceArguments(TypedDict):
-    """Those arguments of :meth:`FlowField.from_triangles` that a mesh holds."""
+@dataclass(kw_only=True)
+class SheetStep:
+    """The arrays of what is drawn at one time: positions, vectors, scalars, and what is shown."""
 
+    time: float | None
     points: Floats
-    triangles: Indices
-    velocity: Floats
-    times: ArrayLike | None
-    valid: Bools
-    scalars: dict[str, Floats]
-
-
-@dataclass
-class _SurfaceStep:
-    """The arrays of a surface at one time: points and vectors (N, 2 or 3), the others (N,)."""
-
-    points: Floats
-    triangles: Indices
     vectors: Floats
     shown: Bools
     scalars: dict[str, Floats] = field(default_factory=dict)
 
 
+def stacked(sheets: Sequence[SheetStep], times: ArrayLike | None) -> dict[str, Any]:
+    """Return arrays of all steps, with the scalars that each of them has."""
+    known = [sheet.time for sheet in sheets if sheet.time is not None]
+    names = [n for n in sheets[0].scalars if all(n in sheet.scalars for sheet in sheets)]
+    return {
+        "points": sheets[0].points,
+        "velocity": np.stack([sheet.vectors for sheet in sheets]),
+        "times": known if times is None and len(known) == len(sheets) else times,
+        "valid": np.logical_and.reduce([sheet.shown for sheet in sheets]),
+        "scalars": {n: np.stack([sheet.scalars[n] for sheet in sheets]) for n in names},
+    }
+
+
+@dataclass(kw_only=True)
+class _SurfaceStep(SheetStep):
+    """The arrays of a surface: points and vectors (N, 2 or 3), the others (N,)."""
+
+    triangles: Indices
+
+
 def read_surfaces(
     steps: Iterable[TimeStep], vectors: str | None, cut: Cut | None, times: ArrayLike | None
-) -> SurfaceArguments:
+) -> dict[str, Any]:
     """Read what a field needs from meshes at one or several times.
 
     Parameters and errors are those of :meth:`FlowField.from_pyvista`.
     """
     sheets: list[_SurfaceStep] = []
-    own_times: list[float | None] = []
     chosen: MeshArray | None = None
     for step in steps:
         if chosen is None:
@@ -64,26 +72,9 @@ def read_surfaces(
             raise_faults(faults + (vector_faults(step.grid, vectors) if step.grid.n_cells else []))
             chosen = choose_vectors(step.grid, vectors)
         check_arrays(step, chosen)
-        sheets.append(_surface_step(step.grid, chosen, cut, tell=not sheets))
-        own_times.append(step.time)
+        sheets.append(_surface_step(step, chosen, cut, tell=not sheets))
         _check_same(sheets[0], sheets[-1], step)
-    known = [t for t in own_times if t is not None]
-    if times is None and len(known) == len(sheets):
-        times = known
-    names = [n for n in sheets[0].scalars if all(n in sheet.scalars for sheet in sheets)]
-    several = len(sheets) > 1
-
-    def stacked(arrays: list[Floats]) -> Floats:
-        return np.stack(arrays) if several else arrays[0]
-
-    return SurfaceArguments(
-        points=sheets[0].points,
-        triangles=sheets[0].triangles,
-        velocity=stacked([sheet.vectors for sheet in sheets]),
-        times=times,
-        valid=np.logical_and.reduce([sheet.shown for sheet in sheets]),
-        scalars={n: stacked([sheet.scalars[n] for sheet in sheets]) for n in names},
-    )
+    return {**stacked(sheets, times), "triangles": sheets[0].triangles}
 
 
 def _check_same(first: _SurfaceStep, sheet: _SurfaceStep, step: TimeStep) -> None:
@@ -106,9 +97,11 @@ def _size(sheet: _SurfaceStep) -> str:
     return f"{len(sheet.points):,} nodes and {len(sheet.triangles):,} triangles"
 
 
-def _surface_step(mesh: Any, vectors: MeshArray, cut: Cut | None, *, tell: bool) -> _SurfaceStep:
+def _surface_step(
+    step: TimeStep, vectors: MeshArray, cut: Cut | None, *, tell: bool
+) -> _SurfaceStep:
     """Take the surface out of one mesh."""
-    surface, triangles = surface_of(mesh, cut, vectors, tell=tell)
+    surface, triangles = surface_of(step.grid, cut, vectors, tell=tell)
     if cut is not None:
         vectors = replace(vectors, where="points")
     points = np.asarray(surface.points, dtype=np.float64)
@@ -131,7 +124,13 @@ def _surface_step(mesh: Any, vectors: MeshArray, cut: Cut | None, *, tell: bool)
         return nodal_means(values[None], triangles, areas, len(points), known)[0]
 
     shown = np.asarray(surface.point_data[HIDDEN]) <= 0
-    sheet = _SurfaceStep(points, triangles, at_nodes(vectors), shown)
+    sheet = _SurfaceStep(
+        time=step.time,
+        points=points,
+        vectors=at_nodes(vectors),
+        shown=shown,
+        triangles=triangles,
+    )
     for array in arrays:
         if array != vectors:
             # Points come first in the catalogue, and win over cells of the same name.

@@ -1,0 +1,116 @@
+"""Values as people write them, in a shell or in a link: how each is read and written."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flowtex.errors import FieldError
+
+__all__ = [
+    "NUMBER",
+    "PLAIN",
+    "SWITCH",
+    "Form",
+    "UnreadableError",
+    "finite_number",
+    "named_texts",
+    "number_or_text",
+    "numbers",
+    "or_none",
+]
+
+
+class UnreadableError(FieldError):
+    """A text that stands for no value; the error says what was expected."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """How the values of an argument are written.
+
+    Attributes
+    ----------
+    words
+        What a shell says that the argument is for, where that is not what Python says.
+    read
+        Returns the value of a text; an UnreadableError says what was expected.
+    write
+        Returns the text of a value.
+    repeated
+        Whether it may be given several times; ``read`` then takes all the texts.
+    """
+
+    words: str = ""
+    read: Callable[[Any], Any] = str
+    write: Callable[[Any], str] = str
+    repeated: bool = False
+
+
+def number_or_text(text: str) -> float | str:
+    """Return a number where a text is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def finite_number(text: str) -> float:
+    """Return a number."""
+    value = number_or_text(text)
+    if isinstance(value, str) or not math.isfinite(value):
+        msg = "a number"
+        raise UnreadableError(msg)
+    return value
+
+
+def numbers(*counts: int, expected: str) -> Callable[[str], tuple[float, ...]]:
+    """Return what reads one of several counts of numbers with commas between them."""
+
+    def read(text: str) -> tuple[float, ...]:
+        words = re.split(r"[,\s]+", text.strip())
+        values = [number_or_text(word) for word in words]
+        found = tuple(v for v in values if isinstance(v, float) and math.isfinite(v))
+        if len(found) < len(words) or len(words) not in counts:
+            raise UnreadableError(expected)
+        return found
+
+    return read
+
+
+def or_none(value: Any = None) -> Callable[[str], Any]:
+    """Return what reads any text, and ``none`` as some value."""
+    return lambda text: value if text == "none" else text
+
+
+def named_texts(
+    read: Callable[[str], Any], expected: str
+) -> Callable[[Sequence[str]], dict[str, Any]]:
+    """Return what reads texts such as ``name=value``, each value by ``read``."""
+
+    def read_all(texts: Sequence[str]) -> dict[str, Any]:
+        pairs = [text.partition("=") for text in texts]
+        try:
+            if all(name and value for name, _, value in pairs):
+                return {name.strip(): read(value) for name, _, value in pairs}
+        except ValueError:
+            pass
+        raise UnreadableError(expected)
+
+    return read_all
+
+
+def _read_switch(text: str) -> bool:
+    if text not in ("on", "off"):
+        msg = "'on' or 'off'"
+        raise UnreadableError(msg)
+    return text == "on"
+
+
+#: Texts as they are, numbers, and what is on or off.
+PLAIN = Form()
+NUMBER = Form(read=finite_number, write=lambda value: repr(float(value)))
+SWITCH = Form(read=_read_switch, write=lambda value: "on" if value else "off")

@@ -1,0 +1,49 @@
+"""What a source gives of a flow: arrays that are not checked yet, and words for them.
+
+The names are those of the arguments of :meth:`FlowField.from_arrays` and
+:meth:`FlowField.from_triangles`, which :meth:`FlowField.of` hands them to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from flowtex.earth import Projection
+
+__all__ = ["FieldArrays", "GridArrays", "TriangleArrays"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FieldArrays:
+    """What all sources give; velocity and scalars may be read late."""
+
+    points: ArrayLike
+    velocity: Any
+    times: ArrayLike | None = None
+    valid: ArrayLike | None = None
+    scalars: Mapping[str, Any] = field(default_factory=dict)
+    name: str = ""
+    length_unit: str = ""
+    time_unit: str = ""
+    units: Mapping[str, str] = field(default_factory=dict)
+    long_names: Mapping[str, str] = field(default_factory=dict)
+    projection: Projection | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class GridArrays(FieldArrays):
+    """The nodes of a structured surface, (J, I)."""
+
+    periodic: str | None = None
+    sign_free: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TriangleArrays(FieldArrays):
+    """The nodes of a surface of triangles, (N,)."""
+
+    triangles: ArrayLike
