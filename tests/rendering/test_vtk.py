@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
-from measures import carried, fineness, streaks
+from measures import carried, fineness, grain, streaks
 from plain_pyvista import off_colours
 
 import flowtex
@@ -72,12 +72,15 @@ def test_streaks_follow_the_flow_at_every_zoom(opengl: Any, zoom: float, sheared
 
 
 def test_the_grain_keeps_its_size_in_pixels_through_a_thousandfold_zoom(opengl: Any) -> None:
-    field, focus = gyre_field(), (0.63, 0.37)
-    sizes = []
-    for zoom in (4, 32, 256, 4096):
-        picture = flowtex.render(field, size=SIZE, zoom=zoom, focus=focus, scalars=False)
-        sizes.append(fineness(picture, inside(*pixels(field, zoom, focus))))
+    field, sizes, lengths = gyre_field(), [], []
+    for zoom in (1, 4, 32, 256, 4096):
+        middle = (1.0, 0.5) if zoom == 1 else (0.63, 0.37)
+        picture = flowtex.render(field, size=SIZE, zoom=zoom, focus=middle, scalars=False)
+        x, y = pixels(field, zoom, middle)
+        sizes.append(fineness(picture, inside(x, y)))
+        lengths.append(grain(picture, *gyre(x, y), inside(x, y))["along"])
     assert max(sizes) / min(sizes) < 1.15
+    assert max(lengths) / min(lengths) < 1.15
 
 
 def test_a_thousandth_of_a_cell_is_as_sharp_as_the_whole(opengl: Any) -> None:
