@@ -223,7 +223,7 @@ export class Viewer implements User {
     for (const name of named(`${kind}/`).slice(0, -STEPS_HELD[kind][Number(!!options.memory)])) {
       const step = stepOf(name);
       if (needed.includes(step)) continue;
-      for (const of of [kind, "extra"]) this.remove(`${of}/${step}`);
+      for (const held of [kind, "extra"]) this.remove(`${held}/${step}`);
       const values = options.memory ? named("scalars/") : [];
       for (const other of values) if (isOfStep(other, step, header)) this.remove(other);
     }
