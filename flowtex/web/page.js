@@ -1324,9 +1324,9 @@ this.panel.showLegend(),this.change()}remove(name){this.graphics.release(this.pa
 let{header,options}=this;if(!header||!options.onNeed)return;let kind=header.slices.trace?"flow":"slices",named=some=>[...this.
 parts.keys()].filter(name=>name.startsWith(some)),needed=this.player.moment.slice(0,2).flatMap(step=>flowsOf(header,step));
 for(let name of named(`${kind}/`).slice(0,-STEPS_HELD2[kind][+!!options.memory])){let step=stepOf(name);if(needed.includes(
-step))continue;for(let of of[kind,"extra"])this.remove(`${of}/${step}`);let values=options.memory?named("scalars/"):[];for(let other of values)
-isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
-settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
+step))continue;for(let held of[kind,"extra"])this.remove(`${held}/${step}`);let values=options.memory?named("scalars/"):
+[];for(let other of values)isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){Object.entries(settings).
+every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
 name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
 this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(
 state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;

@@ -1354,7 +1354,7 @@ tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.show
 graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){let{header,options}=this;if(!header||!options.onNeed)
 return;let kind=header.slices.trace?"flow":"slices",named=some=>[...this.parts.keys()].filter(name=>name.startsWith(some)),
 needed=this.player.moment.slice(0,2).flatMap(step=>flowsOf(header,step));for(let name of named(`${kind}/`).slice(0,-STEPS_HELD2[kind][+!!options.
-memory])){let step=stepOf(name);if(needed.includes(step))continue;for(let of of[kind,"extra"])this.remove(`${of}/${step}`);
+memory])){let step=stepOf(name);if(needed.includes(step))continue;for(let held of[kind,"extra"])this.remove(`${held}/${step}`);
 let values=options.memory?named("scalars/"):[];for(let other of values)isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){
 Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
 panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
