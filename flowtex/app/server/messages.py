@@ -2,8 +2,8 @@
 
 wslink reserves room for a whole message when its first piece announces a length of up to 4 GB, so
 messages are limited: nothing that the page sends is larger than a picture. trame keeps whatever a
-page puts into the state, prints the names of areas that it does not know, and answers a fault
-with its traceback; none of that passes here.
+page puts into the state, prints the names of areas and triggers that it does not know, and
+answers a fault with its traceback; none of that passes here.
 """
 
 from __future__ import annotations
@@ -35,11 +35,18 @@ class LimitedMessages(UnChunker):
         Names of the state's values; a page cannot add others.
     areas
         Names of the views that a page may speak of.
+    triggers
+        Names of what it may call.
     """
 
-    def __init__(self, declared: Container[str] = (), areas: Container[str] = ()) -> None:
+    def __init__(
+        self,
+        declared: Container[str] = (),
+        areas: Container[str] = (),
+        triggers: Container[str] = (),
+    ) -> None:
         super().__init__()
-        self._declared, self._areas = declared, areas
+        self._declared, self._areas, self._triggers = declared, areas, triggers
 
     def set_max_message_size(self, size: int) -> None:
         """Allow messages of so many bytes, or as many as any may have."""
@@ -71,6 +78,8 @@ class LimitedMessages(UnChunker):
             return {**message, "args": [known], "kwargs": {}}
         if method == "trame.lifecycle.update":
             return {**message, "kwargs": {}} if _is_one_of(first, EVENTS) else None
+        if method == "trame.trigger" and not _is_one_of(first, self._triggers):
+            return None
         if isinstance(method, str) and method.startswith("trame.rca."):
             return {**message, "kwargs": {}} if _is_one_of(first, self._areas) else None
         return message

@@ -12,6 +12,7 @@ browser. So the server answers to addresses in numbers and to names that it know
 
 from __future__ import annotations
 
+import errno
 import hmac
 import ipaddress
 import logging
@@ -124,9 +125,13 @@ def guard(
             return await handler(request)
         except web.HTTPException:
             raise
+        except web.RequestPayloadError:  # such as what is no gzip though its head says so
+            raise web.HTTPBadRequest from None
         except Exception as error:
             if request.transport is None:  # nobody waits for the answer any more
                 raise web.HTTPBadRequest from None
+            if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
+                raise web.HTTPNotFound from None
             # An address holds secrets, so that its pattern is written.
             resource = request.match_info.route.resource
             where = f"{request.method} {resource.canonical if resource else ''}"

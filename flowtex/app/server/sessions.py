@@ -45,7 +45,7 @@ from trame_client.widgets.core import HTML_CTX
 from trame_server.protocol import CoreServer
 from wslink.protocol import MAX_MSG_SIZE
 
-from flowtex._util.memory import available_bytes
+from flowtex._util.memory import available_bytes, give_back
 from flowtex.app.server.files import Routes
 from flowtex.app.server.messages import LimitedMessages, restrict
 from flowtex.app.server.security import new_secret
@@ -150,8 +150,9 @@ class Session:
         link = await self._endpoint.connect()
         # trame-rca's object for all areas of a page, where there is one.
         areas, _ = self._endpoint.functionMap.get("trame.rca.size", (None, None))
+        server = self.app.server
         self._endpoint.unchunkers[link.client_id] = LimitedMessages(
-            self.app.server.state, getattr(areas, "_area_adapters", ())
+            server.state, getattr(areas, "_area_adapters", ()), server.controller._triggers
         )
         link.on_message(send)
         try:
@@ -316,27 +317,28 @@ class Sessions:
         try:
             return session, await session.start(self._secret)
         except BaseException:
-            await self.end(session)
+            await self.end(session.token)
             raise
 
     async def _make_room(self) -> None:
         if len(self) < self.limit:
             return
-        longest = max(self, key=lambda session: session.away)
-        if longest.away < REPLACE_AFTER_S:
+        token = max(self._by_token, key=lambda token: self._by_token[token].away)
+        if self._by_token[token].away < REPLACE_AFTER_S:
             raise FullError
-        await self.end(longest)
+        await self.end(token)
 
-    async def end(self, session: Session) -> None:
-        """End a session, and leave nothing of it."""
-        await self._end(session)
-        del session
+    async def end(self, token: str) -> None:
+        """End the session of a token, and leave nothing of it."""
+        await self._end(token)
         # Applications and VTK's objects point at each other. They are freed here, where their
-        # window was made, and not in whatever thread next fills up.
+        # window was made, and not in whatever thread next fills up. So who calls this holds none.
         gc.collect()
+        give_back()
 
-    async def _end(self, session: Session) -> None:
-        if self._by_token.pop(session.token, None) is None:
+    async def _end(self, token: str) -> None:
+        session = self._by_token.pop(token, None)
+        if session is None:
             return
         try:
             await session.end()
@@ -347,9 +349,13 @@ class Sessions:
         """End sessions that nobody has come back to, for as long as the task lives."""
         while True:
             await asyncio.sleep(min(every, max(60 * self.idle / 4, 0.05)))
-            for session in self:
-                if session is not self._ready and session.away > 60 * self.idle:
-                    await self.end(session)
+            for token in list(self._by_token):
+                if self._is_idle(token):
+                    await self.end(token)
+
+    def _is_idle(self, token: str) -> bool:
+        session = self._by_token.get(token)
+        return session not in (None, self._ready) and session.away > 60 * self.idle
 
     async def close(self) -> None:
         """End all sessions."""
@@ -357,7 +363,7 @@ class Sessions:
         # No page waits for another one, which may be asleep.
         await asyncio.gather(*(session.disconnect() for session in self))
         while self._by_token:
-            await self._end(next(iter(self)))
+            await self._end(next(iter(self._by_token)))
         gc.collect()
 
 

@@ -19,7 +19,7 @@ from flowtex.app.server.messages import MESSAGE_BYTES, LimitedMessages, restrict
 
 def taken(message: Any) -> Any:
     """Return what is left of a message."""
-    messages = LimitedMessages({"one", "two"}, {"view"})
+    messages = LimitedMessages({"one", "two"}, {"view"}, {"trigger"})
     messages.set_max_message_size(10_000)
     (chunk,) = generate_chunks(msgpack.packb(message), 10_000)
     return messages.process_chunk(chunk)
@@ -64,6 +64,8 @@ def test_values_that_nobody_declared_are_dropped(*, by_name: bool) -> None:
         ("trame.rca.event", ["view", "x", {}], [["view"], "x", {}]),
         ("trame.lifecycle.update", ["client_mounted"], ["x" * 99]),
         ("trame.lifecycle.update", ["client_exited"], []),
+        ("trame.trigger", ["trigger", [], {}], ["\x1b[31m", [], {}]),
+        ("trame.trigger", ["trigger", [1], {}], [["trigger"], [], {}]),
     ],
 )
 def test_names_that_nobody_declared_are_dropped(
@@ -75,7 +77,7 @@ def test_names_that_nobody_declared_are_dropped(
 
 
 def test_other_messages_pass() -> None:
-    for message in ({"method": "trame.trigger", "args": ["a"]}, {"method": 3}, [1], "a", 7):
+    for message in ({"method": "trame.state.get", "args": []}, {"method": 3}, [1], "a", 7):
         assert taken(message) == message
 
 
