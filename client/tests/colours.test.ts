@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { meanColour, recoloured } from "../src/colours.ts";
+import { mapOf, meanColour, rampOf, recoloured } from "../src/colours.ts";
 import { shareOf, type Header, type Settings, type Shading } from "../src/protocol.ts";
 
 interface Case {
@@ -56,4 +56,20 @@ test("a narrower range asks for smaller differences", () => {
 test("places on the map go by the logarithm where that is asked for", () => {
   const share = shareOf({ low: 1, high: 100, log: true } as Header["scalars"]);
   assert.deepEqual([-1, 1, 10, 100].map(share), [0, 0, 0.5, 1]);
+});
+
+test("a map is a part of the table of all of them, and an image has colours of its own", () => {
+  const data = Uint8Array.from({ length: 2 * 3 * 256 }, (_, n) => Math.floor(n / 3) % 256);
+  const maps = new Map([["maps", { data, shape: [2, 256, 3] }]]) as unknown as Parameters<typeof recoloured>[2];
+  const { part } = recoloured(header, { cmap: "coolwarm" }, maps);
+  assert.deepEqual([...(part?.data ?? [])].slice(0, 8), [0, 0, 0, 255, 1, 1, 1, 255]);
+  const map = mapOf(header, data, "coolwarm");
+  const [settings] = cases.map((each) => each.settings);
+  const rampFor = (picture: boolean) => {
+    const shown = { ...header, paper: { picture }, constants: { shading } } as unknown as Header;
+    return rampOf(map, shown, settings, 3);
+  };
+  assert.equal(rampFor(true), "linear-gradient(90deg, rgb(0 0 0), rgb(128 128 128), rgb(255 255 255))");
+  const [middle] = [meanColour([128, 128, 128], settings, shading).map(Math.round)];
+  assert.ok(rampFor(false).includes(`, rgb(${middle.join(" ")}), `));
 });

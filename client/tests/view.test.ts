@@ -110,3 +110,34 @@ test("many values become few messages, the last of them for certain", () => {
   send(4);
   assert.deepEqual(sent, [1, 3, 4]);
 });
+
+test("a series goes on as far as its steps are there, and from its end to its beginning", () => {
+  const player = new Player();
+  const times = [2, 4, 8];
+  player.setHeader({ slices: { times }, time: 2, clock: 0 } as unknown as Header);
+  assert.deepEqual([player.varies, player.span, player.timeOf([1, 2, 0.25])], [true, [2, 8], 5]);
+  assert.deepEqual(player.range({ period: 4 } as never), { first: 2, last: 8, now: 2 });
+  player.start();
+  assert.ok(player.playing && player.advance(1000, () => true));
+  assert.equal(player.time, 2); // the first picture is that of the moment itself
+  assert.ok(player.advance(1500, () => true));
+  assert.equal(player.time, 2.5); // of six seconds in which all is shown
+  assert.ok(!player.advance(2000, () => false));
+  assert.equal(player.time, 2.5);
+  assert.ok(player.advance(60_000, () => true)); // a tab that was asleep jumps over nothing
+  assert.equal(player.time, 3);
+  player.seek(9);
+  assert.equal(player.time, 8);
+  player.advance(60_100, () => true);
+  assert.equal(player.time, 2);
+});
+
+test("a steady flow streams by a clock", () => {
+  const player = new Player();
+  player.setHeader({ slices: { times: [0] }, time: 0, clock: 1 } as unknown as Header);
+  player.start();
+  player.advance(1000, () => false);
+  player.advance(1250, () => false);
+  assert.equal(player.clock, 1.25);
+  assert.deepEqual(player.range({ period: 0.5 } as never), { first: 0, last: 0.5, now: 0.25 });
+});
