@@ -446,7 +446,10 @@ def test_sessions_that_end_leave_nothing(monkeypatch: pytest.MonkeyPatch) -> Non
                 link = await here.link(token)
                 view = here.app(token).stream.area_name
                 await link.call("trame.rca.size", view, "test", {"w": 96, "h": 64, "p": 1})
-                await link.until(lambda link=link: link.pictures > 0)
+                # A thread that still draws holds what it draws.
+                await link.until(
+                    lambda link=link: link.pictures > 0 and link.get("picture") == "sharp"
+                )
                 await link.close()
                 await until(lambda: not any(s.connected for s in here.site.sessions))
             await here.site.sessions.end(token)
