@@ -7,12 +7,17 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from aiohttp import web
+from aiohttp.http_exceptions import HttpProcessingError
+
 __all__ = ["RepeatFilter", "bounded_log"]
 
 #: Records of one place in the code that are written in a window, and its seconds.
 MOST_RECORDS, WINDOW_S = 5, 60.0
 #: Characters of a message, and of a traceback with it.
 MESSAGE_LENGTH, TRACEBACK_LENGTH = 2_000, 8_000
+#: Faults of who asks, for which no code of ours need be looked at.
+OTHERS_FAULTS = HttpProcessingError, web.RequestPayloadError
 
 
 class RepeatFilter(logging.Filter):
@@ -32,7 +37,7 @@ class RepeatFilter(logging.Filter):
         self._windows: dict[object, tuple[float, int]] = {}
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Tell whether a record is written; its texts are cut."""
+        """Tell whether a record is written; it is cut, and has a traceback for our faults alone."""
         kind = record.exc_info[0] if record.exc_info else None
         place, now = (record.pathname, record.lineno, kind), self._clock()
         began, count = self._windows.get(place, (now, 0))
@@ -45,6 +50,8 @@ class RepeatFilter(logging.Filter):
         message = _cut(record.getMessage(), MESSAGE_LENGTH)
         record.msg = f"{message} ({dropped:,} more were dropped)" if dropped else message
         record.args = ()
+        if kind and issubclass(kind, OTHERS_FAULTS):
+            record.exc_info = record.exc_text = None
         if record.exc_info:
             text = self._formatter.formatException(record.exc_info)
             record.exc_text = _cut(text, TRACEBACK_LENGTH)

@@ -10,6 +10,11 @@ from collections.abc import Iterator
 
 import pytest
 
+pytest.importorskip("aiohttp")
+
+from aiohttp import web
+from aiohttp.http_exceptions import HttpBadRequest
+
 from flowtex.app.server.bounded_log import (
     MESSAGE_LENGTH,
     MOST_RECORDS,
@@ -75,3 +80,16 @@ def test_connections_that_cannot_be_accepted_are_few_lines(
     with bounded_log():
         asyncio.run(story())
     assert 0 < len(caplog.records) <= MOST_RECORDS
+
+
+@pytest.mark.parametrize(
+    "fault", [HttpBadRequest("a"), web.RequestPayloadError(), ZeroDivisionError()]
+)
+def test_what_is_malformed_has_no_traceback(log: Log, fault: Exception) -> None:
+    logger, written, _ = log
+    try:
+        raise fault
+    except Exception:
+        logger.exception("a request failed")
+    assert written.getvalue().startswith("a request failed\n")
+    assert ("Traceback" in written.getvalue()) is isinstance(fault, ZeroDivisionError)
