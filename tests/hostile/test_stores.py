@@ -104,7 +104,7 @@ def test_a_store_as_it_was_built_is_whole(whole: Path) -> None:
 
 def test_what_is_corrupt_is_named(copy: Path) -> None:
     paths = first_of_each(copy)
-    names = {"velocity": "velocity", "points": "points", "flow": "tile", "values": "speed"}
+    names = {"velocity": "velocity", "points": "points", "flow": "tile", "values": "heat"}
     for name, word in (names | {"digests": "digests"}).items():
         data = paths[f"1/{name}"].read_bytes()
         flip(paths[f"1/{name}"])

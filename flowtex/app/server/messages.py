@@ -23,6 +23,9 @@ UNUSED = ("application.exit", "application.exit.later", "trame.rca.push", "trame
 #: What happens to a page.
 EVENTS = ("client_connected", "client_mounted", "client_unmounted", "client_exited")
 
+#: Characters of the name of a trigger.
+NAME_LENGTH = 100
+
 _log = logging.getLogger(__name__)
 
 
@@ -35,18 +38,11 @@ class LimitedMessages(UnChunker):
         Names of the state's values; a page cannot add others.
     areas
         Names of the views that a page may speak of.
-    triggers
-        Names of what it may call.
     """
 
-    def __init__(
-        self,
-        declared: Container[str] = (),
-        areas: Container[str] = (),
-        triggers: Container[str] = (),
-    ) -> None:
+    def __init__(self, declared: Container[str] = (), areas: Container[str] = ()) -> None:
         super().__init__()
-        self._declared, self._areas, self._triggers = declared, areas, triggers
+        self._declared, self._areas = declared, areas
 
     def set_max_message_size(self, size: int) -> None:
         """Allow messages of so many bytes, or as many as any may have."""
@@ -78,7 +74,7 @@ class LimitedMessages(UnChunker):
             return {**message, "args": [known], "kwargs": {}}
         if method == "trame.lifecycle.update":
             return {**message, "kwargs": {}} if _is_one_of(first, EVENTS) else None
-        if method == "trame.trigger" and not _is_one_of(first, self._triggers):
+        if method == "trame.trigger" and not _is_plain_name(first):
             return None
         if isinstance(method, str) and method.startswith("trame.rca."):
             return {**message, "kwargs": {}} if _is_one_of(first, self._areas) else None
@@ -93,6 +89,11 @@ def _changes(changes: Any) -> list[dict[str, Any]]:
 
 def _is_one_of(name: Any, names: Container[str]) -> bool:
     return isinstance(name, str) and name in names
+
+
+def _is_plain_name(name: Any) -> bool:
+    """Whether a name may stand in a log: trame writes those of triggers that it does not know."""
+    return isinstance(name, str) and len(name) <= NAME_LENGTH and name.isidentifier()
 
 
 def restrict(endpoint: Any) -> None:

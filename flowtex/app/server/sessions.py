@@ -152,7 +152,7 @@ class Session:
         areas, _ = self._endpoint.functionMap.get("trame.rca.size", (None, None))
         server = self.app.server
         self._endpoint.unchunkers[link.client_id] = LimitedMessages(
-            server.state, getattr(areas, "_area_adapters", ()), server.controller._triggers
+            server.state, getattr(areas, "_area_adapters", ())
         )
         link.on_message(send)
         try:

@@ -19,7 +19,7 @@ from flowtex.app.server.messages import MESSAGE_BYTES, LimitedMessages, restrict
 
 def taken(message: Any) -> Any:
     """Return what is left of a message."""
-    messages = LimitedMessages({"one", "two"}, {"view"}, {"trigger"})
+    messages = LimitedMessages({"one", "two"}, {"view"})
     messages.set_max_message_size(10_000)
     (chunk,) = generate_chunks(msgpack.packb(message), 10_000)
     return messages.process_chunk(chunk)
@@ -66,6 +66,7 @@ def test_values_that_nobody_declared_are_dropped(*, by_name: bool) -> None:
         ("trame.lifecycle.update", ["client_exited"], []),
         ("trame.trigger", ["trigger", [], {}], ["\x1b[31m", [], {}]),
         ("trame.trigger", ["trigger", [1], {}], [["trigger"], [], {}]),
+        ("trame.trigger", ["trigger__1", [], {}], ["x" * 101, [], {}]),
     ],
 )
 def test_names_that_nobody_declared_are_dropped(
