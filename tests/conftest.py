@@ -38,6 +38,9 @@ diagnostics.prefer_headless()
 # Workers and the many processes that tests start would each compile the package and the tests anew.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+# Its threads wait for each other by turning round: beside other processes, for several times as
+# long as they compute. Workers begin with it, before they load NumPy.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 from child_handler import is_gone
-from waiting import wait_until
+from waiting import PATIENCE_S, wait_until
 
 from flowtex._util.child import Child, ChildError
 from flowtex._util.child.forkserver import FORKS
@@ -25,7 +25,6 @@ from flowtex._util.child.worker import settle
 from flowtex._util.progress import Stopped, stoppable
 
 ENTRY = "child_handler:Handler"
-TIMEOUT_S = 120.0
 MB = 1_000_000
 
 
@@ -49,7 +48,7 @@ def child(request: pytest.FixtureRequest) -> Iterator[Child]:
     child.close()
 
 
-def ask(child: Child, do: str, *, timeout: float = TIMEOUT_S, **values: Any) -> Any:
+def ask(child: Child, do: str, *, timeout: float = PATIENCE_S, **values: Any) -> Any:
     return child.request({"do": do, **values}, timeout=timeout)
 
 

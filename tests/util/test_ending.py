@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from served import signals_of_a_terminal
-from waiting import wait_until
+from waiting import PATIENCE_S, wait_until
 
 from flowtex import examples
 from flowtex._util.ending import Ended, ended_by_signals
@@ -80,7 +80,7 @@ def test_a_movie_that_is_ended_leaves_nothing(tmp_path: Path, opengl: object) ->
     wait_until(lambda: list(tmp_path.glob(".gyre.*.part.gif")) or process.poll() is not None)
     assert process.poll() is None
     process.send_signal(number)
-    said = process.communicate(timeout=60)[1]
+    said = process.communicate(timeout=PATIENCE_S)[1]
     assert process.returncode == 128 + number, said
     assert f"ended by {number.name}" in said and "Traceback" not in said
     assert path.read_bytes() == b"old" and sorted(tmp_path.iterdir()) == [path, mesh, temporary]

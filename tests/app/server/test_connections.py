@@ -13,6 +13,7 @@ pytest.importorskip("wslink")
 
 import aiohttp
 from aiohttp import web
+from waiting import PATIENCE_S
 
 from flowtex.app.server import connections
 from flowtex.app.server.connections import LimitedServer, keep, usual_most
@@ -96,7 +97,7 @@ async def place(most: int | None = None) -> AsyncIterator[Place]:
 
 async def ended(stream: Stream) -> bytes:
     """Wait for the server to end a connection; return what it said."""
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(PATIENCE_S):
         try:
             return await stream[0].read()
         except ConnectionError:
@@ -111,7 +112,7 @@ def test_half_sent_requests_shut_nobody_out(caplog: pytest.LogCaptureFixture) ->
             for stream in half[:30]:  # the oldest have given way
                 await ended(stream)
             await socket.send_str("here")
-            assert await socket.receive_str(timeout=30) == "here"
+            assert await socket.receive_str(timeout=PATIENCE_S) == "here"
 
     asyncio.run(story())
     assert not caplog.records
@@ -154,23 +155,32 @@ def test_where_nobody_gives_way_a_newcomer_is_refused() -> None:
         async with place(1) as here, here.socket() as socket:
             assert await ended(await here.begin()) == b""
             await socket.send_str("here")
-            assert await socket.receive_str(timeout=30) == "here"
+            assert await socket.receive_str(timeout=PATIENCE_S) == "here"
 
     asyncio.run(story())
 
 
 def test_a_head_and_a_body_have_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("HEAD_S", "ANSWER_S", "LINGER_S"):
-        monkeypatch.setattr(connections, name, 0.05)
+    monkeypatch.setattr(connections, "LINGER_S", 0.0)
+
+    def later(seconds: float) -> None:
+        loop = asyncio.get_running_loop()
+        now = loop.time
+        monkeypatch.setattr(loop, "time", lambda: now() + seconds)
 
     async def story() -> None:
         async with place() as here, here.socket() as socket:
-            assert await ended(await here.begin()) == b""
-            assert (await ended(await here.begin_form())).startswith(b"HTTP/1.1 408")
+            half, form = await here.begin(), await here.begin_form()
             whole = await here.begin(HALF + b"no\r\n\r\n")
-            assert (await ended(whole)).startswith(b"HTTP/1.1 200")  # and then it is over
+            assert (await whole[0].readline()).startswith(b"HTTP/1.1 200")
+            later(connections.HEAD_S + 1)
+            assert await ended(half) == b""
+            assert (await ended(whole)).endswith(b"a page")  # which came before its time was over
+            assert not form[0].at_eof()
+            later(connections.ANSWER_S)
+            assert (await ended(form)).startswith(b"HTTP/1.1 408")
             await socket.send_str("here")
-            assert await socket.receive_str(timeout=30) == "here"
+            assert await socket.receive_str(timeout=PATIENCE_S) == "here"
 
     asyncio.run(story())
 

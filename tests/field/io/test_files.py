@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from waiting import PATIENCE_S
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
@@ -530,7 +531,7 @@ def test_threads_that_read_broken_files_do_not_corrupt_the_heap(tmp_path: Path) 
         capture_output=True,
         text=True,
         check=False,
-        timeout=300,
+        timeout=PATIENCE_S,
     )
     assert done.returncode == 0, f"{done.returncode}: {done.stderr}"
     assert done.stderr == ""
