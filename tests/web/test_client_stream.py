@@ -221,11 +221,10 @@ def test_pictures_are_those_of_a_page_that_holds_all(
 def test_a_view_asks_for_no_more_than_it_shows(shown: Shown, server: RangeServer) -> None:
     shown.open(linked(server, "flat", **{**NEAR, "zoom": 16, "focus": (0.9, 0.9)}).as_uri())
     shown.wait()
-    assert (
-        tiles_of(server) == tiles_of(server, "values") == tiles_of(server, "surface") == ["0/0/0"]
-    )
-    # A tile is three objects, each whole, and a level has three descriptions.
-    assert len(server.asked) == 1 + 3 + 3
+    assert tiles_of(server) == tiles_of(server, "surface") == ["0/0/0"]
+    # The speed is that of the flow, so a tile is two objects, each whole; a level has descriptions.
+    assert tiles_of(server, "values") == []
+    assert len(server.asked) == 1 + 2 + 2, server.asked
     assert {(method, span) for method, _, span in server.asked} == {("GET", "")}
     with acted(shown.page):
         for _ in range(9):
@@ -234,7 +233,7 @@ def test_a_view_asks_for_no_more_than_it_shows(shown: Shown, server: RangeServer
             shown.page.mouse.move(20, 100, steps=4)
             shown.page.mouse.up()
     assert set(tiles_of(server)) == {"0/0/0", "0/0/1"}
-    assert len(server.asked) == 1 + 3 + 3 + 3
+    assert len(server.asked) == 1 + 2 + 2 + 2
 
 
 def test_other_colours_are_those_of_a_page_that_has_them(
@@ -271,7 +270,9 @@ def test_time_steps_come_when_they_are_shown(
     root = [path for path in server.paths if path.startswith("series.zarr/2/flow/c/")]
     assert sorted(path.split("/")[4] for path in root) == ["0", "1"]
     export(str(server.folder / "series.zarr"), tmp_path / "whole.html", **LOOK)
-    assert np.abs(held(browser, tmp_path / "whole.html", "0") - first).max() <= 3
+    # A speed that follows from the rounded flow moves a colour by less than is seen.
+    off = np.abs(held(browser, tmp_path / "whole.html", "0") - first).max(axis=-1)
+    assert (off > 3).mean() < 0.002
 
 
 def broken(data: bytes) -> bytes:
