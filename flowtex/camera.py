@@ -345,7 +345,7 @@ class Camera:
         Raises
         ------
         CameraError
-            When the text is none of these, or the camera sees nothing.
+            When the text does not describe a camera, or the camera sees nothing.
         """
         kind, *words = re.split(r"[,\s]+", text.strip())
         numbers = [number_or_text(word) for word in ([kind, *words] if len(words) == 8 else words)]

@@ -196,7 +196,7 @@ def _serve(library: Library, page: ServeFlags | None, options: dict[str, Any]) -
     with waiting(f"Reading {library.names[0]}"):
         field = library.field(*first_choice(library, options))
     look = {name: options[name] for name in vars(Appearance()) if name in options}
-    Scene.of(field, **look).close()  # what does not fit is told before a page asks for it
+    Scene.of(field, **look).close()  # raises errors before a page asks
     with waiting(f"Tracing {describe(field)}") as end_waiting:
         print_address = announcer(field, page.host)
 

@@ -51,7 +51,7 @@ _SHARED = ("surface", "index_velocity")
 #: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
 #: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
 NOTABLE_SHARE = 0.05
-#: Share of the flow that may be normal to a surface of triangles before it is told.
+#: Share of the flow normal to a surface of triangles from which on a notice says so.
 MOST_LOST = 0.5
 ALL_AT_REST = (
     "The velocity is zero at every node, so the picture is plain noise; check the array that was "
