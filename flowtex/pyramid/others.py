@@ -2,7 +2,7 @@
 
 A level of a pyramid here has every 2^l-th line of the finest one. Others average blocks of nodes,
 so theirs lie between those lines: values are interpolated from the level of theirs with about as
-many nodes. Where there is none as coarse, lines of a finer one are picked.
+many nodes, or picked from the lines of a finer level where no level of theirs is as coarse.
 """
 
 from __future__ import annotations
