@@ -1,12 +1,17 @@
 // The legend of the colours, with a mark at the value under the pointer.
 
 import { rampOf } from "./colours.ts";
-import { dom, numberText } from "./dom.ts";
+import { dom } from "./dom.ts";
 import { legendLimits, shareOf, type Data, type Header, type Settings } from "./protocol.ts";
+import { ticksOf } from "./ticks.ts";
 import { clamp } from "./vectors.ts";
 
 /** Colours of which the ramp is made. */
 const STOPS = 33;
+/** Characters of all ticks for which a legend has room. */
+const MOST_CHARACTERS = 16;
+/** Share of the ramp beside an end in which the text of a tick ends where the ramp does. */
+const END_SHARE = 0.1;
 
 export class Legend {
   readonly element = dom("div", { class: "legend glass", hidden: "" });
@@ -20,11 +25,19 @@ export class Legend {
     const ramp = dom("div", { class: "ramp" }, [this.mark]);
     ramp.style.background = rampOf(map, header, settings, STOPS);
     this.mark.hidden = true;
-    const ends = legendLimits(header.scalars).map((value) => dom("span", {}, [numberText(value)]));
+    const placeOf = shareOf(header.scalars);
+    const ticks = legendTicks(header).map(({ value, text }) => {
+      const tick = dom("span", {}, [text]);
+      const share = clamp(placeOf(value), 0, 1);
+      tick.style.left = `${100 * share}%`;
+      const isAtEnd = Math.abs(share - 0.5) > 0.5 - END_SHARE;
+      tick.style.transform = `translateX(${isAtEnd ? -100 * share : -50}%)`;
+      return tick;
+    });
     this.element.replaceChildren(
       dom("div", { class: "name" }, [unit ? `${label} (${unit})` : label]),
       ramp,
-      dom("div", { class: "ends" }, ends),
+      dom("div", { class: "ticks" }, ticks),
     );
   }
 
@@ -33,4 +46,12 @@ export class Legend {
     if (!header || this.mark.hidden) return;
     this.mark.style.left = `${100 * clamp(shareOf(header.scalars)(value), 0, 1)}%`;
   }
+}
+
+/** As many round values as there is room for. */
+function legendTicks({ scalars }: Header) {
+  const [low, high] = legendLimits(scalars);
+  const ticks = [5, 4, 3].map((most) => ticksOf(low, high, scalars.log, most));
+  const size = (some: typeof ticks[0]) => some.reduce((sum, { text }) => sum + text.length, 0);
+  return ticks.find((some) => size(some) <= MOST_CHARACTERS) ?? ticks[2];
 }

@@ -8,7 +8,7 @@ import { test } from "node:test";
 const FOLDER = new URL("../src/", import.meta.url);
 /** Layers, the lowest first. */
 const LAYERS = [
-  "vectors half dom keyboard lifetime pathlines reuse store modules.d app/vue",
+  "vectors half ticks dom keyboard lifetime pathlines reuse store modules.d app/vue",
   "camera",
   "protocol",
   "uniforms quality",

@@ -397,13 +397,31 @@ least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,
 toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
-document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){
-let{name,label,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.
-element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,
-STOPS2),this.mark.hidden=!0;let ends=legendLimits(header.scalars).map(value=>dom("span",{},[numberText(value)]));this.element.
-replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ends"},ends))}point(header,value=NaN){
-this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(
-header.scalars)(value),0,1)}%`)}};var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
+document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STEPS=[1,2,2.5,5],DECADES=[[1],[1,3],[1,2,5]],SAME=1e-9,BEYOND=.004,[LARGE,SMALL]=[1e6,.001];function ticksOf(low,high,log=!1,most=5){
+return high-low>SAME*Math.max(Math.abs(low),Math.abs(high))?log&&decades(low,high,most)||evenly(low,high,most):Number.isFinite(
+low)?[{value:low,text:textOf(low,Math.abs(low)/1e3||1)}]:[]}function evenly(low,high,most){let least=10**Math.floor(Math.
+log10((high-low)/most));for(let power=least;;power*=10)for(let factor of STEPS){let step=factor*power,slack=BEYOND*(high-
+low),[first,last]=[Math.ceil((low-slack)/step),Math.floor((high+slack)/step)];if(!(last-first+1>most))return Array.from(
+{length:last-first+1},(_,n)=>{let value=(first+n)*step;return{value,text:textOf(value,step,Math.max(Math.abs(low),Math.abs(
+high)))}})}}function decades(low,high,most){let[first,last]=[Math.floor(Math.log10(low)),Math.ceil(Math.log10(high))],powers=Array.
+from({length:last-first+1},(_,n)=>first+n),isInside=value=>value>=low*(1-SAME)&&value<=high*(1+SAME),valuesOf=(factors,every)=>powers.
+filter(power=>power%every===0).flatMap(power=>factors.map(factor=>+`${factor}e${power}`)).filter(isInside),finer=[...DECADES].
+reverse().map(factors=>valuesOf(factors,1)),coarser=powers.slice(1).map((_,n)=>valuesOf([1],n+2)),chosen=[...finer,...coarser].
+find(values=>values.length<=most);if(!(!chosen||chosen.length<3))return chosen.map(value=>({value,text:textOf(value,value,
+value)}))}function textOf(value,step,size=Math.abs(value)){if(value===0)return"0";let digits=-Math.floor(Math.log10(step)+
+SAME),isHalf=Math.abs(step*10**digits-2.5)<SAME?1:0;if(size>=LARGE||size<SMALL){let mantissa=Math.max(Math.floor(Math.log10(
+Math.abs(value))+SAME)+digits+isHalf,0),[number,power]=value.toExponential(Math.min(mantissa,15)).split("e");return`${minus(
+number)}e${Number(power)}`}return minus(value.toFixed(Math.max(digits+isHalf,0)))}var minus=text=>text.replace("-","−");var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom(
+"i",{hidden:""});show(header,settings,map){let{name,label,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||
+!bar||!map||!!settings.show_level,this.element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.
+background=rampOf(map,header,settings,STOPS2),this.mark.hidden=!0;let placeOf=shareOf(header.scalars),ticks=legendTicks(
+header).map(({value,text})=>{let tick=dom("span",{},[text]),share=clamp(placeOf(value),0,1);tick.style.left=`${100*share}\
+%`;let isAtEnd=Math.abs(share-.5)>.5-END_SHARE;return tick.style.transform=`translateX(${isAtEnd?-100*share:-50}%)`,tick});
+this.element.replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ticks"},
+ticks))}point(header,value=NaN){this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.
+style.left=`${100*clamp(shareOf(header.scalars)(value),0,1)}%`)}};function legendTicks({scalars}){let[low,high]=legendLimits(
+scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.reduce((sum,{text})=>sum+text.length,
+0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
 t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count2){let at=share*(count2-1),first=clamp(Math.
 floor(at)-1,0,count2-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
 [i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
@@ -419,18 +437,18 @@ told=(degrees,[before,after])=>`${Math.abs(degrees).toFixed(decimals)}° ${degre
 E")}, ${told(lat,"SN")}`}function dateText({start,dates,step},times2,time){if(start===null){if(!dates.length)return null;
 let apart=times2.map(each=>Math.abs(each-time));return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}\
 Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%
-DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v2=>v2.toFixed(
+DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
 1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
 [ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
 for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
 half*uy,HEAD.half*ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({
-path,sampled,point,directed,dots=[]}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),
+path,sampled,point,directed,dots=[]}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf2(line)}]),
 isFree=([[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path.flatMap(line=>arrowHeads(line)).
 filter(isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path,
 "whole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polyg\
-on",{class:"arrow",points:textOf(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].map(
-x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring("po\
-int")]}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
+on",{class:"arrow",points:textOf2(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].
+map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring(
+"point")]}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
 size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
 function vertexShares(count2){return Float32Array.from({length:SHARES.length*count2},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
 let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
@@ -489,7 +507,7 @@ noise==="image"?s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.siz
 u_noiseDeviation:paper.deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],
 u_pictureRound:[Number(paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
 if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
-(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL=.001;function texelsAt({
+(times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL2=.001;function texelsAt({
 scene,place}){let{rows,columns,triangles}=scene.header.geometry;if(triangles)return scene.cornersAt(place);let[x,y]=[place[0]+
 columns.before,place[1]+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];return[(1-s)*(1-t),s*
 (1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(left+(n&1),0,columns.size-1);return[clamp(low+(n>>1),0,rows.size-1)*
@@ -524,7 +542,7 @@ Number(settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,t
 let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
 0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
 function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),
-directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),small=scale2(slope,SMALL*
+directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),small=scale2(slope,SMALL2*
 (paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along=length2(slope)>LEAST_SLOPE?subtract2(moved(small)??position,
 position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
 sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
@@ -638,7 +656,7 @@ SVG,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(nam
 }
 .title { font-weight: 600; overflow: hidden; text-overflow: ellipsis; }
 .title::first-letter { text-transform: uppercase; }
-.readout, .ends, .time, .row output { color: var(--quiet); font-variant-numeric: tabular-nums; }
+.readout, .ticks, .time, .row output { color: var(--quiet); font-variant-numeric: tabular-nums; }
 .readout { display: flex; gap: 8px; }
 .readout:empty { display: none; }
 .head:not(:has(.title:not([hidden]), .readout:not(:empty))) { display: none; }
@@ -656,7 +674,8 @@ SVG,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(nam
   position: absolute; top: -2px; bottom: -2px; width: 2px; margin-left: -1px; border-radius: 1px;
   background: var(--ink); box-shadow: 0 0 0 1px var(--ground);
 }
-.ends { display: flex; justify-content: space-between; gap: 8px; margin-top: 2px; white-space: nowrap; }
+.ticks { position: relative; height: 1.35em; margin-top: 3px; white-space: nowrap; }
+.ticks span { position: absolute; }
 .left:has(~ .legend:not([hidden])) > * { max-width: calc(100% - 170px); }
 .card { max-width: 100%; min-height: 0; padding: 5px 6px 7px 10px; overflow: hidden; }
 .card button { pointer-events: auto; }
@@ -786,16 +805,19 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   .bar { flex-wrap: wrap; justify-content: center; }
   .track { order: -1; flex: 1 1 100%; width: auto; }
   .track:has(input:disabled) { display: none; }
-  .legend { min-width: 104px; padding: 4px 8px; }
+  .legend { min-width: 132px; padding: 4px 8px; }
   .settings { bottom: 80px; max-height: calc(100% - 90px); }
   .title { max-width: 110px; }
   .readout { flex-direction: column; gap: 0; }
   .head { flex-direction: column; gap: 0; }
-  .left:has(~ .legend:not([hidden])) .head { max-width: calc(100% - 124px); }
+  .left:has(~ .legend:not([hidden])) .head { max-width: calc(100% - 152px); }
   /* Below the legend there is the whole width. */
   .left:has(~ .legend:not([hidden])) .card { max-width: 100%; margin-top: 22px; }
 }
-@container (max-width: 220px) { .legend { display: none; } }
+@container (max-width: 220px) {
+  .legend { display: none; }
+  .left:has(~ .legend:not([hidden])) .head { max-width: 100%; }
+}
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
 :host(.flowtex-bare) :is(.left, .path, .legend, .settings, .bar, .handle) { display: none; }
 `;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?"⌘":"Ctrl",HINT=`Click, or ho\

@@ -379,7 +379,7 @@ def test_the_bar_and_the_settings(client: ClientPage) -> None:
     assert read.startswith("(1, 0.5)")
     assert "speed" in read
     assert "m/s" in read
-    assert page.locator(".legend").inner_text().split() == ["speed", "(m/s)", "0", "1"]
+    assert page.locator(".legend").inner_text().split() == ["speed", "(m/s)", "0", "0.5", "1.0"]
 
 
 def test_a_host_that_builds_anew_shows_all_settings(client: ClientPage) -> None:

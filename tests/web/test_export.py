@@ -294,7 +294,7 @@ def test_nothing_leaves_a_small_page(
     assert head is not None and legend is not None
     assert head["x"] + head["width"] <= legend["x"]
     ends = "element => [element.scrollWidth, element.clientWidth]"
-    assert len(set(page.locator(".flowtex .ends").evaluate(ends))) == 1
+    assert len(set(page.locator(".flowtex .ticks").evaluate(ends))) == 1
 
 
 @pytest.mark.browser

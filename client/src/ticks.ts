@@ -1,0 +1,73 @@
+// Round numbers along an axis or a legend, and the texts that tell them apart.
+
+/** Steps between ticks, as multiples of a power of ten, of which each is at most 2.5 times the one before. */
+const STEPS = [1, 2, 2.5, 5];
+/** Ticks of a logarithmic decade, from few to many. */
+const DECADES = [[1], [1, 3], [1, 2, 5]];
+/** Share of the larger end by which ends that are the same may differ. */
+const SAME = 1e-9;
+/** Share of the range by which a tick may lie beyond an end: less than a pixel of a legend. */
+const BEYOND = 0.004;
+/** Numbers from which on, and below which, texts have a power of ten. */
+const [LARGE, SMALL] = [1e6, 1e-3];
+
+export interface Tick {
+  readonly value: number;
+  readonly text: string;
+}
+
+/** Round values from `low` to `high`, three to `most` where there are as many. */
+export function ticksOf(low: number, high: number, log = false, most = 5): Tick[] {
+  if (!(high - low > SAME * Math.max(Math.abs(low), Math.abs(high)))) {
+    return Number.isFinite(low) ? [{ value: low, text: textOf(low, Math.abs(low) / 1e3 || 1) }] : [];
+  }
+  return (log && decades(low, high, most)) || evenly(low, high, most);
+}
+
+function evenly(low: number, high: number, most: number): Tick[] {
+  const least = 10 ** Math.floor(Math.log10((high - low) / most));
+  for (let power = least; ; power *= 10) {
+    for (const factor of STEPS) {
+      const step = factor * power;
+      const slack = BEYOND * (high - low);
+      const [first, last] = [Math.ceil((low - slack) / step), Math.floor((high + slack) / step)];
+      if (last - first + 1 > most) continue;
+      return Array.from({ length: last - first + 1 }, (_, n) => {
+        const value = (first + n) * step;
+        return { value, text: textOf(value, step, Math.max(Math.abs(low), Math.abs(high))) };
+      });
+    }
+  }
+}
+
+/** Ticks at powers of ten and between them; `undefined` where the ends are closer than such. */
+function decades(low: number, high: number, most: number): Tick[] | undefined {
+  const [first, last] = [Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
+  const powers = Array.from({ length: last - first + 1 }, (_, n) => first + n);
+  const isInside = (value: number) => value >= low * (1 - SAME) && value <= high * (1 + SAME);
+  const valuesOf = (factors: number[], every: number) =>
+    powers
+      .filter((power) => power % every === 0)
+      .flatMap((power) => factors.map((factor) => Number(`${factor}e${power}`)))
+      .filter(isInside);
+  const finer = [...DECADES].reverse().map((factors) => valuesOf(factors, 1));
+  const coarser = powers.slice(1).map((_, n) => valuesOf([1], n + 2));
+  const chosen = [...finer, ...coarser].find((values) => values.length <= most);
+  if (!chosen || chosen.length < 3) return undefined;
+  return chosen.map((value) => ({ value, text: textOf(value, value, value) }));
+}
+
+/** A number to the digits that a step asks for, beside numbers up to a size. */
+function textOf(value: number, step: number, size = Math.abs(value)): string {
+  if (value === 0) return "0";
+  const digits = -Math.floor(Math.log10(step) + SAME);
+  const isHalf = Math.abs(step * 10 ** digits - 2.5) < SAME ? 1 : 0; // steps of 2.5 have one more
+  if (size >= LARGE || size < SMALL) {
+    const mantissa = Math.max(Math.floor(Math.log10(Math.abs(value)) + SAME) + digits + isHalf, 0);
+    const [number, power] = value.toExponential(Math.min(mantissa, 15)).split("e");
+    return `${minus(number)}e${Number(power)}`;
+  }
+  return minus(value.toFixed(Math.max(digits + isHalf, 0)));
+}
+
+const minus = (text: string) => text.replace("-", "−");
