@@ -304,11 +304,12 @@ export function widened(
   const camera = copyOf(state);
   if (length(subtract(state.focal_point, center)) > 1e-3 * extent) return camera;
   if (planar && state.parallel) {
-    const [high, all] = [1e9, aspect].map(
+    const [high, usual, all] = [1e9, limits.aspect, aspect].map(
       (shape) => fitted(surface, limits, positions, shape).parallel_scale,
     );
+    const isUsual = Math.abs(state.parallel_scale / usual - 1) < 1e-3;
     if (state.parallel_scale > 0.98 * high) {
-      camera.parallel_scale = Math.max(state.parallel_scale, all);
+      camera.parallel_scale = isUsual ? all : Math.max(state.parallel_scale, all);
     }
   } else if (!state.parallel && state.view_angle > 0.9 * limits.view_angle) {
     const back = subtract(state.position, state.focal_point);

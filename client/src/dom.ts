@@ -47,6 +47,14 @@ export function numberText(x: number, digits = 4): string {
   return String(Number(x.toPrecision(digits)));
 }
 
+/** Units longer than this are left out. */
+const UNIT_LENGTH = 12;
+
+/** A number with its unit. */
+export function withUnit(text: string, unit: string): string {
+  return unit && unit.length <= UNIT_LENGTH ? `${text} ${unit}` : text;
+}
+
 /** Pictures of views beside each other, as PNG and in full size where nothing else is said. */
 export function pictureOf(
   views: readonly { canvas: HTMLCanvasElement }[],

@@ -10,7 +10,7 @@ import type { TileKey } from "./tilechoice.ts";
 /** A view that has the bar for another one as well. */
 interface Leader {
   readonly playing: boolean;
-  readonly panel: { toggle(): void };
+  readonly panel: { readonly isShown: boolean; toggle(): void };
   play(): void;
   pause(): void;
 }

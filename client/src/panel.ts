@@ -1,9 +1,10 @@
 // What is seen around the picture: the bar, the legend, the settings, the readout and messages.
 
+import { Axes, AXES, hasTicks, type AxesKind } from "./axes.ts";
 import type { Camera } from "./camera.ts";
 import { ColourControls, type ColoursHost } from "./colourcontrols.ts";
 import { Controls, hasStreaming, type ControlsHost } from "./controls.ts";
-import { dom, icon, numberText, pictureOf, type IconName } from "./dom.ts";
+import { dom, icon, numberText, pictureOf, withUnit, type IconName } from "./dom.ts";
 import { toggleFullscreen } from "./keyboard.ts";
 import { Legend } from "./legend.ts";
 import type { Timer } from "./lifetime.ts";
@@ -11,14 +12,16 @@ import { dateText } from "./lonlat.ts";
 import type { Options } from "./options.ts";
 import type { Point } from "./picking.ts";
 import type { Player } from "./player.ts";
-import { placeText, withUnit, type PointCard } from "./pointcard.ts";
-import type { Header, Settings } from "./protocol.ts";
+import { placeText, type PointCard } from "./pointcard.ts";
+import type { Header, Part, Settings } from "./protocol.ts";
 import STYLE from "./styles.css";
 
 /** Milliseconds for which a hint is shown; until lacking parts are named; in which a picture is saved. */
 const HINT_MS = 1600;
 const LATE_MS = 4000;
 const SAVED_MS = 5000;
+/** Height of a view from which on the bar and the legend stand outside the picture. */
+const LEAST_FRAMED_PX = 240;
 const KEY = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘" : "Ctrl";
 const HINT = `Click, or hold ${KEY}, to zoom with the wheel`;
 const TIME_RANGE = { min: "0", max: "1", step: "any", "aria-label": "Time" };
@@ -29,13 +32,15 @@ export interface PanelHost extends ControlsHost, ColoursHost {
   readonly options: Options;
   readonly settings: Settings;
   readonly root: HTMLElement;
+  readonly stage: HTMLElement;
   readonly canvas: HTMLCanvasElement;
   readonly camera: Camera | null;
   readonly player: Player;
   readonly card: PointCard;
   readonly lacking: string[];
   readonly tiles: { pending: number; wanted: number } | null;
-  readonly together: readonly { canvas: HTMLCanvasElement }[];
+  readonly parts: ReadonlyMap<string, Part>;
+  readonly together: readonly { readonly canvas: HTMLCanvasElement; readonly panel: Panel }[];
   togglePlaying(): void;
   scrub(share: number): void;
   reset(): void;
@@ -47,9 +52,16 @@ styleSheet.replaceSync(STYLE);
 export class Panel {
   private readonly viewer: PanelHost;
   private readonly legend = new Legend();
+  private readonly axes: Axes;
+  private readonly axesMenu = dom("select", {}, AXES.map((kind) => dom("option", {}, [kind])));
+  private readonly axesRow = dom("label", { class: "row" }, [
+    dom("span", { class: "name" }, ["Axes"]),
+    this.axesMenu,
+  ]);
   private readonly controls: Controls;
   private readonly colours: ColourControls;
-  private isShown: boolean;
+  isShown: boolean;
+  private axesKind: AxesKind | null = null;
   private isOpen = false;
   private legendLook = "";
   private readonly title = dom("div", { class: "title" });
@@ -76,8 +88,12 @@ export class Panel {
 
   constructor(viewer: PanelHost) {
     this.viewer = viewer;
-    const { root, canvas, options } = viewer;
+    const { root, stage, canvas, options } = viewer;
     this.isShown = options.controls ?? true;
+    this.axes = new Axes(viewer);
+    viewer.lifetime.listen(this.axesMenu, "change", () => {
+      for (const { panel } of viewer.together) panel.chooseAxes(this.axesMenu.value as AxesKind);
+    });
     this.controls = new Controls(viewer);
     this.colours = new ColourControls(viewer);
     this.handle = this.button("show", "Show the bar (h)", () => this.toggle());
@@ -96,9 +112,11 @@ export class Panel {
     const shadow = root.attachShadow({ mode: "open" });
     shadow.adoptedStyleSheets = [styleSheet];
     const { legend, controls, head, bar, handle, busy, hintBox, told, note } = this;
-    const left = dom("div", { class: "left" }, [head, viewer.card.element]);
-    shadow.append(canvas, viewer.card.overlay, left, legend.element, controls.element);
-    shadow.append(bar, handle, busy, hintBox, told, note);
+    const { card } = viewer;
+    stage.className = "stage";
+    stage.append(canvas, card.overlay, this.axes.element, card.element, busy, hintBox, told);
+    shadow.append(dom("div", { class: "top" }, [head, legend.element]), stage, bar, handle);
+    shadow.append(controls.element, note);
     viewer.lifetime.listen(told, "click", () => (told.hidden = true));
     this.arrange();
   }
@@ -130,7 +148,7 @@ export class Panel {
     if (!header) return;
     this.note.hidden = true;
     this.controls.build(header);
-    this.controls.element.prepend(...this.colours.rows);
+    this.controls.element.prepend(...this.colours.rows, this.axesRow);
     this.showLegend();
     this.update();
     this.arrange();
@@ -228,11 +246,35 @@ export class Panel {
   toggle(shown = !this.isShown): void {
     if (shown === this.isShown) return;
     this.isShown = shown;
-    this.arrange();
+    for (const { panel } of this.viewer.together) panel.arrange();
     this.viewer.options.onControls?.(shown);
   }
 
-  private arrange(): void {
+  private get isFramed(): boolean {
+    const { header, options, root } = this.viewer;
+    const isShown = options.follows?.panel.isShown ?? this.isShown;
+    return isShown && !options.bare && header !== null && root.clientHeight >= LEAST_FRAMED_PX;
+  }
+
+  /** Choose what stands at the borders of the picture. */
+  private chooseAxes(kind: AxesKind): void {
+    this.axesKind = kind;
+    this.arrange();
+  }
+
+  /** Draw the axes where the camera and the size of the picture put them. */
+  showAxes(): void {
+    const { header } = this.viewer;
+    const usual = header && hasTicks(header) ? "ticks" : "none";
+    const kind = this.axesKind ?? usual;
+    const shown = this.isFramed ? kind : "none";
+    this.axesMenu.value = kind;
+    this.viewer.root.dataset.axes = shown;
+    this.axes.draw(shown);
+  }
+
+  /** Show and hide what the state of the view asks for. */
+  arrange(): void {
     const { header, options, root } = this.viewer;
     const isReady = header !== null;
     const follows = Boolean(options.follows);
@@ -241,6 +283,8 @@ export class Panel {
     this.head.hidden = !(this.isShown || follows) || !isReady;
     this.controls.element.hidden = !this.isShown || !this.isOpen || !isReady;
     root.classList.toggle("flowtex-open", !this.controls.element.hidden);
+    root.classList.toggle("flowtex-framed", this.isFramed);
+    this.showAxes();
     this.gear.setAttribute("aria-pressed", String(this.isOpen));
   }
 

@@ -1,7 +1,7 @@
 // What a click shows: the path through the point, over the picture, and a card of its numbers.
 
 import type { Camera } from "./camera.ts";
-import { dom, numberText } from "./dom.ts";
+import { dom, numberText, withUnit } from "./dom.ts";
 import type { Lifetime, Timer } from "./lifetime.ts";
 import { eastNorth, lonLatOf, lonLatText } from "./lonlat.ts";
 import type { Options } from "./options.ts";
@@ -29,14 +29,6 @@ const PLACES_IN_VIEW = 200;
 const DEGREE_M = 111_195;
 /** Radius of the sample of the greatest weight, in pixels. */
 const DOT_RADIUS = 8;
-/** Units longer than this are left out. */
-const UNIT_LENGTH = 12;
-
-/** A number with its unit. */
-export function withUnit(text: string, unit: string): string {
-  return unit && unit.length <= UNIT_LENGTH ? `${text} ${unit}` : text;
-}
-
 /** Two components of a vector in a surface that lies across z, else three. */
 function vectorText(vector: readonly number[], size: number, digits: number, flat: boolean): string {
   const texts = vector.slice(0, flat ? 2 : 3).map((x) => {
@@ -78,7 +70,8 @@ export interface CardHost {
   readonly settings: Settings;
   readonly options: Options;
   readonly parts: ReadonlyMap<string, Part>;
-  readonly root: HTMLElement;
+  /** What the picture fills. */
+  readonly stage: HTMLElement;
   readonly camera: Camera | null;
   readonly shown: Moment | null;
   readonly tiles: { readonly layers: Layer[] } | null;
@@ -141,16 +134,16 @@ export class PointCard {
   /** Show the path as things are now; where the point's tile has gone it stays as it was. */
   update(): void {
     const { chosen } = this;
-    const { options, camera, shown, header, tiles, settings, root, together } = this.host;
+    const { options, camera, shown, header, tiles, settings, stage, together } = this.host;
     if (!chosen || options.bare || !camera || !shown || !header) return;
     const { point, layer, place } = chosen;
     const scene = tiles?.layers.find(({ key }) => String(key) === String(layer.key))?.scene;
     if (!scene || scene.missing(shown[0], shown[1]).length) return;
     const position = point.position as Vector;
     const at = { scene, moment: shown, place, position };
-    const path = pathThrough(at, settings, camera, root.clientHeight);
+    const path = pathThrough(at, settings, camera, stage.clientHeight);
     this.tell({ ...point, values: valuesAt(scene, shown, scene.cornersAt(place)) }, path, header, camera);
-    const pixel = { at, settings, camera, rows: root.clientHeight };
+    const pixel = { at, settings, camera, rows: stage.clientHeight };
     const samples = options.explainer?.explain(pixel) ?? [];
     for (const { card } of together) {
       card.drawn = { path, point: position, samples };
@@ -189,9 +182,9 @@ export class PointCard {
   /** Draw the path where the camera sees it. */
   draw(): void {
     const { drawn } = this;
-    const { camera, root } = this.host;
+    const { camera, stage } = this.host;
     if (!drawn || !camera) return;
-    const { clientWidth: width, clientHeight: height } = root;
+    const { clientWidth: width, clientHeight: height } = stage;
     const placeOf = (point: Vector): Place | null => {
       const place = camera.project(point);
       return place && [((place[0] + 1) / 2) * width, ((1 - place[1]) / 2) * height];

@@ -2,6 +2,8 @@
 
 /** Steps between ticks, as multiples of a power of ten, of which each is at most 2.5 times the one before. */
 const STEPS = [1, 2, 2.5, 5];
+/** Steps between ticks in degrees. */
+const DEGREES = [1, 2, 5, 10, 15, 30, 60, 90];
 /** Ticks of a logarithmic decade, from few to many. */
 const DECADES = [[1], [1, 3], [1, 2, 5]];
 /** Share of the larger end by which ends that are the same may differ. */
@@ -38,6 +40,24 @@ function evenly(low: number, high: number, most: number): Tick[] {
       });
     }
   }
+}
+
+/** Ticks of a longitude or a latitude, with the letters of its two sides, such as "EW". */
+export function degreeTicks(low: number, high: number, letters: string, most = 5): Tick[] {
+  const step = DEGREES.find((each) => Math.floor(high / each) - Math.ceil(low / each) < most);
+  const isFine = high - low < 3 * DEGREES[0] || step === undefined;
+  const values = isFine
+    ? ticksOf(low, high, false, most)
+    : Array.from({ length: Math.floor(high / step) - Math.ceil(low / step) + 1 }, (_, n) => {
+        const value = (Math.ceil(low / step) + n) * step;
+        return { value, text: String(value) };
+      });
+  return values.map(({ value, text }) => {
+    const turned = value - 360 * Math.round(value / 360);
+    const digits = text.split(".")[1]?.length ?? 0;
+    const side = turned === 0 || Math.abs(turned) === 180 ? "" : letters[Number(turned < 0)];
+    return { value, text: `${Math.abs(turned).toFixed(digits)}°${side}` };
+  });
 }
 
 /** Ticks at powers of ten and between them; `undefined` where the ends are closer than such. */

@@ -36,10 +36,8 @@ import type { Program } from "./programs.ts";
 import { isNear, variantOf, type Moment, type ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
 
-/** Milliseconds for which a view that was moved counts as being moved. */
-const STILL_MS = 160;
-/** Milliseconds after which a request for a step counts as lost. */
-const LOST_MS = 5000;
+const STILL_MS = 160; // for which a view that was moved counts as being moved
+const LOST_MS = 5000; // after which a request for a step counts as lost
 /** Time steps that are held where the host can send the others again, and where memory is short. */
 const STEPS_HELD = { slices: [12, 4], flow: [100, 24] };
 
@@ -51,6 +49,8 @@ export class Viewer implements User {
   readonly lifetime = new Lifetime();
   readonly player = new Player();
   readonly root = document.createElement("div");
+  /** What the picture fills. */
+  readonly stage = document.createElement("div");
   readonly canvas = document.createElement("canvas");
   readonly card: PointCard = new PointCard(this);
   readonly panel: Panel;
@@ -100,7 +100,8 @@ export class Viewer implements User {
 
   private observe(): void {
     const { lifetime, root } = this;
-    lifetime.observe(new ResizeObserver(() => this.resize()), root);
+    lifetime.observe(new ResizeObserver(() => this.panel.arrange()), root);
+    lifetime.observe(new ResizeObserver(() => this.resize()), this.stage);
     const seen = new IntersectionObserver((entries) => {
       this.isVisible = entries[entries.length - 1].isIntersecting;
       if (this.isVisible) this.request();
@@ -114,8 +115,7 @@ export class Viewer implements User {
   /** What is still held, for tests. */
   stats() {
     const { objects, users } = this.graphics;
-    const { frames } = this.renderer;
-    return { ...this.lifetime.stats(), objects, users: users.size, frames };
+    return { ...this.lifetime.stats(), objects, users: users.size, frames: this.renderer.frames };
   }
 
   dispose(): void {
@@ -293,7 +293,7 @@ export class Viewer implements User {
   }
 
   private get aspect(): number {
-    return Math.max(this.root.clientWidth, 1) / Math.max(this.root.clientHeight, 1);
+    return Math.max(this.stage.clientWidth, 1) / Math.max(this.stage.clientHeight, 1);
   }
 
   // --- time ---
@@ -371,6 +371,7 @@ export class Viewer implements User {
   change(cameraOnly = false): void {
     this.renderer.restart(cameraOnly);
     this.card.draw();
+    this.panel.showAxes();
     this.setSharp(false);
     this.request();
   }
@@ -409,8 +410,8 @@ export class Viewer implements User {
 
   resize(): void {
     const ratio = Math.max(window.devicePixelRatio || 1, 0.1);
-    const width = Math.max(Math.round(this.root.clientWidth * ratio), 1);
-    const height = Math.max(Math.round(this.root.clientHeight * ratio), 1);
+    const { clientWidth, clientHeight } = this.stage;
+    const [width, height] = [clientWidth, clientHeight].map((n) => Math.max(Math.round(n * ratio), 1));
     if (width === this.canvas.width && height === this.canvas.height) return;
     this.renderer.resize(width, height);
     if (this.camera) {
@@ -429,7 +430,7 @@ export class Viewer implements User {
 
   /** Pixels of the canvas along one of the page. */
   get ratio(): number {
-    return this.canvas.height / Math.max(this.root.clientHeight, 1);
+    return this.canvas.height / Math.max(this.stage.clientHeight, 1);
   }
 
   lost(): void {
@@ -558,16 +559,15 @@ export class Viewer implements User {
     const old = scene?.anchor ?? [0, 0, 0];
     const range = constants.anchorRange * 2 * camera.height;
     const isFar = (v: Vector) => v.some((c) => Math.abs(c) > range);
-    const anchor: Vector = isFar(local) ? local : [0, 0, 0];
     return {
       focus,
-      anchor: isFar(subtract(local, old)) ? anchor : old,
+      anchor: !isFar(subtract(local, old)) ? old : isFar(local) ? local : [0, 0, 0],
       eye: camera.eye,
       between: shown[2],
       time: player.timeOf(shown),
       clock: player.clock,
       density,
-      pixel: (2 * camera.height) / Math.max(this.root.clientHeight * density, 1),
+      pixel: (2 * camera.height) / Math.max(this.stage.clientHeight * density, 1),
     };
   }
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ticksOf } from "../src/ticks.ts";
+import { degreeTicks, ticksOf } from "../src/ticks.ts";
 
 const texts = (low: number, high: number, log = false, most = 5) =>
   ticksOf(low, high, log, most).map(({ text }) => text);
@@ -41,4 +41,12 @@ test("any two ends have two to five ticks between them, in order and apart", () 
       assert.equal(new Set(ticks.map(({ text }) => text)).size, ticks.length, JSON.stringify(ticks));
     }
   }
+});
+
+test("degrees have round steps and the letters of their sides", () => {
+  const east = (low: number, high: number) => degreeTicks(low, high, "EW").map(({ text }) => text);
+  assert.deepEqual(east(-180, 180), ["180°", "90°W", "0°", "90°E", "180°"]);
+  assert.deepEqual(east(170, 190), ["170°E", "175°E", "180°", "175°W", "170°W"]);
+  assert.deepEqual(east(0.1, 0.9), ["0.2°E", "0.4°E", "0.6°E", "0.8°E"]);
+  assert.deepEqual(degreeTicks(-80, 80, "NS").map(({ text }) => text), ["60°S", "30°S", "0°", "30°N", "60°N"]);
 });

@@ -30,10 +30,11 @@ w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("vie
 a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
 path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x,digits=4){if(!Number.isFinite(x))return"–";
 let size=Math.abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(
-digits)))}function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),
-1)),height=Math.max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,
-0),height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,
-widths[n],height),left+=widths[n];return all.convertToBlob(format)}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+digits)))}var UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=UNIT_LENGTH?`${text} ${unit2}`:text}
+function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.
+max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.
+getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),
+left+=widths[n];return all.convertToBlob(format)}var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
 a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
 a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
 null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
@@ -348,21 +349,21 @@ high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(
 (1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);return{position:add(center,back,
 planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/(1-2*limits.margin),view_angle:limits.
 view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,extent,planar}=surface,camera=copyOf(state);
-if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&state.parallel){let[high,all]=[1e9,
-aspect].map(shape=>fitted(surface,limits,positions2,shape).parallel_scale);state.parallel_scale>.98*high&&(camera.parallel_scale=
-Math.max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limits.view_angle){let back=subtract2(state.
-position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function isSamePlace(a,b){
-let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>
-.8&&ratio<1.25}function projection(surface,camera,anchor){let{state,aspect}=camera,{center,extent,frame}=surface,[right,
-up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(toFrame(frame,subtract2(point,center)),anchor),
-focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,m=new Array(16).fill(0),half=state.parallel?state.
-parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(c=>c/half)].forEach((row2,k)=>{for(let n=0;n<
-3;n+=1)m[4*n+k]=row2[n];m[12+k]=-dot2(row2,focus)}),state.parallel){for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=
--dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(subtract2(middle,eye),ahead),far=Math.max(
-depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<
-3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,
-y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*
-height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
+if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&state.parallel){let[high,usual,all]=[
+1e9,limits.aspect,aspect].map(shape=>fitted(surface,limits,positions2,shape).parallel_scale),isUsual=Math.abs(state.parallel_scale/
+usual-1)<.001;state.parallel_scale>.98*high&&(camera.parallel_scale=isUsual?all:Math.max(state.parallel_scale,all))}else if(!state.
+parallel&&state.view_angle>.9*limits.view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(
+state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function isSamePlace(a,b){let near=length2(subtract2(
+a.center,b.center))<.1*a.extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){
+let{state,aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
+toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
+m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
+up.map(c=>c/half)].forEach((row2,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row2[n];m[12+k]=-dot2(row2,focus)}),state.parallel){
+for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),
+depth=dot2(subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+
+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(
+ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=
+(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
 LONGEST_STRIP_MS=150,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;function quality(price,fixed,pixels,samples,budget){let room=Math.
 max(budget-fixed,Math.min(fixed/2,budget),2)/price;if(pixels*(samples+PIXEL_COST)<=room)return{scale:1,samples};let fewer=Math.
 min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),
@@ -505,7 +506,85 @@ controller.signal.aborted}listen(target,kind,call,options={}){(target===document
 timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
 let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
 this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
-for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},ColourControls=class{element=dom("di\
+for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
+t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count2){let at=share*(count2-1),first=clamp(Math.
+floor(at)-1,0,count2-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
+[i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
+forEach((v2,n)=>{across.forEach((u,m)=>{for(let k=0;k<3;k+=1)way[k]+=u*v2*data[3*((j+n)*columns+i+m)+k]})}),way}function lonLatOf(earth,position,places){
+if(earth.map&&!places)return null;let[x,y,z]=earth.map&&places?wayOn(earth.map,places,position):position,lonLat=[Math.atan2(
+y,x),Math.atan2(z,Math.hypot(x,y))];return lonLat.every(Number.isFinite)?[lonLat[0]*DEGREES,lonLat[1]*DEGREES]:null}function eastNorth(earth,position,velocity,places){
+let[from,change]=[position,velocity];if(earth.map&&places){let{map,radius}=earth,time=NEAR*(map[2]-map[0])/(Math.hypot(...velocity)||
+1),[before,after]=[-time,time].map(t=>wayOn(map,places,position.map((p,k)=>p+t*velocity[k])));from=wayOn(map,places,position),
+change=after.map((way,k)=>radius*(way-before[k])/(2*time))}let[x,y,z]=from,[across,away]=[Math.hypot(x,y)||1,Math.hypot(
+x,y,z)||1],east=(x*change[1]-y*change[0])/across,outward=(x*change[0]+y*change[1])/across;return[east,(across*change[2]-
+z*outward)/away]}function lonLatText([lon,lat],apart){let decimals=clamp(Math.ceil(-Math.log10(apart)),FEWEST_DECIMALS,MOST_DECIMALS),
+told=(degrees,[before,after])=>`${Math.abs(degrees).toFixed(decimals)}° ${degrees<0?before:after}`;return`${told(lon,"W\
+E")}, ${told(lat,"SN")}`}function dateText({start,dates,step},times2,time){if(start===null){if(!dates.length)return null;
+let apart=times2.map(each=>Math.abs(each-time));return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}\
+Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%
+DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var STEPS=[1,2,2.5,5],DEGREES2=[1,2,5,10,15,30,60,90],DECADES=[[1],[1,3],[1,2,5]],SAME=1e-9,BEYOND=.004,[LARGE,SMALL2]=[
+1e6,.001];function ticksOf(low,high,log=!1,most=5){return high-low>SAME*Math.max(Math.abs(low),Math.abs(high))?log&&decades(
+low,high,most)||evenly(low,high,most):Number.isFinite(low)?[{value:low,text:textOf(low,Math.abs(low)/1e3||1)}]:[]}function evenly(low,high,most){
+let least=10**Math.floor(Math.log10((high-low)/most));for(let power=least;;power*=10)for(let factor of STEPS){let step=factor*
+power,slack=BEYOND*(high-low),[first,last]=[Math.ceil((low-slack)/step),Math.floor((high+slack)/step)];if(!(last-first+1>
+most))return Array.from({length:last-first+1},(_,n)=>{let value=(first+n)*step;return{value,text:textOf(value,step,Math.
+max(Math.abs(low),Math.abs(high)))}})}}function degreeTicks(low,high,letters,most=5){let step=DEGREES2.find(each=>Math.floor(
+high/each)-Math.ceil(low/each)<most);return(high-low<3*DEGREES2[0]||step===void 0?ticksOf(low,high,!1,most):Array.from({
+length:Math.floor(high/step)-Math.ceil(low/step)+1},(_,n)=>{let value=(Math.ceil(low/step)+n)*step;return{value,text:String(
+value)}})).map(({value,text})=>{let turned=value-360*Math.round(value/360),digits=text.split(".")[1]?.length??0,side=turned===
+0||Math.abs(turned)===180?"":letters[+(turned<0)];return{value,text:`${Math.abs(turned).toFixed(digits)}°${side}`}})}function decades(low,high,most){
+let[first,last]=[Math.floor(Math.log10(low)),Math.ceil(Math.log10(high))],powers=Array.from({length:last-first+1},(_,n)=>first+
+n),isInside=value=>value>=low*(1-SAME)&&value<=high*(1+SAME),valuesOf=(factors,every)=>powers.filter(power=>power%every===
+0).flatMap(power=>factors.map(factor=>+`${factor}e${power}`)).filter(isInside),finer=[...DECADES].reverse().map(factors=>valuesOf(
+factors,1)),coarser=powers.slice(1).map((_,n)=>valuesOf([1],n+2)),chosen=[...finer,...coarser].find(values=>values.length<=
+most);if(!(!chosen||chosen.length<3))return chosen.map(value=>({value,text:textOf(value,value,value)}))}function textOf(value,step,size=Math.
+abs(value)){if(value===0)return"0";let digits=-Math.floor(Math.log10(step)+SAME),isHalf=Math.abs(step*10**digits-2.5)<SAME?
+1:0;if(size>=LARGE||size<SMALL2){let mantissa=Math.max(Math.floor(Math.log10(Math.abs(value))+SAME)+digits+isHalf,0),[number,
+power]=value.toExponential(Math.min(mantissa,15)).split("e");return`${minus(number)}e${Number(power)}`}return minus(value.
+toFixed(Math.max(digits+isHalf,0)))}var minus=text=>text.replace("-","−");var AXES=["ticks","scale","none"],SVG2="http://www.w3.org/2000/svg",PARTS=48,LEAST_SHARE=.999,[LETTER_PX,GAP_PX,ROW_PX]=[
+6.5,14,34],TICK_PX=4,[MOST_TICKS,BAR_PX,BAR_SHARE]=[9,140,.3],MIDDLE_SHARE=.02,COORDINATES=["x","y","z"];function placedTicks({
+values,letters},most){let finite=values.filter(Number.isFinite);if(finite.length<2)return[];let[low,high]=[Math.min(...finite),
+Math.max(...finite)];return(letters?degreeTicks(low,high,letters,most):ticksOf(low,high,!1,most)).flatMap(tick=>{let n=values.
+findIndex((value,at)=>isBetween(tick.value,value,values[at+1]));if(n<0)return[];let part=(tick.value-values[n])/(values[n+
+1]-values[n]||1);return[{...tick,share:(n+part)/(values.length-1)}]})}var isBetween=(value,a,b)=>Math.min(a,b)<=value&&value<=
+Math.max(a,b);function hasTicks({geometry,earth}){return geometry.planar&&(!earth||earth.map!==null)}var Axes=class{element=document.
+createElementNS(SVG2,"svg");host;constructor(host){this.host=host,this.element.setAttribute("class","axes"),this.element.
+setAttribute("aria-hidden","true")}draw(kind){let{header,camera,stage}=this.host;this.element.replaceChildren();let[width,
+height]=[stage.clientWidth,stage.clientHeight];if(kind==="none"||!header||!camera||!width||!height)return;if(this.element.
+style.cssText=`width: ${width}px; height: ${height}px`,kind==="scale")return this.drawBar(header,camera,width,height);let below=borderOf(
+this.host,[-1,-1],[1,-1]),aside=borderOf(this.host,[-1,-1],[-1,1]);below&&this.drawBelow(below,width,height),aside&&this.
+drawAside(aside,height)}drawBelow(border,width,height){let isTooWide=ticks2=>ticks2.some(({share,text},n)=>{let apart=n?
+Math.abs(share-ticks2[n-1].share)*width:width,letters=Math.max(text.length,ticks2[n-1]?.text.length??0);return apart<letters*
+LETTER_PX+GAP_PX}),most=MOST_TICKS,ticks=placedTicks(border,most);for(;most>2&&ticks.length&&isTooWide(ticks);)ticks=placedTicks(
+border,most-=1);for(let{share,text}of ticks)this.line(share*width,height,share*width,height+TICK_PX),this.text(share*width,
+height+TICK_PX+2,text,"below");let[before,last]=ticks.slice(-2),middle=(before.share+(last??before).share)/2*width;border.
+name&&last&&this.text(middle,height+TICK_PX+2,border.name,"below name")}drawAside(border,height){let most=Math.min(Math.
+max(Math.floor(height/ROW_PX),2),MOST_TICKS),ticks=placedTicks(border,most);for(let{share,text}of ticks){let y=(1-share)*
+height;this.line(-TICK_PX,y,0,y),this.text(-TICK_PX-3,y,text,"aside")}let[before,last]=ticks.slice(-2);if(!border.name||
+!last)return;let middle=(1-(before.share+last.share)/2)*height;this.text(-TICK_PX-3,middle,border.name,"aside name")}drawBar(header,camera,width,height){
+let{earth,lengthUnit}=header,pixel=2*camera.height/height*scaleOf(this.host,header,camera),most=Math.min(BAR_PX,BAR_SHARE*
+width)*pixel,power=10**Math.floor(Math.log10(most)),size=power*([5,2].find(factor=>factor*power<=most)??1),[x,y]=[size/pixel,
+height+TICK_PX+4];this.line(0,y,x,y);for(let end of[0,x])this.line(end,y-TICK_PX,end,y+TICK_PX);let isLong=(earth!==null||
+lengthUnit==="m")&&size>=1e3,text=withUnit(String(Number((isLong?size/1e3:size).toPrecision(3))),isLong?"km":lengthUnit);
+this.text(x+8,y-5,text,"beside")}line(x1,y1,x2,y2){let line=document.createElementNS(SVG2,"line");for(let[name,value]of Object.
+entries({x1,y1,x2,y2}))line.setAttribute(name,value.toFixed(1));this.element.append(line)}text(x,y,words,kind){let text=document.
+createElementNS(SVG2,"text");text.setAttribute("x",x.toFixed(1)),text.setAttribute("y",y.toFixed(1)),text.setAttribute("\
+class",kind),text.textContent=words,this.element.append(text)}};function scaleOf({parts},header,camera){let{earth}=header;
+if(!earth?.map)return 1;let[a,b]=[-1,1].map(x=>placeAt(camera,header,MIDDLE_SHARE*x,0)),[from,to]=[a,b].map(place=>lonLatOf(
+earth,place,parts.get("lonlat")));if(!from||!to)return 1;let[east,north]=[to[0]-from[0],to[1]-from[1]].map(degrees=>degrees*
+Math.PI/180),middle=(from[1]+to[1])/2*Math.PI/180;return Math.hypot(Math.sin(east/2)*2*Math.cos(middle),north)*earth.radius/
+length2(subtract2(b,a))||1}function borderOf(host,from,to){let{header,camera,parts}=host;if(!header||!camera||!hasTicks(
+header))return null;let places=Array.from({length:PARTS+1},(_,n)=>placeAt(camera,header,from[0]+(to[0]-from[0])*n/PARTS,
+from[1]+(to[1]-from[1])*n/PARTS)),{earth,lengthUnit}=header;if(earth?.map){let along=from[1]===to[1]?0:1,[low,high]=[earth.
+map.slice(0,2),earth.map.slice(2)],degrees=places.map(place=>{if(place[along]<low[along]||place[along]>high[along])return NaN;
+let inside=place.map((c,n)=>n<2?clamp(c,low[n],high[n]):c);return lonLatOf(earth,inside,parts.get("lonlat"))?.[along]??NaN});
+return{letters:along?"NS":"EW",values:unwrapped(degrees)}}let way=subtract2(places[PARTS],places[0]),axis=way.map(Math.abs).
+indexOf(Math.max(...way.map(Math.abs)));return Math.abs(way[axis])<LEAST_SHARE*length2(way)?null:{name:withUnit(COORDINATES[axis],
+lengthUnit&&`(${lengthUnit})`),values:places.map(place=>place[axis])}}function unwrapped(degrees){let turns=0;return degrees.
+map((value,n)=>(n&&Number.isFinite(value-degrees[n-1])&&(turns-=Math.round((value-degrees[n-1])/360)),value+360*turns))}
+function placeAt(camera,{geometry},x,y){let[right,up,ahead]=camera.axes,{height}=camera,{parallel,position,focal_point:focus}=camera.
+state,target=add(add(focus,right,x*camera.aspect*height),up,y*height),ray=parallel?ahead:subtract2(target,position),normal=geometry.
+frame.slice(6),far=dot2(normal,subtract2(geometry.center,target))/dot2(normal,ray);return add(target,scale2(ray,far))}var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},ColourControls=class{element=dom("di\
 v",{class:"colours"});viewer;scalars=dom("select",{"aria-label":"Colour by"});swatches=dom("div",{class:"swatches",role:"\
 group"});ends=["Lowest value","Highest value"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto=dom(
 "button",{type:"button",class:"link"},["auto"]);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){this.
@@ -551,31 +630,17 @@ viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.value)),
 name,whole,low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),
 max:String(max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(
 value)&&this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{
-toSlider,fromSlider,min,max,step}=scaleOf(row2),range={min:String(min),max:String(max),step:String(step)},input=dom("inp\
-ut",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
+toSlider,fromSlider,min,max,step}=scaleOf2(row2),range={min:String(min),max:String(max),step:String(step)},input=dom("in\
+put",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
 numberText(Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="unifor\
 m"?"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,
-show:shown=>{input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf(row2){let{low,high,whole,logarithmic}=row2,
+show:shown=>{input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,
 [least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
 2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
 toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
 down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
-document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STEPS=[1,2,2.5,5],DECADES=[[1],[1,3],[1,2,5]],SAME=1e-9,BEYOND=.004,[LARGE,SMALL2]=[1e6,.001];function ticksOf(low,high,log=!1,most=5){
-return high-low>SAME*Math.max(Math.abs(low),Math.abs(high))?log&&decades(low,high,most)||evenly(low,high,most):Number.isFinite(
-low)?[{value:low,text:textOf(low,Math.abs(low)/1e3||1)}]:[]}function evenly(low,high,most){let least=10**Math.floor(Math.
-log10((high-low)/most));for(let power=least;;power*=10)for(let factor of STEPS){let step=factor*power,slack=BEYOND*(high-
-low),[first,last]=[Math.ceil((low-slack)/step),Math.floor((high+slack)/step)];if(!(last-first+1>most))return Array.from(
-{length:last-first+1},(_,n)=>{let value=(first+n)*step;return{value,text:textOf(value,step,Math.max(Math.abs(low),Math.abs(
-high)))}})}}function decades(low,high,most){let[first,last]=[Math.floor(Math.log10(low)),Math.ceil(Math.log10(high))],powers=Array.
-from({length:last-first+1},(_,n)=>first+n),isInside=value=>value>=low*(1-SAME)&&value<=high*(1+SAME),valuesOf=(factors,every)=>powers.
-filter(power=>power%every===0).flatMap(power=>factors.map(factor=>+`${factor}e${power}`)).filter(isInside),finer=[...DECADES].
-reverse().map(factors=>valuesOf(factors,1)),coarser=powers.slice(1).map((_,n)=>valuesOf([1],n+2)),chosen=[...finer,...coarser].
-find(values=>values.length<=most);if(!(!chosen||chosen.length<3))return chosen.map(value=>({value,text:textOf(value,value,
-value)}))}function textOf(value,step,size=Math.abs(value)){if(value===0)return"0";let digits=-Math.floor(Math.log10(step)+
-SAME),isHalf=Math.abs(step*10**digits-2.5)<SAME?1:0;if(size>=LARGE||size<SMALL2){let mantissa=Math.max(Math.floor(Math.log10(
-Math.abs(value))+SAME)+digits+isHalf,0),[number,power]=value.toExponential(Math.min(mantissa,15)).split("e");return`${minus(
-number)}e${Number(power)}`}return minus(value.toFixed(Math.max(digits+isHalf,0)))}var minus=text=>text.replace("-","−");var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom(
+document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom(
 "i",{hidden:""});show(header,settings,map){let{name,label,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||
 !bar||!map||!!settings.show_level,this.element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.
 background=rampOf(map,header,settings,STOPS2),this.mark.hidden=!0;let placeOf=shareOf(header.scalars),ticks=legendTicks(
@@ -585,23 +650,7 @@ this.element.replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2}
 ticks))}point(header,value=NaN){this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.
 style.left=`${100*clamp(shareOf(header.scalars)(value),0,1)}%`)}};function legendTicks({scalars}){let[low,high]=legendLimits(
 scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.reduce((sum,{text})=>sum+text.length,
-0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
-t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count2){let at=share*(count2-1),first=clamp(Math.
-floor(at)-1,0,count2-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
-[i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
-forEach((v2,n)=>{across.forEach((u,m)=>{for(let k=0;k<3;k+=1)way[k]+=u*v2*data[3*((j+n)*columns+i+m)+k]})}),way}function lonLatOf(earth,position,places){
-if(earth.map&&!places)return null;let[x,y,z]=earth.map&&places?wayOn(earth.map,places,position):position,lonLat=[Math.atan2(
-y,x),Math.atan2(z,Math.hypot(x,y))];return lonLat.every(Number.isFinite)?[lonLat[0]*DEGREES,lonLat[1]*DEGREES]:null}function eastNorth(earth,position,velocity,places){
-let[from,change]=[position,velocity];if(earth.map&&places){let{map,radius}=earth,time=NEAR*(map[2]-map[0])/(Math.hypot(...velocity)||
-1),[before,after]=[-time,time].map(t=>wayOn(map,places,position.map((p,k)=>p+t*velocity[k])));from=wayOn(map,places,position),
-change=after.map((way,k)=>radius*(way-before[k])/(2*time))}let[x,y,z]=from,[across,away]=[Math.hypot(x,y)||1,Math.hypot(
-x,y,z)||1],east=(x*change[1]-y*change[0])/across,outward=(x*change[0]+y*change[1])/across;return[east,(across*change[2]-
-z*outward)/away]}function lonLatText([lon,lat],apart){let decimals=clamp(Math.ceil(-Math.log10(apart)),FEWEST_DECIMALS,MOST_DECIMALS),
-told=(degrees,[before,after])=>`${Math.abs(degrees).toFixed(decimals)}° ${degrees<0?before:after}`;return`${told(lon,"W\
-E")}, ${told(lat,"SN")}`}function dateText({start,dates,step},times2,time){if(start===null){if(!dates.length)return null;
-let apart=times2.map(each=>Math.abs(each-time));return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}\
-Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%
-DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
+0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
 1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
 [ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
 for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
@@ -629,17 +678,16 @@ start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(
 {scalars}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({name,steps,number}));
 for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.
 data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+between2*(after[n]-before[n]);
-values[each.name]=interpolated(corners,value)}return values}var TITLE="Path through this point",SVG2="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
-RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8,UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.
-length<=UNIT_LENGTH?`${text} ${unit2}`:text}function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:
-3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(
-value,digits)}).join(", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
+values[each.name]=interpolated(corners,value)}return values}var TITLE="Path through this point",SVG3="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8;function vectorText(vector,size,digits,flat){return`(${vector.
+slice(0,flat?2:3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(
+digits))):numberText(value,digits)}).join(", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
 let{earth}=header,lonLat=earth&&lonLatOf(earth,position,parts.get("lonlat"));if(lonLat)return lonLatText(lonLat,(camera?.
 height??0)/PLACES_IN_VIEW/DEGREE_M);let text=positionText(position,header,camera);return isWithUnit?withUnit(text,header.
 lengthUnit):text}function positionText(position,header,camera){let{geometry}=header,zoom=Math.max(camera?.zoom??1,1),digits=Math.
 min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&Math.abs(position[2]-geometry.
 center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}var PointCard=class{element=dom(
-"div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG2,"svg");host;list=dom("dl");chosen=null;later=null;drawn=null;constructor(host){
+"div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG3,"svg");host;list=dom("dl");chosen=null;later=null;drawn=null;constructor(host){
 this.host=host,this.element.setAttribute("aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("b\
 utton",{type:"button",class:"link"},["Close"]);button.addEventListener("click",()=>this.close()),this.element.append(dom(
 "div",{class:"first"},[dom("span",{},[TITLE]),button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,
@@ -647,11 +695,11 @@ canPick}=this.host;if(lifetime.cancel(this.later),!canPick&&performance.now()<un
 choose(x,y,until),RETRY_MS),null;let found=this.host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.
 close(),this.chosen=found,this.update(),found?.point??null}close(){for(let{card}of this.host.together)card.clear()}clear(){
 this.host.lifetime.cancel(this.later),this.chosen=this.drawn=null,this.element.hidden=!0,this.overlay.replaceChildren(),
-this.host.options.explainer?.clear()}update(){let{chosen}=this,{options,camera,shown,header,tiles,settings,root,together}=this.
+this.host.options.explainer?.clear()}update(){let{chosen}=this,{options,camera,shown,header,tiles,settings,stage,together}=this.
 host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({
 key})=>String(key)===String(layer.key))?.scene;if(!scene||scene.missing(shown[0],shown[1]).length)return;let position=point.
-position,at={scene,moment:shown,place,position},path=pathThrough(at,settings,camera,root.clientHeight);this.tell({...point,
-values:valuesAt(scene,shown,scene.cornersAt(place))},path,header,camera);let pixel={at,settings,camera,rows:root.clientHeight},
+position,at={scene,moment:shown,place,position},path=pathThrough(at,settings,camera,stage.clientHeight);this.tell({...point,
+values:valuesAt(scene,shown,scene.cornersAt(place))},path,header,camera);let pixel={at,settings,camera,rows:stage.clientHeight},
 samples=options.explainer?.explain(pixel)??[];for(let{card}of together)card.drawn={path,point:position,samples},card.draw()}tell(point,{
 velocity},header,camera){let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.
 host,where=placeText(point.position,header,parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){
@@ -662,14 +710,14 @@ replace("speed","velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numbe
 name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;
 lines.set(named.label,withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[
 dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,
-{camera,root}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=root,placeOf=point2=>{let place=camera.
+{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,placeOf=point2=>{let place=camera.
 project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.
 map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,
 sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),
 dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.
 sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,
 dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(
-SVG2,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+SVG3,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -679,9 +727,11 @@ SVG2,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(na
   --accent: var(--jp-brand-color1, #0f766e);
   --shadow: 0 4px 18px rgb(16 24 40 / 0.16);
   --glass: color-mix(in srgb, var(--ground) 78%, transparent);
+  --above-bar: 56px;
   color-scheme: light dark;
   position: relative;
-  display: block;
+  display: grid;
+  grid-template: auto minmax(0, 1fr) auto / minmax(0, 1fr);
   box-sizing: border-box;
   width: 100%;
   height: 100%;
@@ -724,12 +774,36 @@ SVG2,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(na
   backdrop-filter: blur(12px) saturate(1.3);
   -webkit-backdrop-filter: blur(12px) saturate(1.3);
 }
-.left {
-  position: absolute; left: 10px; right: 10px; top: 10px; max-height: calc(100% - 20px);
-  display: flex; flex-direction: column; align-items: flex-start; gap: 6px; pointer-events: none;
+/* The picture fills the view, with what else there is upon it, or stands between the two bars. */
+.stage { position: relative; grid-area: 1 / 1 / -1 / 1; min-width: 0; min-height: 0; }
+.top {
+  grid-area: 1 / 1; z-index: 1; display: flex; justify-content: space-between; align-items: flex-start;
+  gap: 8px; padding: 10px; pointer-events: none;
 }
+:host(.flowtex-framed) .stage { grid-row: 2; margin: 0 10px; }
+:host(.flowtex-framed) .top { height: 46px; padding: 5px 10px 0; align-items: center; }
+:host(.flowtex-framed) { --above-bar: 10px; }
+:host(.flowtex-framed) .bar { margin: 4px auto; }
+:host(.flowtex-framed) :is(.head, .legend, .bar) {
+  background: none; border-color: transparent; box-shadow: none;
+  backdrop-filter: none; -webkit-backdrop-filter: none;
+}
+:host(.flowtex-framed) :is(.head, .legend) { padding-inline: 0; padding-block: 0; }
+:host(.flowtex-framed) .legend { flex: 0 1 240px; }
+:host(.flowtex-framed[data-axes="ticks"]) .stage { margin: 0 16px 22px 58px; }
+:host(.flowtex-framed[data-axes="scale"]) .stage { margin-bottom: 20px; }
+:host(.flowtex-framed[data-axes="ticks"]) .stage::after {
+  content: ""; position: absolute; inset: 0; pointer-events: none; box-shadow: 0 0 0 1px var(--edge);
+}
+.axes { position: absolute; left: 0; top: 0; overflow: visible; pointer-events: none; }
+.axes line { stroke: var(--quiet); stroke-width: 1; }
+.axes text { fill: var(--quiet); font: 11px system-ui, sans-serif; font-variant-numeric: tabular-nums; }
+.axes .below { text-anchor: middle; dominant-baseline: hanging; }
+.axes .aside { text-anchor: end; dominant-baseline: central; }
+.axes .beside { dominant-baseline: hanging; }
+.axes .name { font-style: italic; }
 .head {
-  max-width: 100%; flex: none;
+  max-width: 100%; min-width: 0; flex: 0 1 auto;
   padding: 5px 10px; display: flex; gap: 10px; align-items: baseline;
   pointer-events: none; white-space: nowrap; overflow: hidden;
 }
@@ -741,8 +815,8 @@ SVG2,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(na
 .head:not(:has(.title:not([hidden]), .readout:not(:empty))) { display: none; }
 .readout b { color: var(--ink); font-weight: 500; }
 .legend {
-  position: absolute; right: 10px; top: 10px; min-width: 150px; max-width: 60%; padding: 5px 10px 6px;
-  font-size: 11px; pointer-events: none;
+  flex: none; margin-left: auto; min-width: 150px; max-width: 60%; padding: 5px 10px 6px; font-size: 11px;
+  pointer-events: none;
 }
 .legend .name {
   width: 0; min-width: 100%; margin-bottom: 3px; overflow: hidden; overflow-wrap: anywhere;
@@ -755,8 +829,10 @@ SVG2,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(na
 }
 .ticks { position: relative; height: 1.35em; margin-top: 3px; white-space: nowrap; }
 .ticks span { position: absolute; }
-.left:has(~ .legend:not([hidden])) > * { max-width: calc(100% - 170px); }
-.card { max-width: 100%; min-height: 0; padding: 5px 6px 7px 10px; overflow: hidden; }
+:host(.flowtex-framed) .card { top: 8px; max-height: calc(100% - 16px); }
+.card {
+  position: absolute; left: 8px; top: 52px; max-width: calc(100% - 16px); max-height: calc(100% - 60px);
+  padding: 5px 6px 7px 10px; overflow: hidden; }
 .card button { pointer-events: auto; }
 .card .first { display: flex; align-items: center; justify-content: space-between; gap: 10px; }
 dl {
@@ -778,8 +854,7 @@ dd { margin: 0; text-align: right; white-space: nowrap; }
 .path .point-casing { stroke-width: 5; }
 .path .point { stroke: #fff; stroke-width: 2.4; }
 .bar {
-  position: absolute; left: 10px; right: 10px; bottom: 10px; width: fit-content; margin: 0 auto;
-  max-width: calc(100% - 20px);
+  grid-area: 3 / 1; z-index: 1; width: fit-content; max-width: calc(100% - 20px); margin: 10px auto;
   display: flex; align-items: center; gap: 1px; padding: 3px;
 }
 button {
@@ -820,12 +895,13 @@ input[type="range"]::-moz-range-thumb {
   width: 14px; height: 14px; border: 0; border-radius: 50%; background: var(--accent);
 }
 .settings {
-  position: absolute; right: 10px; bottom: 58px; width: 248px; max-width: calc(100% - 20px);
-  max-height: calc(100% - 68px); overflow-y: auto; padding: 6px 12px; scrollbar-width: thin;
+  position: absolute; z-index: 2; right: 10px; bottom: 58px; width: 248px;
+  max-width: calc(100% - 20px); max-height: calc(100% - 68px); overflow-y: auto; padding: 6px 12px; scrollbar-width: thi\
+n;
   overscroll-behavior: contain; --glass: color-mix(in srgb, var(--ground) 90%, transparent);
   background: var(--glass);
 }
-:host(.flowtex-open) .legend { display: none; }
+:host(.flowtex-open:not(.flowtex-framed)) .legend { display: none; }
 .row {
   display: grid; grid-template-columns: 1fr auto; align-items: center; column-gap: 10px;
   min-height: 30px; padding: 2px 0;
@@ -857,22 +933,22 @@ input[role="switch"]::after {
 input[role="switch"]:checked { background: var(--accent); }
 input[role="switch"]:checked::after { transform: translateX(12px); }
 .busy {
-  position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 5px 12px;
+  position: absolute; left: 50%; bottom: var(--above-bar); transform: translateX(-50%); padding: 5px 12px;
   border-radius: 10px; background: var(--glass); color: var(--quiet); pointer-events: none;
   animation: appear 1ms 600ms backwards; /* what takes but a moment is not told */
 }
 @keyframes appear { from { visibility: hidden } }
 .hint {
-  position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 4px 12px;
+  position: absolute; left: 50%; bottom: var(--above-bar); transform: translateX(-50%); padding: 4px 12px;
   color: var(--quiet); pointer-events: none; white-space: nowrap; max-width: calc(100% - 20px);
   overflow: hidden; text-overflow: ellipsis;
 }
 .told {
-  position: absolute; left: 50%; bottom: 56px; transform: translateX(-50%); padding: 6px 12px;
+  position: absolute; left: 50%; bottom: var(--above-bar); transform: translateX(-50%); padding: 6px 12px;
   width: max-content; max-width: min(420px, calc(100% - 40px)); cursor: pointer;
 }
 .note {
-  position: absolute; inset: 0; display: flex; flex-direction: column; align-items: center;
+  position: absolute; inset: 0; z-index: 3; display: flex; flex-direction: column; align-items: center;
   justify-content: center; gap: 6px; padding: 24px; text-align: center; background: var(--ground);
   overflow: auto; user-select: text; -webkit-user-select: text;
 }
@@ -886,83 +962,84 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   .track:has(input:disabled) { display: none; }
   .legend { min-width: 132px; padding: 4px 8px; }
   .settings { bottom: 80px; max-height: calc(100% - 90px); }
-  .title { max-width: 110px; }
-  .readout { flex-direction: column; gap: 0; }
   .head { flex-direction: column; gap: 0; }
-  .left:has(~ .legend:not([hidden])) .head { max-width: calc(100% - 152px); }
-  /* Below the legend there is the whole width. */
-  .left:has(~ .legend:not([hidden])) .card { max-width: 100%; margin-top: 22px; }
+  .head > * { max-width: 100%; overflow: hidden; text-overflow: ellipsis; }
+  :host(.flowtex-framed[data-axes="ticks"]) .stage { margin-left: 50px; margin-right: 8px; }
 }
-@container (max-width: 220px) {
-  .legend { display: none; }
-  .left:has(~ .legend:not([hidden])) .head { max-width: 100%; }
-}
+@container (max-width: 220px) { .legend { display: none; } }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
-:host(.flowtex-bare) :is(.left, .path, .legend, .settings, .bar, .handle) { display: none; }
-`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?"⌘":"Ctrl",HINT=`Click, or ho\
-ld ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,
-styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;controls;colours;isShown;isOpen=!1;legendLook="";title=dom(
-"div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
-[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});doing=dom("span",{role:"status"});count=dom(
-"span",{"aria-hidden":"true"});busy=dom("div",{class:"busy",hidden:""},[this.doing,this.count]);told=dom("div",{class:"t\
-old glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom(
-"input",{type:"range",...TIME_RANGE});timeText=dom("span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.
-timeText]);hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,canvas,options}=viewer;this.isShown=
-options.controls??!0,this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.button(
-"show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("pl\
-ay","Play (space)",()=>viewer.togglePlaying()),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.
-value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of d\
-etail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button("setting\
-s","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flo\
-wtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,
-controls,head,bar,handle,busy,hintBox,told,note}=this,left=dom("div",{class:"left"},[head,viewer.card.element]);shadow.append(
-canvas,viewer.card.overlay,left,legend.element,controls.element),shadow.append(bar,handle,busy,hintBox,told,note),viewer.
-lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){let button=dom("button",{type:"\
-button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",press),
-button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.playButton,
-this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,
-this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),
+:host(.flowtex-bare) :is(.top, .path, .card, .settings, .bar, .handle) { display: none; }
+`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,LEAST_FRAMED_PX=240,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?"⌘":"Ctrl",
+HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,
+styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;axes;axesMenu=dom(
+"select",{},AXES.map(kind=>dom("option",{},[kind])));axesRow=dom("label",{class:"row"},[dom("span",{class:"name"},["Axes"]),
+this.axesMenu]);controls;colours;isShown;axesKind=null;isOpen=!1;legendLook="";title=dom("div",{class:"title"});readout=dom(
+"div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},[this.title,this.readout]);note=dom(
+"div",{class:"note",hidden:"",role:"alert"});doing=dom("span",{role:"status"});count=dom("span",{"aria-hidden":"true"});busy=dom(
+"div",{class:"busy",hidden:""},[this.doing,this.count]);told=dom("div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom(
+"div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom("input",{type:"range",...TIME_RANGE});timeText=dom(
+"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;constructor(viewer){
+this.viewer=viewer;let{root,stage,canvas,options}=viewer;this.isShown=options.controls??!0,this.axes=new Axes(viewer),viewer.
+lifetime.listen(this.axesMenu,"change",()=>{for(let{panel}of viewer.together)panel.chooseAxes(this.axesMenu.value)}),this.
+controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.button("show","Show the bar (h)",
+()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.
+togglePlaying()),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.
+choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.
+button("levels","Show level",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),
+this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.
+attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,told,
+note}=this,{card}=viewer;stage.className="stage",stage.append(canvas,card.overlay,this.axes.element,card.element,busy,hintBox,
+told),shadow.append(dom("div",{class:"top"},[head,legend.element]),stage,bar,handle),shadow.append(controls.element,note),
+viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){let button=dom("button",
+{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",
+press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.
+playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,
+this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),
 this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.viewer;header&&(this.note.hidden=!0,
-this.controls.build(header),this.controls.element.prepend(...this.colours.rows),this.showLegend(),this.update(),this.arrange())}update(){
-let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==
-this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
-ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
-playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
-null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,this.slider.disabled=!varies&&settings.
-motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??"").length;this.timeText.style.minWidth=
-`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,title=(header?.differs??[]).filter(
-name=>name in settings).map(name=>{let label2=header?.table.find(row2=>row2.name===name)?.label??name,value=settings[name];
-return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";this.title.textContent=
-title,this.title.hidden=!title;let label=options.label??title;root.setAttribute("aria-label",label?`Flow texture: ${label}`:
-"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;let{first,last,now}=player.
-range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.slices.timeUnit,moment=this.date(
-header)??`${numberText(now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;this.timeText.textContent!==text&&
-(this.timeText.textContent=text)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({
-show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.
-viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("c\
-map")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.
-position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(
-position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==
-void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){
-this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){shown!==this.isShown&&(this.isShown=shown,this.arrange(),this.
-viewer.options.onControls?.(shown))}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.
-follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.
-isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("fl\
-owtex-open",!this.controls.element.hidden),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1){
-let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?
-"playing":"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?pending&&(doing="Loading tiles"):doing="Trac\
-ing paths";let count2=doing==="Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==
-doing&&(this.doing.textContent=doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.hidden=!(doing||
-count2),!(!missing.length||viewer.options.onNeed||viewer.options.isComing?.()||this.lateTimer)&&(this.lateTimer=viewer.lifetime.
-later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missin\
-g: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.
-later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),
-this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.root.dataset.
-failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=
-!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(
-".flowtex-pair")??root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.
-header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(
-()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+this.controls.build(header),this.controls.element.prepend(...this.colours.rows,this.axesRow),this.showLegend(),this.update(),
+this.arrange())}update(){let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.
+update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))
+button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.
+replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);
+let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,this.slider.disabled=
+!varies&&settings.motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??"").length;this.
+timeText.style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,title=(header?.
+differs??[]).filter(name=>name in settings).map(name=>{let label2=header?.table.find(row2=>row2.name===name)?.label??name,
+value=settings[name];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";
+this.title.textContent=title,this.title.hidden=!title;let label=options.label??title;root.setAttribute("aria-label",label?
+`Flow texture: ${label}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;
+let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.slices.
+timeUnit,moment=this.date(header)??`${numberText(now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;this.timeText.
+textContent!==text&&(this.timeText.textContent=text)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.
+player.time)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,
+settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,
+settings,parts.get("cmap")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),this.legend.
+point(null);let position=point?.position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;if(this.readout.
+append(dom("span",{},[placeText(position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.scalars,
+value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),
+this.legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.
+isShown){this.isShown=shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){
+let{header,options,root}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&
+root.clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,
+usual=header&&hasTicks(header)?"ticks":"none",kind=this.axesKind??usual,shown=this.isFramed?kind:"none";this.axesMenu.value=
+kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){let{header,options,root}=this.viewer,isReady=header!==
+null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||!isReady||follows,
+this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.
+classList.toggle("flowtex-open",!this.controls.element.hidden),root.classList.toggle("flowtex-framed",this.isFramed),this.
+showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1){let{viewer,busy}=this,
+{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?"playing":"moving"}`:
+"",doing="";missing.length?doing="Loading data":isMade?pending&&(doing="Loading tiles"):doing="Tracing paths";let count2=doing===
+"Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==doing&&(this.doing.textContent=
+doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.hidden=!(doing||count2),!(!missing.length||
+viewer.options.onNeed||viewer.options.isComing?.()||this.lateTimer)&&(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=
+null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){
+let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):
+null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.
+hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.
+note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.
+root.dataset.failed="true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){
+let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN,
+" ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
@@ -1400,29 +1477,30 @@ name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();for(let p
 tile,part);this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.
 parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2={slices:[12,4],flow:[100,24]},isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
 b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.createElement("d\
-iv");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
+iv");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
 root.className="flowtex",root.tabIndex=0,Object.assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.
 setAttribute("data-lm-suppress-shortcuts","true"),root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(
 this),this.panel=new Panel(this),element.append(root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.
 observe(),this.graphics.gl||this.panel.fail("This browser has no WebGL2, which the picture is drawn with.","Turn on hard\
 ware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.
-observe(new ResizeObserver(()=>this.resize()),root);let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.
-length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,root),lifetime.listen(document,"visibili\
-tychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics,
-{frames}=this.renderer;return{...this.lifetime.stats(),objects,users:users.size,frames}}dispose(){if(!this.lifetime.isOver){
-this.player.playing=!1,this.lifetime.end(),this.tiles?.dispose(),this.tiles=null,this.scene?.dispose(),this.scene=null;for(let name of[
-...this.parts.keys()])this.remove(name);this.graphics.leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){
-if(header.format!==4){this.panel.fail(`The scene has format ${header.format}, and this client reads format ${4}.`,"Use t\
-he client of the flowtex that made the scene.");return}let old=this.header;if(old&&old.generation!==void 0&&old.generation===
-header.generation)return this.recolour(coloursOf(header));if(this.header=header,this.settings={...header.settings,...header.
-own},this.player.setHeader(header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),
-(!old||!isSamePlace(old.geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==
-header.generation)for(let name of[...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){
-if(this.header){Object.assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.requests.
-clear(),this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){if(this.options.onColours)
-return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(
-viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(
+observe(new ResizeObserver(()=>this.panel.arrange()),root),lifetime.observe(new ResizeObserver(()=>this.resize()),this.stage);
+let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.
+request()});lifetime.observe(seen,root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(
+window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.
+size,frames:this.renderer.frames}}dispose(){if(!this.lifetime.isOver){this.player.playing=!1,this.lifetime.end(),this.tiles?.
+dispose(),this.tiles=null,this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(name);
+this.graphics.leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==4){this.panel.
+fail(`The scene has format ${header.format}, and this client reads format ${4}.`,"Use the client of the flowtex that mad\
+e the scene.");return}let old=this.header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.
+recolour(coloursOf(header));if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
+header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),(!old||!isSamePlace(old.
+geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[
+...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){
+Object.assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.requests.clear(),this.
+tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){if(this.options.onColours)return this.
+options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.
+header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(
 this.graphics,header,this.parts),this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(
 name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&
 this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),
@@ -1443,7 +1521,7 @@ aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;le
 geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.
 radius:0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??
 this.ground(x,y),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.
-root.clientWidth,1)/Math.max(this.root.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.
+stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.
 seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),
 value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.
 setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){
@@ -1452,48 +1530,48 @@ motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.upd
 !0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.
 update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?
 leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isHeld(){return performance.now()<
-this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.setSharp(!1),this.request()}refine(){
-this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes2=this.tiles?.arrange(shown)??[];return this.
-root.dataset.tiles=String(this.tiles?.pending??0),scenes2}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){
-sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
-!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||
-1,.1),width=Math.max(Math.round(this.root.clientWidth*ratio),1),height=Math.max(Math.round(this.root.clientHeight*ratio),
-1);width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.
-aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;
-return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){
-return this.canvas.height/Math.max(this.root.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.
-header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){
-let{header,scene,player,shown,lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?
-[1,2].map(n=>(moment[1]+n)%header.slices.steps):[];this.ask([moment[0],moment[1],...ahead]);let isMade=!lacking.length&&
-scene.make(moment.slice(0,2),until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,
-isMade,this.renderer.leavesOut),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),
-isMade?this.shown=moment:(lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){
-tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){let now=performance.now(),{onNeed,isComing}=this.
-options,lacking=[...new Set(steps.flatMap(step=>this.scene?.lacking(step)??[]))];for(let step of lacking)!onNeed||isComing?.()||
-now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,now),onNeed(step));return!lacking.length}frame(now,until){
-if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
-canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
- picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
-variant=variantOf(header,this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){
-if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??
-[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.
-available(until);this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)
-return;if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}
-if(!program.ready||!this.scene?.earth.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,
-shown,until);this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.
-clear(),this.scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.
-request()}advance(now){let{player,options}=this,isMade=steps=>this.ask(steps)&&!!this.scene?.make(steps,now);!player.playing||
-!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),
-this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)
-throw new Error("there is nothing to look at yet");let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(
-geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],range=constants.anchorRange*2*camera.height,
-isFar=v2=>v2.some(c=>Math.abs(c)>range),anchor=isFar(local)?local:[0,0,0];return{focus,anchor:isFar(subtract2(local,old))?
-anchor:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.
-max(this.root.clientHeight*density,1)}}get canPick(){let{scene,graphics}=this;return!!scene&&!graphics.isLost&&!!graphics.
-gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;
-return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||
-!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,
-moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count2,options,own=()=>({})){
+this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.panel.showAxes(),this.setSharp(
+!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes2=this.tiles?.
+arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.pending??0),scenes2}draw(){this.frame(performance.now(),
+performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),
+sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(
+this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,
+clientHeight].map(n=>Math.max(Math.round(n*ratio),1));width===this.canvas.width&&height===this.canvas.height||(this.renderer.
+resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),
+this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(
+header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,1)}lost(){this.tiles?.
+dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;
+return this.scene?.missing(before,after)??[]}available(until){let{header,scene,player,shown,lacking}=this;if(!header||!scene)
+return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.slices.steps):[];this.ask([moment[0],
+moment[1],...ahead]);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until);return this.root.dataset.lacking=String(
+lacking.length||+!isMade),this.panel.wait(lacking,isMade,this.renderer.leavesOut),isMade&&String(moment.slice(0,2))!==String(
+shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:(lacking.length||this.request(),shown&&scene.isMade(
+shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){
+let now=performance.now(),{onNeed,isComing}=this.options,lacking=[...new Set(steps.flatMap(step=>this.scene?.lacking(step)??
+[]))];for(let step of lacking)!onNeed||isComing?.()||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,
+now),onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.
+gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(this.header,
+until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.
+isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(header,this.settings,isClose);return this.graphics.
+programs.get(vertex,fragment,...variant)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),
+tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
+part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);this.camera||this.place();let program=this.
+program(header);if(this.scene?.prepare(),!shown||!this.camera)return;if(program.error){this.panel.fail("The shader does \
+not compile with this graphics driver.",program.error);return}if(!program.ready||!this.scene?.earth.isReady)return this.
+request();let isComplete=!this.sharp&&this.renderer.draw(program,shown,until);this.root.dataset.drawn="true",isComplete&&
+(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.scene.pickers,header.slices.critical&&this.
+program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,options}=this,isMade=steps=>this.
+ask(steps)&&!!this.scene?.make(steps,now);!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(
+player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
+let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,
+constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.
+anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);return{focus,anchor:isFar(
+subtract2(local,old))?isFar(local)?local:[0,0,0]:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
+clock,density,pixel:2*camera.height/Math.max(this.stage.clientHeight*density,1)}}get canPick(){let{scene,graphics}=this;
+return!!scene&&!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.find(x,y)?.
+point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,
+shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint(
+{layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count2,options,own=()=>({})){
 if(count2<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
 "display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count2;n+=1){let cell=dom(
 "div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==

@@ -1,0 +1,209 @@
+// Ticks at the left and lower border of the picture, or a bar of a round length.
+
+import type { Camera } from "./camera.ts";
+import { withUnit } from "./dom.ts";
+import { lonLatOf } from "./lonlat.ts";
+import type { Header, Part } from "./protocol.ts";
+import { degreeTicks, ticksOf, type Tick } from "./ticks.ts";
+import { add, clamp, dot, length, scale, subtract, type Vector } from "./vectors.ts";
+
+export const AXES = ["ticks", "scale", "none"] as const;
+export type AxesKind = (typeof AXES)[number];
+
+const SVG = "http://www.w3.org/2000/svg";
+/** Places of a border between which what it shows is taken as straight. */
+const PARTS = 48;
+/** Share of a way along a border that its coordinate has: less of an oblique view. */
+const LEAST_SHARE = 0.999;
+/** Pixels that a tick needs along the lower border for each of its letters, and beside them; at the left. */
+const [LETTER_PX, GAP_PX, ROW_PX] = [6.5, 14, 34];
+const TICK_PX = 4;
+/** Most ticks of a border, and the widest scale bar, in pixels and as a share of the picture. */
+const [MOST_TICKS, BAR_PX, BAR_SHARE] = [9, 140, 0.3];
+/** Share of the half width of the view by which the scale of a map is measured. */
+const MIDDLE_SHARE = 0.02;
+const COORDINATES = ["x", "y", "z"];
+
+/** What a border shows: its coordinate's values at even places, and its name or the letters of degrees. */
+export interface Border {
+  readonly name?: string;
+  readonly letters?: string;
+  readonly values: number[];
+}
+
+/** Ticks of a border and the shares of its length at which they are. */
+export function placedTicks({ values, letters }: Border, most: number): (Tick & { share: number })[] {
+  const finite = values.filter(Number.isFinite);
+  if (finite.length < 2) return [];
+  const [low, high] = [Math.min(...finite), Math.max(...finite)];
+  const ticks = letters ? degreeTicks(low, high, letters, most) : ticksOf(low, high, false, most);
+  return ticks.flatMap((tick) => {
+    const n = values.findIndex((value, at) => isBetween(tick.value, value, values[at + 1]));
+    if (n < 0) return [];
+    const part = (tick.value - values[n]) / (values[n + 1] - values[n] || 1);
+    return [{ ...tick, share: (n + part) / (values.length - 1) }];
+  });
+}
+
+const isBetween = (value: number, a: number, b: number) =>
+  Math.min(a, b) <= value && value <= Math.max(a, b);
+
+/** The picture that stands between the axes. */
+export interface AxesHost {
+  readonly header: Header | null;
+  readonly camera: Camera | null;
+  readonly parts: ReadonlyMap<string, Part>;
+  readonly stage: HTMLElement;
+}
+
+/** Whether a surface lies in a plane, along whose sides coordinates can be read. */
+export function hasTicks({ geometry, earth }: Header): boolean {
+  return geometry.planar && (!earth || earth.map !== null);
+}
+
+export class Axes {
+  readonly element = document.createElementNS(SVG, "svg");
+  private readonly host: AxesHost;
+
+  constructor(host: AxesHost) {
+    this.host = host;
+    this.element.setAttribute("class", "axes");
+    this.element.setAttribute("aria-hidden", "true");
+  }
+
+  draw(kind: AxesKind): void {
+    const { header, camera, stage } = this.host;
+    this.element.replaceChildren();
+    const [width, height] = [stage.clientWidth, stage.clientHeight];
+    if (kind === "none" || !header || !camera || !width || !height) return;
+    this.element.style.cssText = `width: ${width}px; height: ${height}px`;
+    if (kind === "scale") return this.drawBar(header, camera, width, height);
+    const below = borderOf(this.host, [-1, -1], [1, -1]);
+    const aside = borderOf(this.host, [-1, -1], [-1, 1]);
+    if (below) this.drawBelow(below, width, height);
+    if (aside) this.drawAside(aside, height);
+  }
+
+  private drawBelow(border: Border, width: number, height: number): void {
+    const isTooWide = (ticks: readonly { share: number; text: string }[]) =>
+      ticks.some(({ share, text }, n) => {
+        const apart = n ? Math.abs(share - ticks[n - 1].share) * width : width;
+        const letters = Math.max(text.length, ticks[n - 1]?.text.length ?? 0);
+        return apart < letters * LETTER_PX + GAP_PX;
+      });
+    let most = MOST_TICKS;
+    let ticks = placedTicks(border, most);
+    while (most > 2 && ticks.length && isTooWide(ticks)) ticks = placedTicks(border, (most -= 1));
+    for (const { share, text } of ticks) {
+      this.line(share * width, height, share * width, height + TICK_PX);
+      this.text(share * width, height + TICK_PX + 2, text, "below");
+    }
+    const [before, last] = ticks.slice(-2);
+    const middle = ((before.share + (last ?? before).share) / 2) * width;
+    if (border.name && last) this.text(middle, height + TICK_PX + 2, border.name, "below name");
+  }
+
+  private drawAside(border: Border, height: number): void {
+    const most = Math.min(Math.max(Math.floor(height / ROW_PX), 2), MOST_TICKS);
+    const ticks = placedTicks(border, most);
+    for (const { share, text } of ticks) {
+      const y = (1 - share) * height;
+      this.line(-TICK_PX, y, 0, y);
+      this.text(-TICK_PX - 3, y, text, "aside");
+    }
+    const [before, last] = ticks.slice(-2);
+    if (!border.name || !last) return;
+    const middle = (1 - (before.share + last.share) / 2) * height;
+    this.text(-TICK_PX - 3, middle, border.name, "aside name");
+  }
+
+  private drawBar(header: Header, camera: Camera, width: number, height: number): void {
+    const { earth, lengthUnit } = header;
+    const pixel = ((2 * camera.height) / height) * scaleOf(this.host, header, camera);
+    const most = Math.min(BAR_PX, BAR_SHARE * width) * pixel;
+    const power = 10 ** Math.floor(Math.log10(most));
+    const size = power * ([5, 2].find((factor) => factor * power <= most) ?? 1);
+    const [x, y] = [size / pixel, height + TICK_PX + 4];
+    this.line(0, y, x, y);
+    for (const end of [0, x]) this.line(end, y - TICK_PX, end, y + TICK_PX);
+    const isLong = (earth !== null || lengthUnit === "m") && size >= 1000;
+    const text = withUnit(String(Number((isLong ? size / 1000 : size).toPrecision(3))), isLong ? "km" : lengthUnit);
+    this.text(x + 8, y - 5, text, "beside");
+  }
+
+  private line(x1: number, y1: number, x2: number, y2: number): void {
+    const line = document.createElementNS(SVG, "line");
+    for (const [name, value] of Object.entries({ x1, y1, x2, y2 })) {
+      line.setAttribute(name, value.toFixed(1));
+    }
+    this.element.append(line);
+  }
+
+  private text(x: number, y: number, words: string, kind: string): void {
+    const text = document.createElementNS(SVG, "text");
+    text.setAttribute("x", x.toFixed(1));
+    text.setAttribute("y", y.toFixed(1));
+    text.setAttribute("class", kind);
+    text.textContent = words;
+    this.element.append(text);
+  }
+}
+
+/** Lengths on the Earth for one of its map, in the middle of the view; 1 elsewhere. */
+function scaleOf({ parts }: AxesHost, header: Header, camera: Camera): number {
+  const { earth } = header;
+  if (!earth?.map) return 1;
+  const [a, b] = [-1, 1].map((x) => placeAt(camera, header, MIDDLE_SHARE * x, 0));
+  const [from, to] = [a, b].map((place) => lonLatOf(earth, place, parts.get("lonlat")));
+  if (!from || !to) return 1;
+  const [east, north] = [to[0] - from[0], to[1] - from[1]].map((degrees) => (degrees * Math.PI) / 180);
+  const middle = (((from[1] + to[1]) / 2) * Math.PI) / 180;
+  const angle = Math.hypot(Math.sin(east / 2) * 2 * Math.cos(middle), north);
+  return (angle * earth.radius) / length(subtract(b, a)) || 1;
+}
+
+/** The coordinate that goes along a border of the picture, if one does. */
+function borderOf(host: AxesHost, from: [number, number], to: [number, number]): Border | null {
+  const { header, camera, parts } = host;
+  if (!header || !camera || !hasTicks(header)) return null;
+  const places = Array.from({ length: PARTS + 1 }, (_, n) =>
+    placeAt(camera, header, from[0] + ((to[0] - from[0]) * n) / PARTS, from[1] + ((to[1] - from[1]) * n) / PARTS),
+  );
+  const { earth, lengthUnit } = header;
+  if (earth?.map) {
+    const along = from[1] === to[1] ? 0 : 1;
+    const [low, high] = [earth.map.slice(0, 2), earth.map.slice(2)];
+    const degrees = places.map((place) => {
+      if (place[along] < low[along] || place[along] > high[along]) return NaN;
+      // Beside the map its nearest side is read.
+      const inside = place.map((c, n) => (n < 2 ? clamp(c, low[n], high[n]) : c));
+      return lonLatOf(earth, inside, parts.get("lonlat"))?.[along] ?? NaN;
+    });
+    return { letters: along ? "NS" : "EW", values: unwrapped(degrees) };
+  }
+  const way = subtract(places[PARTS], places[0]);
+  const axis = way.map(Math.abs).indexOf(Math.max(...way.map(Math.abs)));
+  if (Math.abs(way[axis]) < LEAST_SHARE * length(way)) return null;
+  return { name: withUnit(COORDINATES[axis], lengthUnit && `(${lengthUnit})`), values: places.map((place) => place[axis]) };
+}
+
+/** Angles without the jumps of a turn. */
+function unwrapped(degrees: number[]): number[] {
+  let turns = 0;
+  return degrees.map((value, n) => {
+    if (n && Number.isFinite(value - degrees[n - 1])) turns -= Math.round((value - degrees[n - 1]) / 360);
+    return value + 360 * turns;
+  });
+}
+
+/** Point of the plane of a surface at a place of the view, from -1 to 1, right and up. */
+function placeAt(camera: Camera, { geometry }: Header, x: number, y: number): Vector {
+  const [right, up, ahead] = camera.axes;
+  const { height } = camera;
+  const { parallel, position, focal_point: focus } = camera.state;
+  const target = add(add(focus as Vector, right, x * camera.aspect * height), up, y * height);
+  const ray = parallel ? ahead : subtract(target, position);
+  const normal = geometry.frame.slice(6) as Vector;
+  const far = dot(normal, subtract(geometry.center as Vector, target)) / dot(normal, ray);
+  return add(target, scale(ray, far));
+}
