@@ -138,6 +138,7 @@ def trace(
     expected = "a positive number of cells, such as 1e-3"
     tolerance = checked_number("tolerance", tolerance, np.nextafter(0, 1), expected=expected)
     step_numbers = _step_numbers(field, steps)
+    composed = lags is None if compose is None else compose
     if field.triangles is not None:
         chosen = field.valid if nodes is None else field.valid & _checked_nodes(field, nodes)
         with _threads() as run:
@@ -150,12 +151,12 @@ def trace(
                 chosen,
                 two_sided=two_sided,
                 tolerance=tolerance,
+                compose=composed and nodes is None,
                 run=run,
                 progress=progress,
             )
     directions = (-1.0, 1.0) if two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)
-    composed = lags is None if compose is None else compose
     whole = field.steady or step_numbers == list(range(len(field.times)))
     landing = landings(field, lag_values, units) if composed and whole else None
     followed = field.valid
