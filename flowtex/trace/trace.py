@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util import compiled
 from flowtex._util.arguments import check_field, checked_array, checked_number
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
@@ -25,7 +24,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
-from flowtex.trace.integrate import MOST_CELLS, Paths, follow, integrate
+from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
@@ -409,9 +408,6 @@ class _Tracing:
     def _integrate(self, sides: dict[float, SideSlices], known: int, run: Map) -> None:
         """Fill the first ``known`` slices."""
         at = np.flatnonzero(self.followed)
-        # Steady ones are composed of short paths, which gains little.
-        if not self.field.steady:
-            compiled.prepare(len(at) * len(self.samplers) * len(sides))
         start, unit = self.nodes.reshape(-1, 2)[at], self.unit.ravel()[at]
 
         def work(job: tuple[int, float, slice]) -> None:
@@ -420,8 +416,6 @@ class _Tracing:
             slices, reach = side.slices[:, 1 : known + 1, step], side.reach[step]
             options: dict[str, Any] = {"direction": direction, "tolerance": self.tolerance}
             lags, units = self.lags[:known], unit[block]
-            if follow(self.samplers[step], nodes, lags, units, slices, reach, **options):
-                return
             result = integrate(self.samplers[step], start[block], lags, units, **options)
             moved = np.moveaxis(_in_single(result.positions - start[block]), 2, 0)
             some: Indices | slice = nodes

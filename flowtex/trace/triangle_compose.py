@@ -22,10 +22,12 @@ from flowtex.trace.integrate import MOST_CELLS
 from flowtex.trace.triangle_motion import BEHIND, SteadyMotion, TriangleMesh
 from flowtex.trace.triangles import TrianglePaths
 
-__all__ = ["Composition", "known_lags"]
+__all__ = ["DIRECT_STEPS", "Composition", "known_lags"]
 
 #: Length in small cells up to which paths are integrated, and least number of such slices.
 DIRECT_CELLS, LEAST_DIRECT = 8.0, 2
+#: Rounds of steps for these, of which any mesh takes half: what goes on circles about a node.
+DIRECT_STEPS = 300
 #: Paths that are continued together.
 BLOCK = 8192
 #: Edges crossed in search of a point: beyond a ridge there may be no triangle that has it.
@@ -67,6 +69,8 @@ class Composition:
         #: Triangles by lag, (M, N), and the shares of their second and third corner at the last.
         self._triangle, self._shares = np.zeros((len(lags), count), np.int32), np.zeros((2, count))
         self._ahead = np.zeros((3, count))
+        #: Nodes at the corners, (3, T).
+        self._corners = np.ascontiguousarray(self.mesh.corners.T)
         #: Number of the longest slice by which paths are continued from each triangle.
         self._longest = np.full(len(self.mesh.corners), known - 1)
 
@@ -87,7 +91,7 @@ class Composition:
                 going = nodes[np.isinf(self.reach[nodes])]
                 blocks = [going[k : k + BLOCK] for k in range(0, len(going), BLOCK)]
                 list(run(partial(self._follow, m, search), blocks))
-                corners = self.mesh.corners[self._triangle[m, nodes]].T
+                corners = self._corners.take(self._triangle[m, nodes], axis=1)
                 place = _blend(_all_shares(self._shares[:, nodes]), self.points, corners)
                 beyond = np.maximum(self.lags[m] - self.reach[nodes], 0.0)
                 moved = place + self._ahead[:, nodes] * beyond - self.points[nodes].T
@@ -95,10 +99,10 @@ class Composition:
 
     def _judge(self, j: int, normals: Floats) -> None:
         """Find the triangles from which slice j continues paths; the first does where it can."""
-        reach = self.reach[self.mesh.corners]
-        ended = (reach <= self.lags[j]).sum(axis=1)
-        alike = np.ptp(reach, axis=1) < ENDS_SHARE * self.lags[j]
-        good = (ended == 0) | ((ended == 3) & alike)
+        reach = self.reach[self._corners]
+        first, last = reach.min(axis=0), reach.max(axis=0)
+        apart = (last > self.lags[j]) | (last - first > ENDS_SHARE * self.lags[j])
+        good = (first > self.lags[j]) | ~apart
         if j < self.known:
             self._longest[~good] = j - 1
             return
@@ -139,13 +143,14 @@ class Composition:
         from here (n,) at which paths end: infinite where no corner's path does, and more than that
         of the slice where only some do.
         """
-        corners, weights = self.mesh.corners[triangle].T, _all_shares(shares)
+        corners, weights = self._corners.take(triangle, axis=1), _all_shares(shares)
         reach, span = self.reach[corners], self.lags[number]
         ended = reach <= span
         target = _blend(weights, self.points, corners)
         for weight, nodes_there in zip(weights, corners, strict=True):
             target += weight * self.moved[number, nodes_there].T
-        nearest = np.where(ended, -1.0, weights).argmax(axis=0)
+        best = np.where(ended, -1.0, weights)
+        nearest = np.where(best[0] >= np.maximum(best[1], best[2]), 0, 1 + (best[2] > best[1]))
         begin = self._triangle[number, corners[nearest, np.arange(len(nodes))]]
         ends = np.full(len(nodes), np.inf)
         some = np.flatnonzero(ended.any(axis=0))
@@ -168,7 +173,9 @@ class _Search:
         first, second, third = points[mesh.corners].transpose(1, 0, 2)
         e, f = second - first, third - first
         with np.errstate(all="ignore"):
-            ee, ef, ff = (np.einsum("mc,mc->m", *pair)[:, None] for pair in ((e, e), (e, f), (f, f)))
+            ee, ef, ff = (
+                np.einsum("mc,mc->m", *pair)[:, None] for pair in ((e, e), (e, f), (f, f))
+            )
             slopes = [ff * e - ef * f, ee * f - ef * e] / (ee * ff - ef * ef)
             normals = np.cross(e, f)
             normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -187,12 +194,11 @@ class _Search:
         for _ in range(MOST_CROSSED):
             row = np.ascontiguousarray(self._table.take(triangle, axis=0).T)
             away = place - row[:3]
-            second, third = (row[3:6] * away).sum(axis=0), (row[6:9] * away).sum(axis=0)
+            second, third = (np.einsum("cn,cn->n", row[k : k + 3], away) for k in (3, 6))
             here = np.stack([1 - second - third, second, third])
             found[which], shares[:, which] = triangle, here
-            edge = here.argmin(axis=0)
-            out = np.flatnonzero(here[edge, np.arange(len(edge))] < -ROUNDING)
-            code = self._across[3 * triangle[out] + edge[out]]
+            out = np.flatnonzero(np.minimum(np.minimum(*here[:2]), here[2]) < -ROUNDING)
+            code = self._across[3 * triangle[out] + here[:, out].argmin(axis=0)]
             outside[which[out[code < 0]]] = True
             # Over a ridge it would go to and fro.
             on = (code >= 0) & (code >> 3 != before[out])
@@ -215,7 +221,7 @@ class _Bends:
         there = 3 * (code >> 3) + BEHIND[code & 7]
         flat = mesh.corners.ravel()
         #: Edges by the corners opposite to them, in the triangles on both sides.
-        self._sides, self._shape = (here, there), mesh.corners.shape
+        self._sides, self._count = (here, there), len(mesh.corners)
         #: Nodes there, (2, E), and at the ends of the edges, (2, E).
         self._tips = flat[np.stack(self._sides)]
         self._ends = mesh.corners[triangle, (k + np.array([[1], [2]])) % 3]
@@ -241,10 +247,11 @@ class _Bends:
         bend = far - one - near * (tip - one) - second * (two - one)
         normal = normals[triangle[self._tips[1]]]
         bend -= np.einsum("ec,ec->e", bend, normal)[:, None] * normal
-        size, result = np.linalg.norm(bend, axis=-1) * self._scale, np.zeros(self._shape)
+        size = np.sqrt(np.einsum("ec,ec->e", bend, bend)) * self._scale
+        result = np.zeros(3 * self._count)
         for side in self._sides:
-            result.ravel()[side] = size
-        return np.asarray(result.max(axis=1))
+            result[side] = size
+        return np.maximum(np.maximum(result[::3], result[1::3]), result[2::3])
 
 
 def _all_shares(two: Floats) -> Floats:

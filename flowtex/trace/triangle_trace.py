@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -15,7 +15,7 @@ from flowtex.trace.compose import Map
 from flowtex.trace.integrate import MOST_CELLS, Paths
 from flowtex.trace.lags import small_cell
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.triangle_compose import Composition, known_lags
+from flowtex.trace.triangle_compose import DIRECT_STEPS, Composition, known_lags
 from flowtex.trace.triangle_motion import (
     ChangingMotion,
     Motion,
@@ -72,10 +72,10 @@ def triangle_slices(
         shares = np.stack([corner == 1, corner == 2]).astype(float)
         units = unit[0, nodes]
         due = lags[:known, None] * units
-        last = float(lags[-1]) * units
-        paths = integrate(
-            motion, points, triangle, shares, due, tolerance=tolerance, last=last
-        )
+        options: dict[str, Any] = {"tolerance": tolerance, "last": float(lags[-1]) * units}
+        if compositions:
+            options["most_steps"] = DIRECT_STEPS
+        paths = integrate(motion, points, triangle, shares, due, **options)
         here = points[nodes]
         for m in range(known):
             moved = paths.positions(mesh, points, m) - here
