@@ -13,6 +13,7 @@ import sys
 import time
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -88,6 +89,7 @@ def apart(composed: TraceSlices, exact: TraceSlices, m: int, cell: Any) -> Any:
 
 def compare(names: list[str]) -> None:
     """Print the table of surfaces of triangles."""
+    sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
     from surfaces import SURFACES
 
     heads = ("triangles", "integrated", "composed", "ratio")

@@ -28,7 +28,7 @@ from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.triangle_trace import triangle_paths, triangle_slices
+from flowtex.trace.triangles import triangle_paths, triangle_slices
 
 __all__ = ["paths", "trace"]
 
@@ -86,7 +86,8 @@ def trace(
         Whether long lags are put together from short ones (see ``flowtex/trace/compose.py``)
         instead of being integrated. By default they are when the lags are chosen automatically.
         In a field that varies this takes equal time steps, of which all are traced; otherwise
-        all lags are integrated, as they are in a field without a sign and on triangles.
+        all lags are integrated, as they are in a field without a sign. On triangles it takes a
+        steady field, lags that double, one unit for all nodes, and no choice of ``nodes``.
     nodes
         Nodes whose paths are wanted, (J, I), all by default. Where paths are integrated only these
         are followed, and the others are treated as blanked ones. To compose takes those around

@@ -1,4 +1,4 @@
-"""Trace slices on triangles: displacements are in space; long paths of a steady flow are composed."""
+"""Trace slices on triangles, whose displacements are in space."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from flowtex.trace.compose import Map
 from flowtex.trace.integrate import MOST_CELLS, Paths
 from flowtex.trace.lags import small_cell
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.triangle_compose import DIRECT_STEPS, Composition, known_lags
-from flowtex.trace.triangle_motion import (
+from flowtex.trace.triangles.compose import DIRECT_STEPS, Composition, known_lags
+from flowtex.trace.triangles.integrate import begin, integrate
+from flowtex.trace.triangles.motion import (
     ChangingMotion,
     Motion,
     SteadyMotion,
     TriangleMesh,
     speed_floor,
 )
-from flowtex.trace.triangles import begin, integrate
 
 __all__ = ["triangle_paths", "triangle_slices"]
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.trace.integrate import MOST_STEPS
-from flowtex.trace.triangle_motion import (
+from flowtex.trace.triangles.motion import (
     AFTER,
     BEHIND,
     NEXT,

@@ -19,8 +19,8 @@ from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import check
 from flowtex.trace.compose import ERROR_CELLS, ERROR_SHARE, MOST_PIECES, Map
 from flowtex.trace.integrate import MOST_CELLS
-from flowtex.trace.triangle_motion import BEHIND, SteadyMotion, TriangleMesh
-from flowtex.trace.triangles import TrianglePaths
+from flowtex.trace.triangles.integrate import TrianglePaths
+from flowtex.trace.triangles.motion import BEHIND, SteadyMotion, TriangleMesh
 
 __all__ = ["DIRECT_STEPS", "Composition", "known_lags"]
 
@@ -147,11 +147,12 @@ class Composition:
         reach, span = self.reach[corners], self.lags[number]
         ended = reach <= span
         target = _blend(weights, self.points, corners)
-        for weight, nodes_there in zip(weights, corners, strict=True):
-            target += weight * self.moved[number, nodes_there].T
+        for weight, nodal in zip(weights, corners, strict=True):
+            target += weight * self.moved[number, nodal].T
         best = np.where(ended, -1.0, weights)
         nearest = np.where(best[0] >= np.maximum(best[1], best[2]), 0, 1 + (best[2] > best[1]))
-        begin = self._triangle[number, corners[nearest, np.arange(len(nodes))]]
+        nodal = corners[nearest, np.arange(len(nodes))]
+        begin = self._triangle[number, nodal].astype(np.intp)
         ends = np.full(len(nodes), np.inf)
         some = np.flatnonzero(ended.any(axis=0))
         if len(some):
@@ -208,7 +209,7 @@ class _Search:
                 break
         np.fmin(np.fmax(shares, 0.0, out=shares), 1.0, out=shares)
         total = shares.sum(axis=0)
-        return found, shares[1:] / np.where(total > 0, total, 1.0), outside
+        return found, np.asarray(shares[1:] / np.where(total > 0, total, 1.0)), outside
 
 
 class _Bends:
