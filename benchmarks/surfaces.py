@@ -132,6 +132,40 @@ def _file(variable: str, name: str) -> str:
     return str(path)
 
 
+def folded_contour(samples: int = 90) -> Any:
+    """Return a contour that goes in folds through a volume in a swirl."""
+    import pyvista as pv
+
+    volume = pv.ImageData(
+        dimensions=(samples,) * 3, spacing=(2 / (samples - 1),) * 3, origin=(-1.0,) * 3
+    )
+    points = np.asarray(volume.points, float)
+    (x, y, z), (a, b, c) = points.T, 5 * points.T
+    volume["height"] = np.sin(a) * np.cos(b) + np.sin(b) * np.cos(c) + np.sin(c) * np.cos(a)
+    flow = [-y + 0.5 * np.sin(3 * z), x + 0.3 * np.cos(4 * y), 0.5 * np.sin(3 * x)]
+    volume["velocity"] = np.stack(flow, axis=-1)
+    mesh = volume.contour([0.3], scalars="height")
+    points, velocity = np.asarray(mesh.points, float), np.asarray(mesh["velocity"])
+    return flowtex.FlowField.from_triangles(
+        points, mesh.regular_faces, velocity, name="folded contour"
+    )
+
+
+def boundary_layers() -> Any:
+    """Return the flow around an airfoil on long and thin triangles."""
+    from flowtex.examples import airfoil_field
+
+    grid = airfoil_field((120, 241))
+    rows, columns = grid.shape
+    node = np.arange(rows * columns).reshape(rows, columns)
+    a, b, c, d = node[:-1, :-1], node[:-1, 1:], node[1:, 1:], node[1:, :-1]
+    corners = [np.stack(part, axis=-1).reshape(-1, 3) for part in ((a, b, c), (a, c, d))]
+    points, velocity = grid.points.reshape(-1, 3), grid.velocity[0].reshape(-1, 3)
+    return flowtex.FlowField.from_triangles(
+        points, np.concatenate(corners), velocity, name="boundary layers"
+    )
+
+
 def bay() -> Any:
     """Return the currents of an ocean model on triangles."""
     return flowtex.FlowField.from_file(_file("FLOWTEX_DATA", "fvcom_sfbofs.nc"))
@@ -168,6 +202,8 @@ SURFACES: dict[str, Callable[[], Any]] = {
     "random plane": random_plane,
     "sphere": sphere,
     "cube": cube,
+    "folded contour": folded_contour,
+    "boundary layers": boundary_layers,
     "bay": bay,
     "slanted slice": slanted_slice,
     "isosurface": isosurface,

@@ -2,7 +2,8 @@
 
 Run ``python benchmarks/trace.py [columns ...]``. Times are the best of several runs, in seconds,
 and compare with one 25-tap pass of rlic over the same number of nodes in the same run.
-``python benchmarks/trace.py --compiled`` compares NumPy with compiled loops, in processor time.
+``python benchmarks/trace.py --triangles`` compares slices on triangles that are composed with those
+that are integrated: processor time, and how far apart they lie, in cells.
 """
 
 from __future__ import annotations
@@ -12,16 +13,15 @@ import sys
 import time
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import rlic
 
-from flowtex import FlowField, Settings, examples, trace
-from flowtex._util import compiled
+from flowtex import FlowField, Settings, TraceSlices, examples, trace
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
-from flowtex.trace.lags import choose_lags
 
 RUNS = 3
 #: The module, which the function of the same name hides.
@@ -80,71 +80,36 @@ def fields(columns: list[int]) -> dict[str, Callable[[], FlowField]]:
     return makers
 
 
-def gyre(rows: int, columns: int, steps: int) -> FlowField:
-    """Return the double gyre on stretched cells."""
-    y, x = np.meshgrid(
-        np.linspace(0, 1, rows) ** 1.2, 2 * np.linspace(0, 1, columns) ** 1.2, indexing="ij"
-    )
-    v = []
-    for time_ in np.arange(steps):
-        a = 0.25 * np.sin(0.2 * np.pi * time_)
-        f, slope = a * x * x + (1 - 2 * a) * x, 2 * a * x + 1 - 2 * a
-        u = -np.sin(np.pi * f) * np.cos(np.pi * y)
-        v.append(0.1 * np.pi * np.stack([u, np.cos(np.pi * f) * np.sin(np.pi * y) * slope], -1))
-    return FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(v) if steps > 1 else v[0])
+def apart(composed: TraceSlices, exact: TraceSlices, m: int, cell: Any) -> Any:
+    """Distances in cells at a lag, of paths that go on by both."""
+    off = np.linalg.norm(composed.displacement - exact.displacement, axis=-1)[0, m, 0] / cell
+    both = np.minimum(composed.reach, exact.reach)[0, 0] > exact.lags[m]
+    return off[both]
 
 
-def window(steps: int) -> SliceStore:
-    """Return a window of 330 x 330 nodes, followed for 32 cells."""
-    field = gyre(330, 330, steps)
-    nodes = np.zeros(field.shape, bool)
-    nodes[32:-32, 32:-32] = True
-    longest = 32 * float(np.median(field.surface.cell_size))
-    return SliceStore(field, compose=False, longest=longest, nodes=nodes)
+def compare(names: list[str]) -> None:
+    """Print the table of surfaces of triangles."""
+    sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+    from surfaces import SURFACES
 
-
-def load() -> None:
-    """Compile, or load what has been compiled before."""
-    started = time.process_time(), time.perf_counter()
-    compiled._load()
-    spent = np.subtract((time.process_time(), time.perf_counter()), started)
-    if compiled.kernels() is None:
-        sys.exit("numba is missing or fails")
-    say("compiled, or loaded, in {:.1f} s of processor, {:.1f} s by the clock".format(*spent))
-
-
-def compare() -> None:
-    """Print the table of compiled loops."""
-    varying, steady = gyre(500, 500, 5), gyre(500, 1000, 1)
-    lags = choose_lags(varying, "time")
-    textures = TextureSet.build(SliceStore(steady), Settings())
-    windows = [window(1), window(5)]
-    cases: dict[str, Callable[[], Any]] = {
-        "500 x 500, one of 5 steps": lambda: trace(
-            varying, lags=lags, steps=[4], compose=False, progress=False
-        ),
-        "500 x 500, all 5 steps": lambda: trace(varying, progress=False),
-        "1000 x 500, steady": lambda: trace(steady, progress=False),
-        "1000 x 500, its layers": textures.layers,
-        "window, steady": lambda: windows[0]._trace(0),
-        "window, one of 5 steps": lambda: windows[1]._trace(4),
-    }
-    compiled._begun.acquire()
-    spent: dict[str, list[float]] = {}
-    for ready in (False, True):
-        if ready:
-            load()
-        for name, work in cases.items():
-            work()
-            times = [(time.process_time(), time.perf_counter())]
-            for _ in range(RUNS):
-                work()
-                times.append((time.process_time(), time.perf_counter()))
-            spent.setdefault(name, []).extend(np.diff(times, axis=0).min(axis=0))
-    say(f"{'':28}{'NumPy':>12}{'by clock':>12}{'compiled':>12}{'by clock':>12}{'ratio':>8}")
-    for name, (slow, slow_wall, fast, wall) in spent.items():
-        numbers = "".join(f"{n:12.2f}" for n in (slow, slow_wall, fast, wall))
-        say(f"{name:28}{numbers}{slow / fast:8.1f}")
+    heads = ("triangles", "integrated", "composed", "ratio")
+    say(f"{'':18}" + "".join(f"{head:>12}" for head in heads) + "   lag: median, 99 %, in cells")
+    for name in names or ["random plane", "sphere", "cube", "isosurface", "folded contour"]:
+        field = SURFACES[name]()
+        found: dict[bool, tuple[float, TraceSlices]] = {}
+        for compose in (True, False):
+            SliceStore(field, compose=True).at(0)
+            started = time.process_time()
+            slices = SliceStore(field, compose=compose).at(0)
+            found[compose] = time.process_time() - started, slices
+        (fast, composed), (slow, exact) = found[True], found[False]
+        line = f"{name:18}{len(field.triangles):12,}{slow:12.2f}{fast:12.2f}{slow / fast:12.1f}   "
+        for m in range(len(exact.lags)):
+            off = apart(composed, exact, m, field.surface.cell_size[0])
+            if len(off) and off.max() > 0:
+                ends = np.quantile(off, [0.5, 0.99])
+                line += f"{exact.lags[m]:g}: {ends[0]:.3f}, {ends[1]:.2f};  "
+        say(line)
 
 
 def say(line: str) -> None:
@@ -172,7 +137,7 @@ def main(columns: list[int]) -> None:
 
 
 if __name__ == "__main__":
-    if "--compiled" in sys.argv:
-        compare()
+    if sys.argv[1:2] == ["--triangles"]:
+        compare(sys.argv[2:])
         sys.exit()
     main([int(word) for word in sys.argv[1:]] or [250, 500])

@@ -20,7 +20,6 @@ import numpy as np
 import pytest
 
 from flowtex import diagnostics
-from flowtex._util import compiled
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -30,9 +29,6 @@ if TYPE_CHECKING:
 
 pytest_plugins = ["small_pages", "small_tiles"]
 
-# Both implementations of a loop are right, and not alike to the bit: one does not take over from
-# the other in the middle of a test.
-compiled.LARGE_WORK = compiled.SOME_WORK = sys.maxsize
 # Before anything opens a window, and for every process that a test starts.
 diagnostics.prefer_headless()
 # Workers and the many processes that tests start would each compile the package and the tests anew.

@@ -105,7 +105,6 @@ LIBRARIES = (
     Library(("h5py",), in_functions=("field.io.inspection.hdf5",)),
     Library(("av",), in_functions=("offscreen.encoders",)),
     Library(("cyclopts",), on_load=("cli",)),
-    Library(("numba", "llvmlite"), on_load=("_util.compiled.loops",)),
 )
 SLOW = tuple(name for library in LIBRARIES for name in library.names)
 
@@ -419,7 +418,6 @@ def loaded() -> dict[str, set[str]]:
         "display",
         "cli",
         "xarray",
-        "_util.compiled.loops",
         "pyramid.objects",
     )
     below = sorted(f"flowtex.{name}" for name in names if name and not is_in(name, rooms))

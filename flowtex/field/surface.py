@@ -14,7 +14,6 @@ from functools import cached_property
 
 import numpy as np
 
-from flowtex._util import compiled
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.blocks import bounds, row_blocks
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
@@ -233,9 +232,6 @@ class CubicMap:
         """Interpolate between 16 nodes each, given the first of them and fractions of the cell."""
         width = self._shape[1] + 2
         result = np.zeros((len(self._padded), len(corner)))
-        if (kernels := compiled.kernels()) is not None:
-            kernels.cubic(self._padded, width, corner, si, sj, result)
-            return result
         wi, wj = cubic_weights(si), cubic_weights(sj)
         for b in range(4):
             at = [corner + (b * width + a) for a in range(4)]

@@ -26,7 +26,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flowtex._util import compiled
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex._util.progress import check
 from flowtex.field import FlowField
@@ -276,15 +275,6 @@ class _SliceLookup:
         """Displacements at lags (n,) or (1,), between the slices m - 1 and m."""
         late = (lag - self.knots[m - 1]) / (self.knots[m] - self.knots[m - 1])
         exact = bool((late > 1 - 10 * LAG_ROUNDING).all())
-        kernels = compiled.kernels()
-        if kernels is not None:
-            at = corners.at + base
-            both = np.empty((2, 2 - exact, len(at)), np.float32)
-            some = np.full_like(at, m)
-            kernels.blend(self.slices, self.grid.columns, at, corners.s, corners.t, some, both)
-            both *= self._inverse[m - np.arange(2 - exact)[:, None]]
-            slope = both[:, 0] if exact else both[:, 1] + late * (both[:, 0] - both[:, 1])
-            return np.asarray(slope * lag)
         if len(m) == 1:
             m = m[0]
         result = np.empty((2, len(corners.at)), np.float32)

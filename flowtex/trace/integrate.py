@@ -23,12 +23,10 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util import compiled
-from flowtex._util.array_types import Bools, Floats, Floats32, Indices
-from flowtex.trace.node_grid import BORDER_ROUNDING_CELLS
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.trace.sampler import Sampler
 
-__all__ = ["MOST_CELLS", "Paths", "follow", "integrate"]
+__all__ = ["MOST_CELLS", "Paths", "integrate"]
 
 Numbers = NDArray[np.int8]
 
@@ -43,8 +41,6 @@ STEPS_PER_LINE, LEAST_STEPS, MOST_STEPS = 50, 1_000, 20_000
 LAG_ROUNDING = 1e-9
 #: Displacement in cells that single precision holds, with what is computed of it.
 MOST_CELLS = 1e30
-#: Those of these that :mod:`flowtex._util.compiled.loops` is given as numbers.
-RULES = (STEP_SHRINK, STEP_GROWTH, STEP_SAFETY, LAG_ROUNDING, BORDER_ROUNDING_CELLS, MOST_CELLS)
 
 
 @dataclass(frozen=True)
@@ -95,42 +91,6 @@ def integrate(
         run.advance()
     run.end_all()
     return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.interrupted)
-
-
-def follow(
-    sampler: Sampler,
-    nodes: Indices,
-    lags: Floats,
-    unit: Floats,
-    moved: Floats32,
-    reach: Floats32,
-    *,
-    direction: float,
-    tolerance: float,
-) -> bool:
-    """Do the same for particles from nodes (N,), compiled, and tell whether that was possible.
-
-    Displacements are written to ``moved`` (2, M, J * I), and reaches to (J * I,).
-    """
-    kernels = compiled.kernels()
-    if kernels is None or not sampler.plain:
-        return False
-    grid = sampler.grid
-    kernels.follow(
-        (grid.rows, grid.columns, *grid.periodic),
-        grid.room,
-        (sampler.nodal, sampler.times, sampler.destination, direction, sampler.floor),
-        (tolerance, *RULES),
-        (_most_steps(sampler), BISECTIONS),
-        nodes,
-        np.array(lags),
-        unit,
-        sampler.rest(unit, float(lags[-1])),
-        (sampler.longest, sampler.span(direction)),
-        moved,
-        reach,
-    )
-    return True
 
 
 def _most_steps(sampler: Sampler) -> int:

@@ -50,8 +50,6 @@ class Sampler(ABC):
 
     def __init__(self, field: FlowField, data: Floats) -> None:
         data = fill_blanked(data, field.valid, data.ndim - 3)
-        #: The data by node, (T * J * I, C).
-        self.nodal = np.ascontiguousarray(data).reshape(-1, data.shape[-1])
         parts = [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]
         grid = NodeGrid.of(field)
         self._poles = poles = field.surface.poles
@@ -60,8 +58,6 @@ class Sampler(ABC):
         #: Whether particles are inside the domain, in a cell that is not blanked.
         self.alive = grid.alive
         self.grid = grid
-        #: Whether positions are (i, j) everywhere, and rates have a sign.
-        self.plain = poles is None and not field.sign_free
         self._patches = [Patch(grid, parts)]
         if poles is not None and self.charts is not None:
             self._patches += [cap(pole, grid, parts, self.charts.near) for pole in poles]

@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util import compiled
 from flowtex._util.arguments import check_field, checked_array, checked_number
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
@@ -25,11 +24,11 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
-from flowtex.trace.integrate import MOST_CELLS, Paths, follow, integrate
+from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
 from flowtex.trace.lags import choose_lags, lag_unit
 from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.triangle_trace import triangle_paths, triangle_slices
+from flowtex.trace.triangles import triangle_paths, triangle_slices
 
 __all__ = ["paths", "trace"]
 
@@ -87,7 +86,8 @@ def trace(
         Whether long lags are put together from short ones (see ``flowtex/trace/compose.py``)
         instead of being integrated. By default they are when the lags are chosen automatically.
         In a field that varies this takes equal time steps, of which all are traced; otherwise
-        all lags are integrated, as they are in a field without a sign and on triangles.
+        all lags are integrated, as they are in a field without a sign. On triangles it takes a
+        steady field, lags that double, one unit for all nodes, and no choice of ``nodes``.
     nodes
         Nodes whose paths are wanted, (J, I), all by default. Where paths are integrated only these
         are followed, and the others are treated as blanked ones. To compose takes those around
@@ -138,6 +138,7 @@ def trace(
     expected = "a positive number of cells, such as 1e-3"
     tolerance = checked_number("tolerance", tolerance, np.nextafter(0, 1), expected=expected)
     step_numbers = _step_numbers(field, steps)
+    composed = lags is None if compose is None else compose
     if field.triangles is not None:
         chosen = field.valid if nodes is None else field.valid & _checked_nodes(field, nodes)
         with _threads() as run:
@@ -150,12 +151,12 @@ def trace(
                 chosen,
                 two_sided=two_sided,
                 tolerance=tolerance,
+                compose=composed and nodes is None,
                 run=run,
                 progress=progress,
             )
     directions = (-1.0, 1.0) if two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)
-    composed = lags is None if compose is None else compose
     whole = field.steady or step_numbers == list(range(len(field.times)))
     landing = landings(field, lag_values, units) if composed and whole else None
     followed = field.valid
@@ -408,9 +409,6 @@ class _Tracing:
     def _integrate(self, sides: dict[float, SideSlices], known: int, run: Map) -> None:
         """Fill the first ``known`` slices."""
         at = np.flatnonzero(self.followed)
-        # Steady ones are composed of short paths, which gains little.
-        if not self.field.steady:
-            compiled.prepare(len(at) * len(self.samplers) * len(sides))
         start, unit = self.nodes.reshape(-1, 2)[at], self.unit.ravel()[at]
 
         def work(job: tuple[int, float, slice]) -> None:
@@ -419,8 +417,6 @@ class _Tracing:
             slices, reach = side.slices[:, 1 : known + 1, step], side.reach[step]
             options: dict[str, Any] = {"direction": direction, "tolerance": self.tolerance}
             lags, units = self.lags[:known], unit[block]
-            if follow(self.samplers[step], nodes, lags, units, slices, reach, **options):
-                return
             result = integrate(self.samplers[step], start[block], lags, units, **options)
             moved = np.moveaxis(_in_single(result.positions - start[block]), 2, 0)
             some: Indices | slice = nodes

@@ -16,6 +16,7 @@ from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.trace import SliceStore, paths
+from flowtex.trace.lags import small_cell
 
 
 def square(count: int, seed: int = 0) -> tuple[Floats, Indices]:
@@ -391,6 +392,68 @@ def test_surfaces_with_one_side_and_edges_of_many() -> None:
     for seed in range(3):
         v = np.random.default_rng(seed).normal(size=points.shape)
         check(trace(FlowField.from_triangles(points, np.array(faces), v), lags=[0.5, 20.0]))
+
+
+def doubled(field: FlowField, count: int) -> Floats:
+    """Lags that double from a quarter of a small cell, in units of length."""
+    return np.asarray(0.25 * small_cell(field) * 2.0 ** np.arange(count))
+
+
+@pytest.mark.parametrize("parameter", ["time", "arclength"])
+def test_composed_paths_go_round_a_sphere(parameter: str) -> None:
+    points, triangles = sphere(4000)
+    field = FlowField.from_triangles(points, triangles, spin(points))
+    lags = doubled(field, 9)
+    slices = trace(field, lags=lags, unit=1.0, parameter=parameter, compose=True)
+    p, away = field.points[0], np.linalg.norm(field.points[0, :, :2], axis=1)
+    some = away > 0.3
+    for sign, reach in ((-1, slices.reach), (1, slices.forward_reach)):
+        assert reach is not None
+        assert np.isinf(reach[0, 0, some]).all()
+        angle = sign * lags[-1] / (away if parameter == "arclength" else 1.0)
+        off = np.linalg.norm(found(field, slices, forward=sign > 0) - turned(p, angle), axis=1)
+        # After more than sixty cells.
+        assert np.median(off[some]) < 0.1 * small_cell(field)
+        assert np.quantile(off[some], 0.99) < 0.75 * small_cell(field)
+
+
+@pytest.mark.parametrize("parameter", ["time", "arclength"])
+def test_composed_paths_are_those_that_are_integrated(parameter: str) -> None:
+    """On a plane with borders, a hole, a centre, a saddle and nodes at rest."""
+    points, triangles = square(6000)
+    x, y = points.T
+    velocity = np.stack([np.sin(3 * y) + 0.2, np.sin(2 * x + y)], axis=-1)
+    if parameter == "arclength":
+        # By time a path into rest gets slower and slower, and where it ends is due to rounding.
+        velocity[x < -0.8] = 0.0
+    valid = np.hypot(x - 0.5, y + 0.4) > 0.15
+    field = FlowField.from_triangles(points, triangles, velocity, valid=valid)
+    options: dict[str, Any] = {"lags": doubled(field, 9), "unit": 1.0, "parameter": parameter}
+    one, two = (trace(field, compose=compose, **options) for compose in (True, False))
+    cell, lags = field.surface.cell_size[0], one.lags
+    assert one.forward is not None and two.forward is not None
+    assert one.forward_reach is not None and two.forward_reach is not None
+    for a, b, p, q in (
+        (one.displacement, two.displacement, one.reach, two.reach),
+        (one.forward, two.forward, one.forward_reach, two.forward_reach),
+    ):
+        apart = np.linalg.norm(a - b, axis=-1)[0, :, 0] / cell
+        going = (p[0, 0] > lags[:, None]) & (q[0, 0] > lags[:, None])
+        # The first are integrated in both ways.
+        assert not apart[:4].any() and apart[-1].any()
+        assert np.median(apart[-1][going[-1]]) < 0.1
+        assert np.quantile(apart[-1][going[-1]], 0.95) < 0.3
+        same = np.abs(np.minimum(p, lags[-1]) - np.minimum(q, lags[-1]))[0, 0] < cell
+        assert 0.2 < (q < lags[-1]).mean() < 0.9
+        assert same.mean() > 0.95
+
+
+def test_lags_that_do_not_double_are_integrated() -> None:
+    points, triangles = square(300)
+    field = FlowField.from_triangles(points, triangles, spin(points))
+    lags = doubled(field, 9) * [1, 1, 1, 1, 1, 1, 1, 1, 1.1]
+    one, two = (trace(field, lags=lags, unit=1.0, compose=compose) for compose in (True, False))
+    np.testing.assert_array_equal(one.displacement, two.displacement)
 
 
 @property_test(25)

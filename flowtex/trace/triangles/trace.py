@@ -1,34 +1,34 @@
-"""Trace slices on triangles: all paths are integrated, and displacements are in space."""
+"""Trace slices on triangles, whose displacements are in space."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, cast
 
 import numpy as np
 
-from flowtex._util import compiled
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.trace.compose import Map
 from flowtex.trace.integrate import MOST_CELLS, Paths
+from flowtex.trace.lags import small_cell
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.triangle_motion import (
+from flowtex.trace.triangles.compose import DIRECT_STEPS, Composition, known_lags
+from flowtex.trace.triangles.integrate import begin, integrate
+from flowtex.trace.triangles.motion import (
     ChangingMotion,
     Motion,
     SteadyMotion,
     TriangleMesh,
     speed_floor,
 )
-from flowtex.trace.triangles import begin, follow, integrate
 
 __all__ = ["triangle_paths", "triangle_slices"]
 
 #: Particles followed together.
 BLOCK = 16384
-#: Work of a path on triangles, as one on a structured surface: none is composed.
-PATH_WORK = 8
 
 
 def triangle_slices(
@@ -41,46 +41,56 @@ def triangle_slices(
     *,
     two_sided: bool,
     tolerance: float,
-    run: Callable[..., Any],
+    compose: bool,
+    run: Map,
     progress: bool,
 ) -> TraceSlices:
     """Follow the paths through some nodes, ``chosen`` (1, N); others have reach and path 0.
 
     Lags (M,) are in multiples of ``unit`` (1, N), and ``run`` maps a function over blocks.
     """
-    mesh = _mesh(field)
+    mesh, points = _mesh(field), field.points[0]
     at = np.flatnonzero(chosen[0] & (np.diff(mesh.first) > 0))
     sides = (-1.0, 1.0) if two_sided else (-1.0,)
-    compiled.prepare(PATH_WORK * len(at) * len(steps) * len(sides))
+    known = len(lags)
+    if compose and len(steps) == 1:
+        known = _known(field, parameter, lags, unit)
     displacement = np.zeros((len(sides), len(steps), len(lags), *field.points.shape), np.float32)
     reach = np.zeros((len(sides), len(steps), *field.shape), np.float32)
-    points = field.points[0]
     motions = [_motions(field, steps, parameter, side) for side in sides]
+    compositions: list[Composition] = []
+    if known < len(lags):
+        compositions = [
+            Composition(cast("SteadyMotion", motion[0]), points, lags * unit.flat[0], known, moved)
+            for motion, moved in zip(motions, displacement[:, 0, :, 0], strict=True)
+        ]
 
     def work(job: tuple[int, int, slice]) -> None:
         side, step, block = job
         motion, nodes = motions[side][step], at[block]
-        starts = begin(motion, nodes)
-        units = unit[0, nodes]
-        done = follow(motion, points, starts, lags, units, tolerance=tolerance)
-        if done is not None:
-            displacement[side, step, :, 0, nodes] = np.swapaxes(done[0], 0, 1)
-            reach[side, step, 0, nodes] = done[1]
-            return
-        triangle, corner = np.divmod(starts, 3)
+        triangle, corner = np.divmod(begin(motion, nodes), 3)
         shares = np.stack([corner == 1, corner == 2]).astype(float)
-        due = lags[:, None] * units
-        paths = integrate(motion, points, triangle, shares, due, tolerance=tolerance)
+        units = unit[0, nodes]
+        due = lags[:known, None] * units
+        options: dict[str, Any] = {"tolerance": tolerance, "last": float(lags[-1]) * units}
+        if compositions:
+            options["most_steps"] = DIRECT_STEPS
+        paths = integrate(motion, points, triangle, shares, due, **options)
         here = points[nodes]
-        for m in range(len(lags)):
+        for m in range(known):
             moved = paths.positions(mesh, points, m) - here
             displacement[side, step, m, 0, nodes] = np.clip(moved, -MOST_CELLS, MOST_CELLS)
         reach[side, step, 0, nodes] = paths.reach / units
+        if compositions:
+            compositions[side].begin(nodes, paths)
 
     blocks = [slice(first, first + BLOCK) for first in range(0, len(at), BLOCK)]
     jobs = [(a, b, c) for a in range(len(sides)) for b in range(len(steps)) for c in blocks]
     for _ in track(run(work, jobs), len(jobs), "Tracing", show=progress):
         pass
+    for side, composition in enumerate(compositions):
+        composition.complete(at, run)
+        reach[side, 0, 0] = composition.reach / unit[0]
     return TraceSlices(
         lags=lags,
         unit=unit,
@@ -93,6 +103,16 @@ def triangle_slices(
         times=field.times[steps],
         parameter=parameter,
     )
+
+
+def _known(field: FlowField, parameter: str, lags: Floats, unit: Floats) -> int:
+    """How many of the lags are to be integrated, the others being composed."""
+    if not field.steady or field.sign_free or not np.all(unit == unit.flat[0]):
+        return len(lags)
+    speed = field.speed[0][field.valid]
+    moving = speed[speed > 0]
+    pace = float(np.median(moving)) if parameter == "time" and len(moving) else 1.0
+    return known_lags(lags, pace * float(unit.flat[0]) / small_cell(field))
 
 
 def triangle_paths(

@@ -19,22 +19,19 @@ from typing import Self
 
 import numpy as np
 
-from flowtex._util import compiled
-from flowtex._util.array_types import Bools, Floats, Floats32, Indices
-from flowtex.trace.integrate import MOST_CELLS, MOST_STEPS
-from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS
-from flowtex.trace.triangle_motion import (
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.trace.integrate import MOST_STEPS
+from flowtex.trace.triangles.motion import (
     AFTER,
     BEHIND,
     NEXT,
     Derivatives,
     Motion,
-    SteadyMotion,
     TriangleMesh,
     dot,
 )
 
-__all__ = ["TrianglePaths", "begin", "follow", "integrate"]
+__all__ = ["TrianglePaths", "begin", "integrate"]
 
 #: Rounds of steps after which paths are ended, for each of the rows that nodes would make, and at
 #: least: a few that turn in one place must not hold up all others.
@@ -53,8 +50,6 @@ LAG_ROUNDING = 1e-12
 BORDER_ROUNDING = 1e-6
 #: Twice what acceleration may move a particle in one step, in sizes of its triangle.
 MOST_TURN = 0.2
-#: Those of these that :mod:`flowtex._util.compiled.loops` is given as numbers.
-RULES = (SHARE_ROUNDING, EDGE_ROUNDING, BORDER_ROUNDING, MOST_TURN, LAG_ROUNDING, MOST_CELLS)
 #: Rounds of Newton's method for the place in a step where a path has some length.
 NEWTON_ROUNDS = 3
 
@@ -101,57 +96,27 @@ def integrate(
     lags: Floats,
     *,
     tolerance: float,
+    last: Floats | None = None,
+    most_steps: int | None = None,
 ) -> TrianglePaths:
     """Follow particles from shares (2, N) of the corners of triangles (N,), at nodes (N, 3).
 
     Lags (M, N) are positive and increasing for each particle. The tolerance is the error allowed in
-    one step, in sizes of its triangle.
+    one step, in sizes of its triangle. What hardly moves until the ``last`` lag (N,) stands still;
+    by default that is the last of these. Paths are ended after ``most_steps``, by default some that
+    grow with the number of nodes.
     """
-    run = _Run(motion, points, triangle, shares, lags, tolerance)
+    run = _Run(
+        motion, points, triangle, shares, lags, lags[-1] if last is None else last, tolerance
+    )
     # What is too large or too small to be told ends a path.
     with np.errstate(all="ignore"):
-        for _ in range(_most_steps(points)):
+        for _ in range(most_steps or _most_steps(points)):
             if not len(run.state.which):
                 break
             run.advance()
         run.end_all()
     return TrianglePaths(run.triangle, run.shares, run.further, run.ahead, run.reach)
-
-
-def follow(
-    motion: Motion,
-    points: Floats,
-    starts: Indices,
-    lags: Floats,
-    unit: Floats,
-    *,
-    tolerance: float,
-) -> tuple[Floats32, Floats32] | None:
-    """Do the same from corners that :func:`begin` found, compiled, where that is possible.
-
-    Lags (M,) are in multiples of ``unit`` (N,). Returns displacements (M, N, 3) and reaches (N,).
-    """
-    kernels = compiled.kernels()
-    if kernels is None or not isinstance(motion, SteadyMotion):
-        return None
-    mesh = motion.mesh
-    moved = np.zeros((len(lags), len(starts), 3), np.float32)
-    reach = np.zeros(len(starts), np.float32)
-    kernels.follow_triangles(
-        (motion.table, mesh.across, mesh.heights),
-        points,
-        mesh.corners,
-        (tolerance, RESTING_CELLS if motion.by_length else STILL_CELLS, *RULES),
-        (_most_steps(points), MOST_STANDING, NEWTON_ROUNDS),
-        motion.by_length,
-        motion.direction,
-        starts,
-        np.array(lags),
-        unit,
-        moved,
-        reach,
-    )
-    return moved, reach
 
 
 def _most_steps(points: Floats) -> int:
@@ -186,7 +151,10 @@ def begin(motion: Motion, nodes: Indices) -> Indices:
 
 def _three(two: Floats) -> Floats:
     """Return changes of all three shares, (3, N), by those of the second and third."""
-    return np.stack([-(two[0] + two[1]), two[0], two[1]])
+    result = np.empty((3, two.shape[1]))
+    result[1:] = two
+    np.negative(np.add(two[0], two[1], out=result[0]), out=result[0])
+    return result
 
 
 @dataclass
@@ -223,6 +191,7 @@ class _Run:
         triangle: Indices,
         shares: Floats,
         lags: Floats,
+        last: Floats,
         tolerance: float,
     ) -> None:
         self.motion, self.mesh, self.points = motion, motion.mesh, points
@@ -245,7 +214,7 @@ class _Run:
             shares=shares,
             lag=np.zeros(count),
             due=self.lags[0].copy(),
-            last=lags[-1].copy(),
+            last=last.copy(),
         )
 
     def advance(self) -> None:
@@ -267,7 +236,8 @@ class _Run:
             here[:, ended] = state.shares[:, ended]
             now.first[:, resting] = 0.0
         self._record(now, h, lag)
-        state.standing += 1
+        # Three steps in a triangle count as much as a turn about a node of a hundred triangles.
+        state.standing += np.where(edge < 0, 3, 1)
         state.standing[(edge >= 0) & (h * h * square > SHARE_ROUNDING**2)] = 0
         if now.until is not None:
             state.standing[lag == now.until] = 0
