@@ -114,6 +114,11 @@ def test_a_virtual_dataset_of_the_file_itself_is_read(tmp_path: Path) -> None:
             lies.legacy("DATASET POLYDATA\nPOINTS 1float\n1 2 3\nLINES 1 100000000"),
             "has '1float' where a whole number was expected",
         ),
+        (
+            "end.vtk",
+            lies.legacy("DATASET POLYDATA\nPOINTS 1 float", "")[:-2],
+            "points declares 3 numbers, the file has 0 of them",
+        ),
         ("kind.vtk", lies.legacy("DATASET POLYDATA\nPOINTS 1 real"), "the type of points"),
         ("word.vtk", lies.legacy("DATASET POLYDATA\nPINTS 1 float"), "has 'pints' where a keyword"),
         (

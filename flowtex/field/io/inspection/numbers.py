@@ -120,8 +120,9 @@ class TextScanner:
         return count
 
     def _more(self) -> bool:
-        """Read a chunk; drop what was gone over."""
+        """Read a chunk where there is one, and drop what was gone over."""
         room = min(CHUNK_BYTES, self._end - self._stream.tell())
         data = self._stream.read(max(room, 0))
-        self._buffer, self._at = self._buffer[self._at :] + data, 0
+        if data:
+            self._buffer, self._at = self._buffer[self._at :] + data, 0
         return bool(data)
