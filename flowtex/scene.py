@@ -181,13 +181,13 @@ class Scene:
     @appearance.setter
     def appearance(self, value: Appearance) -> None:
         before, self.field = self.field, _with_scalars(self.field, value)
+        same = value.image is None or value.image is self._appearance.image
         try:
             self._check_colours(value)
-        except FieldError:
+            picture = None if same else self._picture(value.image)
+        except BaseException:
             self.field = before
             raise
-        same = value.image is None or value.image is self._appearance.image
-        picture = None if same else self._picture(value.image)
         if before is not self.field and self.pyramid is not None:
             self._pyramid = self._store = self._textures = None
         self._appearance = value

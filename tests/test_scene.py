@@ -86,9 +86,10 @@ def test_only_the_steps_that_are_shown_are_traced() -> None:
 @pytest.mark.parametrize("image", [np.zeros((2, 2, 7)), "missing.png"])
 def test_an_appearance_with_an_image_that_is_refused_changes_nothing(image: object) -> None:
     scene = Scene(field())
-    before, heard = scene.appearance, list[str]()
+    before, shown, heard = scene.appearance, scene.field, list[str]()
     scene.observe(heard.append)
     with pytest.raises(ImageError):
-        scene.appearance = replace(before, color="red", image=image)
+        scene.appearance = replace(before, scalars="vorticity", color="red", image=image)
     assert scene.appearance is before and scene.image is None and heard == []
+    assert scene.field is shown
     assert scene.settings.noise == "procedural"

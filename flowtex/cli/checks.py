@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ __all__ = [
     "drawing",
     "require_app",
     "require_opengl",
+    "writing",
 ]
 
 
@@ -106,3 +108,13 @@ def require_app() -> None:
             f"  {install_extra('app')}"
         )
         raise UsageError(msg)
+
+
+@contextmanager
+def writing(output: object) -> Iterator[None]:
+    """Turn what the disk refuses into an error that names the file."""
+    try:
+        yield
+    except OSError as error:
+        msg = f"{output}: cannot be written ({error.strerror or error})"
+        raise UsageError(msg) from error

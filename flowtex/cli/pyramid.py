@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from cyclopts import Parameter
 
 from flowtex._util.progress import waiting
+from flowtex.cli.checks import writing
 from flowtex.cli.console import complain, say
 from flowtex.cli.load import notices
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
@@ -66,14 +67,15 @@ def pyramid(
     with waiting(f"Reading {files[0].name}"), notices():
         whole: Any = files[0] if len(files) == 1 else files
         source = source_of(whole, **arguments(flow))
-    built = build(
-        source,
-        output,
-        lines=lines,
-        scheduler=scheduler,
-        memory=memory,
-        fresh=fresh,
-    )
+    with writing(output):
+        built = build(
+            source,
+            output,
+            lines=lines,
+            scheduler=scheduler,
+            memory=memory,
+            fresh=fresh,
+        )
     kept = f", {built.kept:,} were there" if built.kept else ""
     rows, columns = source.shape
     say(

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -19,6 +18,7 @@ from flowtex.cli.checks import (
     check_picture_file,
     drawing,
     require_opengl,
+    writing,
 )
 from flowtex.cli.console import describe, say
 from flowtex.cli.load import load_field
@@ -71,7 +71,7 @@ def render(
     from flowtex import render as draw
 
     picture = draw(field, **shown, **options)
-    with _writing(output), whole_file(output) as file:
+    with writing(output), whole_file(output) as file:
         Image.fromarray(picture).save(file, Image.EXTENSION[output.suffix.lower()])
     lost = (
         f", {field.normal_share:.0%} of the flow leaves the surface"
@@ -117,7 +117,7 @@ def movie(
     require_opengl()
     from flowtex import movie as write_movie
 
-    with _writing(output):
+    with writing(output):
         result = write_movie(field, output, seconds=seconds, fps=fps, quality=quality, **options)
     loop = ", a loop without a seam" if result.closed else ""
     figures = (
@@ -165,7 +165,7 @@ def export(
         some = "" if count == len(field.times) else f", {count} of them"
         say(f"{describe(field)}{some}: about {size / 1e6:.1f} MB")
 
-    with _writing(output):
+    with writing(output):
         page = write_page(
             field, output, steps=steps, title=title, store=store, announce=announce, **options
         )
@@ -181,13 +181,3 @@ def _drawing(look: LookFlags | None, frame: FrameFlags, settings: Any) -> dict[s
 def _size(options: Mapping[str, Any]) -> str:
     width, height = options["size"]
     return f"{width} × {height}"
-
-
-@contextmanager
-def _writing(output: Path) -> Iterator[None]:
-    """Turn what the disk refuses into an error that names the file."""
-    try:
-        yield
-    except OSError as error:
-        msg = f"{output}: cannot be written ({error.strerror or error})"
-        raise UsageError(msg) from error

@@ -36,6 +36,7 @@ from flowtex.pyramid.places import (
     DamageError,
     PyramidError,
     check_room,
+    is_store,
     place_text,
     plain_faults,
     store_at,
@@ -264,7 +265,7 @@ def _prepared(
     store = store_at(place, read_only=False)
     if fresh:
         _remove(store)
-    there = zarr.open_group(store, mode="a").attrs.get("flowtex")
+    there = zarr.open_group(store, mode="r").attrs["flowtex"] if is_store(place) else None
     if there is None:
         about = {**about, "ranges": source.ranges or {}}
     else:

@@ -232,7 +232,7 @@ def check_room(place: str, names: Iterable[str]) -> None:
     if not is_remote(place) and Path(place).is_file():
         msg = f"{place} is a file; expected a new folder, an empty one, or a store of flowtex"
         raise PyramidError(msg)
-    others = sorted({*names} - {LEASE, DOCUMENT})
+    others = sorted({*names} - {LEASE})
     if others and not is_store(place):
         some = ", ".join(others[:MOST_NAMES]) + (", …" if len(others) > MOST_NAMES else "")
         msg = (

@@ -140,6 +140,13 @@ class TileLoader:
         ready = tile is not None and all(step in tile.layers for step in steps)
         return tile if ready else None
 
+    def has_failed(self, key: TileKey) -> bool:
+        """Whether a tile failed of late; the error of one that failed before is dropped."""
+        if self._failed.get(key, np.inf) < self._clock() - RETRY_S:
+            self._failed.pop(key, None)
+            self.errors.pop(key, None)
+        return key in self.errors
+
     def request(self, keys: Sequence[TileKey], steps: Sequence[int]) -> None:
         """Ask for tiles in this order, and give up those that nobody has asked for lately.
 
@@ -147,10 +154,6 @@ class TileLoader:
         """
         self._asked = self._clock()
         with self._lock:
-            for key in keys:
-                if self._failed.get(key, np.inf) < self._asked - RETRY_S:
-                    del self._failed[key]
-                    self.errors.pop(key, None)
             # What has not begun waits behind what is asked for now.
             later = [job for job, future in self._running.items() if future.cancel()]
             for job in later:
@@ -161,7 +164,7 @@ class TileLoader:
                 for step in steps:
                     job = (key, step)
                     made = tile is not None and step in tile.layers
-                    if made or job in self._running or key in self.errors:
+                    if made or job in self._running or self.has_failed(key):
                         continue
                     self._submit(job)
             for job in later:

@@ -73,7 +73,7 @@ class TileFeed:
             self._wanted = [
                 job
                 for job in product(keys, steps)
-                if self._sent.get(job, 0) <= seen and job[0] not in loader.errors
+                if self._sent.get(job, 0) <= seen and not loader.has_failed(job[0])
             ]
             loader.request(keys, [scene.source(step) for step in steps])
         self._worker.do(self._send_ready, urgency=1)

@@ -112,6 +112,13 @@ def legacy(declared: str, values: str = "1 2 3") -> bytes:
     return f"# vtk DataFile Version 3.0\ntitle\nASCII\n{declared}\n{values}\n".encode()
 
 
+def crashing() -> bytes:
+    """Return a legacy file by which VTK reads outside of its memory: a cell has 10^9 points."""
+    points = "POINTS 3 float\n0 0 0 1 0 0 0 1 0"
+    cells = "1000000000 0 1 2\nCELL_TYPES 1\n5"
+    return legacy(f"DATASET UNSTRUCTURED_GRID\n{points}\nCELLS 1 4", cells)
+
+
 def winds(columns: int, rows: int, values: int = 4) -> bytes:
     """Return winds as JSON that declare a grid and have few values."""
     header = {"nx": columns, "ny": rows, "lo1": 0, "la1": 0, "dx": 1, "dy": 1}

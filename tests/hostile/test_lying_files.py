@@ -13,7 +13,7 @@ import pyvista as pv
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.field.io.inspection import limits
+from flowtex.field.io.inspection import files, limits
 from flowtex.field.io.inspection.files import inspect_file
 
 
@@ -96,6 +96,41 @@ def test_a_virtual_dataset_of_the_file_itself_is_read(tmp_path: Path) -> None:
             b"ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list\nend_header\n",
             "its header has b'property list",
         ),
+        ("spaces.vtu", b"\n" * 300 + lies.vtu(10**12)[21:], "3,000,000,000,000 values"),
+        (
+            "piece.vtu",
+            lies.vtu(10**8).replace(b"><Points", b"><Piece NumberOfPoints='3'/><Points"),
+            "300,000,000 values",
+        ),
+        ("wide.vti", lies.image("0 9 0 9 0 9").decode().encode("utf-16-be"), "in UTF-16"),
+        ("prefix.vtk", lies.legacy("DATASETS POLYDATA\nPOINTS_ 100000000 float"), "300,000,000"),
+        (
+            "axis.vtk",
+            lies.legacy("DATASET RECTILINEAR_GRID\nX_COORDINATE 100000000 float"),
+            "100,000,000 numbers",
+        ),
+        (
+            "joined.vtk",
+            lies.legacy("DATASET POLYDATA\nPOINTS 1float\n1 2 3\nLINES 1 100000000"),
+            "has '1float' where a whole number was expected",
+        ),
+        (
+            "end.vtk",
+            lies.legacy("DATASET POLYDATA\nPOINTS 1 float", "")[:-2],
+            "points declares 3 numbers, the file has 0 of them",
+        ),
+        ("kind.vtk", lies.legacy("DATASET POLYDATA\nPOINTS 1 real"), "the type of points"),
+        ("word.vtk", lies.legacy("DATASET POLYDATA\nPINTS 1 float"), "has 'pints' where a keyword"),
+        (
+            "head.vtk",
+            lies.legacy("DATASET POLYDATA\nPOINTS 1 float").replace(b"Version", b"Versioo"),
+            "where the version of a legacy file of VTK was expected",
+        ),
+        (
+            "blank.ply",
+            b"ply \nformat ascii 1.0\nelement vertex 100000000\nproperty float x\nend_header\n",
+            "element vertex declares 100,000,000 of them",
+        ),
         ("laughs.vtu", b'<!DOCTYPE x [<!ENTITY a "b">]><VTKFile/>', "the XML entity a"),
     ],
 )
@@ -147,17 +182,15 @@ def test_a_member_of_a_series_is_looked_into(tmp_path: Path) -> None:
 
 
 def test_a_file_is_looked_into_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from flowtex.field.io.inspection import vtk_legacy
-
     looks = 0
-    check = vtk_legacy.check_vtk_legacy
+    check = files.BY_SUFFIX[".vtk"]
 
     def counted(path: Path) -> None:
         nonlocal looks
         looks += 1
         check(path)
 
-    monkeypatch.setattr(vtk_legacy, "check_vtk_legacy", counted)
+    monkeypatch.setitem(files.BY_SUFFIX, ".vtk", counted)
     path = tmp_path / "mesh.vtk"
     pv.ImageData(dimensions=(3, 3, 1)).save(path)
     inspect_file(path)

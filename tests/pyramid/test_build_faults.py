@@ -17,7 +17,7 @@ import pytest
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.field.steps import LazySteps
-from flowtex.pyramid import PyramidError, build, open_store, tasks
+from flowtex.pyramid import PyramidError, build, open_store, tasks, verify
 from flowtex.pyramid.build import MOST_FAILURES
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.workers import MOST_TRIALS, Threads
@@ -89,8 +89,35 @@ def test_a_build_writes_into_no_folder_of_other_data(tmp_path: Path) -> None:
     (tmp_path / "file.zarr").touch()
     with pytest.raises(PyramidError, match=r"file.zarr is a file; expected a new folder"):
         build(series(), tmp_path / "file.zarr", progress=False)
+    for text in ("notes", '{"zarr_format": 3, "node_type": "group", "attributes": {"of": "me"}}'):
+        (tmp_path / "group").mkdir(exist_ok=True)
+        (tmp_path / "group/zarr.json").write_text(text)
+        for fresh in (False, True):
+            with pytest.raises(PyramidError, match=r"group holds other data \(zarr.json\)"):
+                build(series(), tmp_path / "group", progress=False, fresh=fresh)
+        assert (tmp_path / "group/zarr.json").read_text() == text
     (tmp_path / "empty").mkdir()
     build(series(), tmp_path / "empty", progress=False)
+
+
+def test_a_full_disk_is_told_and_a_build_goes_on_later(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = zarr.storage.LocalStore.set
+
+    async def full(store: Any, key: str, value: Any) -> None:
+        raise OSError(28, "No space left on device", str(tmp_path / key))
+
+    async def full_for_shards(store: Any, key: str, value: Any) -> None:
+        await (full if "/c/" in key else write)(store, key, value)
+
+    for refused in (full, full_for_shards):
+        monkeypatch.setattr(zarr.storage.LocalStore, "set", refused)
+        with pytest.raises((OSError, PyramidError), match="No space left on device"):
+            build(series(), tmp_path / "a.zarr", progress=False)
+    monkeypatch.setattr(zarr.storage.LocalStore, "set", write)
+    build(series(), tmp_path / "a.zarr", progress=False)
+    assert verify(tmp_path / "a.zarr", progress=False) == []
 
 
 def test_fresh_leaves_what_is_no_part_of_the_store(tmp_path: Path) -> None:

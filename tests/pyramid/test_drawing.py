@@ -17,7 +17,7 @@ from flowtex.pyramid import build
 from flowtex.scene import Scene, share_field
 from flowtex.tiles import has_pyramid
 
-pytest.importorskip("zarr")
+zarr = pytest.importorskip("zarr")
 
 VIEW: dict[str, Any] = {"size": (200, 120), "focus": (3.2, 1.4), "samples": 9}
 
@@ -115,6 +115,20 @@ def test_the_shell_builds_tells_and_draws(
     assert (tmp_path / "a.png").exists()
     assert main(["render", str(store), "-o", str(tmp_path / "b.png"), "--plane", "k=0"]) == 2
     assert "--plane is for what a pyramid is built from" in capsys.readouterr().err
+
+
+def test_the_shell_says_what_the_disk_refuses(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    async def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    flowtex.examples.double_gyre().save(tmp_path / "flow.vts")
+    monkeypatch.setattr(zarr.storage.LocalStore, "set", full)
+    command = ["pyramid", str(tmp_path / "flow.vts"), "-o", str(tmp_path / "flow.zarr")]
+    assert main(command) == 2
+    told = capsys.readouterr().err
+    assert "flow.zarr: cannot be written (No space left on device)" in told.replace("\n", " ")
 
 
 def test_the_shell_shows_a_store_on_a_page(

@@ -53,6 +53,18 @@ def test_a_lease_is_held_by_one(place: str, clock: Clock) -> None:
         second.check()
 
 
+def test_of_two_who_found_none_one_holds_it(
+    place: str, clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    late = Lease(place, clock)
+    read, found = late._read, [dict[str, Any]()]
+    monkeypatch.setattr(late, "_read", lambda: found.pop() if found else read())
+    with Lease(place, clock) as first:
+        with pytest.raises(PyramidError, match="is being built"):
+            late.__enter__()
+        first.check()
+
+
 def test_a_lease_that_is_renewed_is_not_stale(place: str, clock: Clock) -> None:
     with Lease(place, clock) as first:
         clock.now += STALE_S - 1

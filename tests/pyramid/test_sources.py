@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import weakref
 from pathlib import Path
 from typing import Any
@@ -187,6 +188,24 @@ def test_a_file_is_known_by_path_size_and_time_of_change(tmp_path: Path, reads: 
     assert build(file, store, **more, fresh=True).made == made
     assert verify(store, progress=False) == []
     assert build(file, store, **more).made == 0
+
+
+def test_each_of_path_size_and_time_of_change_tells(tmp_path: Path) -> None:
+    file, other = tmp_path / "flow.nc", tmp_path / "other.nc"
+    small().to_netcdf(file)
+    source = source_of(file)
+    assert isinstance(source, RegionSource)
+    known = [source.identity()]
+    shutil.copy2(file, other)
+    source.files = [other]
+    known.append(source.identity())
+    time = other.stat().st_mtime_ns
+    other.write_bytes(file.read_bytes() + b"0")
+    os.utime(other, ns=(time, time))
+    known.append(source.identity())
+    os.utime(other, ns=(time, time + 1))
+    known.append(source.identity())
+    assert len(set(known)) == 4
 
 
 @pytest.mark.parametrize("kind", ["dataset", "field"])

@@ -85,9 +85,10 @@ def test_a_full_disk_leaves_the_old_file_alone(
     monkeypatch.setattr("flowtex._util.whole_file.io.FileIO", Disk)
     for share in (0.0, 0.5, 0.999):
         Disk.free = int(share * size)
-        with pytest.raises(OSError, match=os.strerror(errno.ENOSPC)):
+        with pytest.raises(OSError, match=os.strerror(errno.ENOSPC)) as held:
             WRITERS[name](path)
         assert list(tmp_path.iterdir()) == [path] and path.read_bytes() == OLD
+        assert held.value.__traceback__, "its frames hold what was being written"
 
 
 LIMITED = """

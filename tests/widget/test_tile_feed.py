@@ -161,6 +161,11 @@ def test_errors_are_told_once(make: Callable[..., Client], monkeypatch: pytest.M
     client.ask((1, 0, 1), (1, 0, 0))
     client.wait(lambda: client.seen > 0)
     assert client.errors == ["OSError: the disk is gone"]
+    assert "tile/1/0/1/header" not in client.arrays
+    # Some seconds later the disk is there again.
+    monkeypatch.setattr("flowtex.tiles.loader.RETRY_S", -1.0)
+    client.ask((1, 0, 1))
+    client.wait(lambda: "tile/1/0/1/header" in client.arrays)
 
 
 def test_tiles_are_not_taken_for_time_steps(make: Callable[..., Client]) -> None:

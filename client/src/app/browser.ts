@@ -55,7 +55,7 @@ class BrowserView {
       this.parts(`${this.props.source.tiles}${[...key, ...steps].join(".")}`, signal),
     (part) => this.viewer?.setPart(part),
     MOST_TILES,
-    // A coarser one is in its place; nobody asks for it again at these steps.
+    // A coarser one is in its place, until it is asked for again.
     (key, _, steps) => this.viewer?.lack("A part of the surface is shown coarse.", nameOf(key), steps),
   );
   private readonly watcher = new MutationObserver(() => this.look());

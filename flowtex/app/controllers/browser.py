@@ -205,13 +205,13 @@ class BrowserRendering(Controller):
 
         async def content() -> Content:
             while (tile := loader.get(key, sources)) is None:
+                if loader is not self._loader:
+                    return parts_file({}), "application/octet-stream", None
+                # Asked for again, as tiles are given up that nobody asks for, and after a failure.
+                loader.request([key], sources)
                 if (error := loader.errors.get(key)) is not None:
                     self._tell(key, error)
                     raise FileNotFoundError(name)
-                if loader is not self._loader:
-                    return parts_file({}), "application/octet-stream", None
-                # Asked for again, as tiles are given up that nobody asks for.
-                loader.request([key], sources)
                 await asyncio.sleep(TILE_WAIT_S)
             run = asyncio.get_running_loop().run_in_executor
             body = await run(None, lambda: parts_file(packed_tile(scene, tile, steps)))

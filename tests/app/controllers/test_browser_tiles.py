@@ -15,6 +15,7 @@ from aiohttp import web
 import flowtex
 from flowtex.app import FlowApp
 from flowtex.rendering.webgl.protocol import file_infos
+from flowtex.tiles import Pyramid
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -55,6 +56,15 @@ def test_a_tile_is_made_when_it_is_asked_for(
             asyncio.run(ask("0.5.5.0"))
     (record,) = caplog.records
     assert "there is no tile (0, 5, 5)" in record.getMessage()
+    with monkeypatch.context() as patch:
+        patch.setattr(Pyramid, "textures", None)
+        with pytest.raises(web.HTTPNotFound):
+            asyncio.run(ask("0.0.0.0"))
+    # What was wrong was the network, which is there again some seconds later.
+    with pytest.raises(web.HTTPNotFound):
+        asyncio.run(ask("0.0.0.0"))
+    monkeypatch.setattr("flowtex.tiles.loader.RETRY_S", -1.0)
+    assert "tile/0/0/0/scalars/0" in asyncio.run(ask("0.0.0.0"))
     app.controllers.browser.leave()
     with pytest.raises(web.HTTPNotFound):
         asyncio.run(ask("0.0.1.0"))

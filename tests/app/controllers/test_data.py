@@ -14,8 +14,8 @@ import pytest
 pytest.importorskip("trame_rca")
 
 import xarray as xr
-from cfd_files import box, write_ensight
 from earth_data import winds
+from lying_files import crashing
 from small_pages import played
 from waiting import until
 
@@ -79,18 +79,16 @@ def test_a_file_is_read_again_when_the_page_asks_for_it(tmp_path: Path) -> None:
 
 def test_a_file_that_crashes_its_reader_is_a_problem_of_one_page(tmp_path: Path) -> None:
     examples.double_gyre(0.0).save(tmp_path / "flow.vts")
-    write_ensight(tmp_path / "torn.case", [("tip", box(4, 3, 2)), ("body", box(6, 5, 4, 3.0))])
-    geometry = tmp_path / "torn.geo"
-    geometry.write_bytes(geometry.read_bytes()[:343])
+    (tmp_path / "torn.vtk").write_bytes(crashing())
     library = Library.of(tmp_path)
     app = FlowApp(library, samples=5)
     app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})
 
     async def story() -> None:
         shown = app.field
-        app.state.send(file="torn.case")
+        app.state.send(file="torn.vtk")
         await until(lambda: app.state.get("problem") != "")
-        assert app.state.get("problem").startswith("torn.case: ")
+        assert app.state.get("problem").startswith("torn.vtk: the reader of this file crashed")
         assert app.field is shown and app.state.get("file") == "flow.vts"
         assert library.source("flow.vts").alive
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -161,6 +162,23 @@ def test_a_member_or_a_file_beside_that_changes_is_read_anew(folder: Path) -> No
         hull = library.field("hull.stl", Choice()) if "hull.stl" in library.names else None
         assert hull is not None
         assert np.linalg.norm(hull.velocity, axis=-1).max() == pytest.approx(turn / 2, rel=0.02)
+
+
+def test_a_state_is_path_size_time_of_change_and_number(tmp_path: Path) -> None:
+    path, other = tmp_path / "flow.vts", tmp_path / "other.vts"
+    path.write_text("1")
+    first = path.stat()
+    states = [file_identity([path])]
+    for content, time in (("1", first.st_mtime_ns + 1), ("12", first.st_mtime_ns)):
+        path.write_text(content)
+        os.utime(path, ns=(time, time))
+        states.append(file_identity([path]))
+    other.write_text("1")
+    os.utime(other, ns=(first.st_mtime_ns, first.st_mtime_ns))
+    states.append(file_identity([other]))
+    other.replace(path)
+    states.append(file_identity([path]))
+    assert len(set(states)) == 5
 
 
 def test_the_state_of_a_case_is_that_of_all_its_files(tmp_path: Path) -> None:

@@ -476,6 +476,14 @@ def test_what_cannot_be_served_is_told() -> None:
     assert usual_limit() >= 2
 
 
+@pytest.mark.parametrize(("free", "pages"), [(0, 2), (1_000_000_000, 4)])
+def test_pages_are_as_many_as_memory_has_room_for(
+    monkeypatch: pytest.MonkeyPatch, free: int, pages: int
+) -> None:
+    monkeypatch.setattr("flowtex.app.server.sessions.available_bytes", lambda: free)
+    assert usual_limit() == pages
+
+
 def zoom(page: Page) -> Any:
     before = count(page)
     page.mouse.move(150, 220)

@@ -1,4 +1,4 @@
-"""One look into a file before any reader opens it, by its content and not by its name."""
+"""One look into a file before any reader opens it, by its content and by its name."""
 
 from __future__ import annotations
 
@@ -20,11 +20,13 @@ HEAD_BYTES = 256
 GRIB_SUFFIXES = (".grib", ".grb")
 #: Files of a series or of several blocks that are looked into, at most.
 MOST_MEMBERS = 100_000
-#: Texts that say nothing of what they are.
+#: What is checked whatever the file begins with, as its reader is chosen by the suffix.
 BY_SUFFIX: dict[str, Callable[[Path], None]] = {
     ".case": check_ensight,
     ".obj": check_obj,
+    ".ply": check_ply,
     ".stl": check_stl,
+    ".vtk": vtk_legacy.check_vtk_legacy,
 }
 
 
@@ -78,15 +80,12 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
         hdf5.check_hdf5(path, whole=whole)
     if head.startswith(netcdf.MAGICS):
         netcdf.check_netcdf(path, whole=whole)
-    if head.startswith(vtk_legacy.MAGIC):
-        vtk_legacy.check_vtk_legacy(path)
     if head.startswith(grib.MAGIC) or suffix.startswith(GRIB_SUFFIXES):
         grib.check_grib(path)
-    if head.startswith((b"ply\n", b"ply\r")):
-        check_ply(path)
     if suffix in BY_SUFFIX:
         BY_SUFFIX[suffix](path)
-    return tuple(vtk_xml.check_vtk_xml(path)) if vtk_xml.is_xml(head) else ()
+    is_xml = suffix in vtk_xml.SUFFIXES or vtk_xml.is_xml(head)
+    return tuple(vtk_xml.check_vtk_xml(path)) if is_xml else ()
 
 
 def _hdf5_starts(size: int) -> Iterator[int]:

@@ -12,7 +12,9 @@ __all__ = ["TextScanner"]
 CHUNK_BYTES = 1 << 20
 #: Longest word that VTK reads at once.
 WORD_LENGTH = 255
-_WORD = re.compile(rb"[^\x00-\x20]{1,%d}" % WORD_LENGTH)
+_WORD = re.compile(rb"\S{1,%d}" % WORD_LENGTH)
+_BLANK = np.zeros(256, dtype=bool)
+_BLANK[list(b" \t\n\v\f\r")] = True
 _OF_NUMBERS = np.zeros(256, dtype=bool)
 _OF_NUMBERS[list(b"0123456789+-.eEdDnNaAiIfFtTyY")] = True
 
@@ -92,7 +94,7 @@ class TextScanner:
             if self._at == len(self._buffer) and not self._more():
                 break
             part = np.frombuffer(self._buffer, np.uint8, offset=self._at)
-            blank = part <= 32
+            blank = _BLANK[part]
             stop = len(part)
             if not blank[-1] and self._stream.tell() < self._end:
                 # The last word may go on in the next chunk.
@@ -118,8 +120,9 @@ class TextScanner:
         return count
 
     def _more(self) -> bool:
-        """Read a chunk; drop what was gone over."""
+        """Read a chunk where there is one, and drop what was gone over."""
         room = min(CHUNK_BYTES, self._end - self._stream.tell())
         data = self._stream.read(max(room, 0))
-        self._buffer, self._at = self._buffer[self._at :] + data, 0
+        if data:
+            self._buffer, self._at = self._buffer[self._at :] + data, 0
         return bool(data)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
+from typing import NoReturn
 
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
@@ -44,6 +45,14 @@ COMPONENTS = {
     b"edge_flags": 1,
 }
 CELLS = (b"cells", b"vertices", b"lines", b"polygons", b"triangle_strips")
+COORDINATES = (b"x_coordinate", b"y_coordinate", b"z_coordinate")
+#: Keywords; VTK tells them by how they begin, as types.
+KEYWORDS = (
+    *(*COMPONENTS, *CELLS, *COORDINATES, b"dataset", b"dimensions", b"extent", b"spacing"),
+    *(b"origin", b"aspect_ratio", b"points", b"blanking", b"cell_types", b"point_data"),
+    *(b"cell_data", b"scalars", b"color_scalars", b"texture_coordinates", b"lookup_table"),
+    *(b"field", b"metadata"),
+)
 
 
 def check_vtk_legacy(path: Path) -> None:
@@ -59,10 +68,7 @@ def check_vtk_legacy(path: Path) -> None:
 
 
 class _Legacy:
-    """Goes through a file as VTK's reader does.
-
-    Where a word is met that the format has not, VTK's reader ends as well, with an error.
-    """
+    """Goes through a file as VTK's reader does, and refuses what it cannot follow."""
 
     def __init__(self, text: TextScanner) -> None:
         self._text = text
@@ -74,65 +80,66 @@ class _Legacy:
         self._total = 0
 
     def check(self) -> None:
-        version = (self._text.line() or b"").removeprefix(MAGIC).split(b".")[0].strip()
-        self._version = int(version) if version.isdigit() else 0
+        head = (self._text.line() or b"").removeprefix(MAGIC)
+        version = re.fullmatch(rb"\s*(\d+)\.\d+\s*", head)
+        if version is None:
+            _refuse(head, "the version of a legacy file of VTK")
+        self._version = int(version[1])
         self._text.line()  # the title
         self._binary = self._text.word().lower().startswith(b"binary")
-        while (word := self._text.word().lower()) and self._section(word):
-            pass
+        while word := self._text.word().lower():
+            keyword = next((known for known in KEYWORDS if word.startswith(known)), None)
+            if keyword is None:
+                _refuse(word, "a keyword")
+            self._section(keyword)
         check_memory(self._total, "the file")
 
-    def _section(self, word: bytes) -> bool:
-        """Check what a keyword declares; return whether it is known."""
-        attribute = next((name for name in COMPONENTS if word.startswith(name)), None)
-        if word in CELLS:
-            self._cells(word)
-        elif attribute is not None:
-            name = self._text.word()
-            self._array(
-                attribute + b" " + name, self._text.word(), self._tuples, COMPONENTS[attribute]
-            )
-        elif word.startswith((b"point_data", b"cell_data")):
-            self._tuples = self._count(word)
-        elif word.startswith((b"scalars", b"color_scalars", b"texture_coordinates")):
-            self._scalars(word)
-        elif word.startswith(b"lookup_table"):
-            name = self._text.word()
-            kind = b"unsigned_char" if self._binary else b"float"
-            self._array(b"LOOKUP_TABLE " + name, kind, self._count(word), 4)
-        elif word.startswith(b"field"):
-            self._text.word()
-            for _ in range(self._count(word)):
-                if not self._field_array():
-                    break
-        elif word.startswith(b"metadata"):
-            self._metadata(0)
-        else:
-            return self._geometry(word)
-        return True
+    def _section(self, keyword: bytes) -> None:
+        """Check what a keyword declares."""
+        match keyword:
+            case _ if keyword in CELLS:
+                self._cells(keyword)
+            case _ if keyword in COMPONENTS:
+                what = keyword + b" " + self._text.word()
+                self._array(what, self._text.word(), self._tuples, COMPONENTS[keyword])
+            case b"point_data" | b"cell_data":
+                self._tuples = self._count(keyword)
+            case b"scalars" | b"color_scalars" | b"texture_coordinates":
+                self._scalars(keyword)
+            case b"lookup_table":
+                what = keyword + b" " + self._text.word()
+                kind = b"unsigned_char" if self._binary else b"float"
+                self._array(what, kind, self._count(keyword), 4)
+            case b"field":
+                self._text.word()
+                for _ in range(self._count(keyword)):
+                    self._field_array()
+            case b"metadata":
+                self._metadata(0)
+            case _:
+                self._geometry(keyword)
 
-    def _geometry(self, word: bytes) -> bool:
-        if word == b"dataset":
-            self._text.word()
-        elif word in (b"dimensions", b"extent"):
-            ends = [self._number() for _ in range(3 if word == b"dimensions" else 6)]
-            sides = (
-                ends
-                if len(ends) == 3
-                else [b - a + 1 for a, b in zip(ends[::2], ends[1::2], strict=True)]
-            )
-            # PyVista makes points of grids that have none.
-            check_memory(24 * math.prod(max(n, 0) for n in sides), "the grid")
-        elif word in (b"spacing", b"origin", b"aspect_ratio"):
-            self._text.numbers(3)
-        elif word in (b"points", b"x_coordinates", b"y_coordinates", b"z_coordinates", b"blanking"):
-            count = self._count(word)
-            self._array(word, self._text.word(), count, 3 if word == b"points" else 1)
-        elif word == b"cell_types":
-            self._array(word, b"int", self._count(word), 1)
-        else:
-            return False
-        return True
+    def _geometry(self, keyword: bytes) -> None:
+        match keyword:
+            case b"dataset":
+                self._text.word()
+            case b"dimensions" | b"extent":
+                ends = [self._number() for _ in range(3 if keyword == b"dimensions" else 6)]
+                sides = (
+                    ends
+                    if len(ends) == 3
+                    else [b - a + 1 for a, b in zip(ends[::2], ends[1::2], strict=True)]
+                )
+                # PyVista makes points of grids that have none.
+                check_memory(24 * math.prod(max(n, 0) for n in sides), "the grid")
+            case b"spacing" | b"origin" | b"aspect_ratio":
+                self._text.numbers(3)
+            case b"cell_types":
+                self._array(keyword, b"int", self._count(keyword), 1)
+            case _:
+                count = self._count(keyword)
+                components = 3 if keyword == b"points" else 1
+                self._array(keyword, self._text.word(), count, components)
 
     def _cells(self, word: bytes) -> None:
         first, second = self._count(word), self._count(word)
@@ -160,15 +167,13 @@ class _Legacy:
             self._text.word()  # the table's name
             self._array(what, kind, self._tuples, components)
 
-    def _field_array(self) -> bool:
-        """Check an array of a field; return whether there is one."""
+    def _field_array(self) -> None:
         name = self._text.word()
         if name == b"NULL_ARRAY":
-            return True
+            return
         check_count(int(bool(name)), 1, "FIELD", "arrays more")
         components, tuples = self._count(name), self._count(name)
         self._array(b"FIELD " + name, self._text.word(), tuples, components)
-        return True
 
     def _array(self, name: bytes, kind: bytes, tuples: int, components: int) -> None:
         """Go over the values of an array, and refuse one that has fewer than it declares."""
@@ -181,7 +186,7 @@ class _Legacy:
         else:
             sizes = next((size for start, size in TYPES.items() if kind.startswith(start)), None)
             if sizes is None:
-                return
+                _refuse(kind, f"the type of {what}")
             self._total += sizes[1] * values
             self._values(values, sizes[0] * values, what)
         self._metadata_after(components)
@@ -224,9 +229,10 @@ class _Legacy:
                     self._text.line()
 
     def _number(self) -> int:
-        """Return a whole number, as VTK reads it: 0 where there is none, which ends its reading."""
-        match = re.match(rb"[+-]?\d{1,20}", self._text.word())
-        return int(match.group()) if match else 0
+        word = self._text.word()
+        if not re.fullmatch(rb"[+-]?\d{1,20}", word):
+            _refuse(word, "a whole number")
+        return int(word)
 
     def _count(self, what: bytes) -> int:
         count = self._number()
@@ -234,3 +240,13 @@ class _Legacy:
             msg = f"the file is broken: {what.decode()} declares {count}; write or copy it again"
             raise FieldError(msg)
         return count
+
+
+def _refuse(word: bytes, expected: str) -> NoReturn:
+    text = word[:40].decode(errors="replace")
+    fault = f"has {text!r}" if word else "ends"
+    msg = (
+        f"the file is cut short or broken: it {fault} where {expected} was expected; write or copy "
+        "it again"
+    )
+    raise FieldError(msg)

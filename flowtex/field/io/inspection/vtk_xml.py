@@ -21,8 +21,13 @@ from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 from flowtex.field.io.inspection.numbers import TextScanner
 
-__all__ = ["check_vtk_xml", "is_xml"]
+__all__ = ["SUFFIXES", "check_vtk_xml", "is_xml"]
 
+#: Endings of files of one mesh, of its pieces, of blocks and of series.
+SUFFIXES = (
+    *(".vti", ".vtp", ".vtr", ".vts", ".vtu", ".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu"),
+    *(".vtm", ".vtmb", ".pvd", ".vtpd"),
+)
 CHUNK_BYTES = 1 << 20
 _TAG = re.compile(rb"""<(?:[^>"']|"[^"]*"|'[^']*')*>""")
 _BITS = re.compile(r"(?:U?Int|Float)(8|16|32|64)")
@@ -33,7 +38,7 @@ CELLS |= {"Strips": "NumberOfStrips", "Polys": "NumberOfPolys", "Cells": "Number
 
 def is_xml(head: bytes) -> bool:
     """Whether a file that begins so may be XML."""
-    return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith((b"<", b"\xff\xfe", b"\xfe\xff"))
+    return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
 
 
 def check_vtk_xml(path: Path) -> list[Path]:
@@ -50,6 +55,10 @@ def check_vtk_xml(path: Path) -> list[Path]:
         With what is missing.
     """
     with path.open("rb") as stream:
+        if b"\0" in stream.read(4):
+            msg = "the file is in UTF-16, in which VTK writes none; convert it to UTF-8"
+            raise FieldError(msg)
+        stream.seek(0)
         document = _Document()
         document.parse(stream)
         contents = _Contents(stream, path.stat().st_size, document)
@@ -146,7 +155,7 @@ class _Document:
             self.members += filter(None, (attributes.get("file"), attributes.get("Source")))
         elif "WholeExtent" in attributes:
             self._whole = math.prod(_sides(attributes["WholeExtent"]))
-        elif tag == "Piece":
+        elif tag == "Piece" and len(self._path) == 3:  # VTK reads those of the grid alone
             self._piece, self._pieces = attributes, self._pieces + 1
             self._points += self._tuples("PointData") or 0
         elif tag in ("Coordinates", "Points"):
