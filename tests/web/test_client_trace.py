@@ -87,7 +87,38 @@ def waves() -> FlowField:
     return FlowField.from_arrays(np.stack([x, y, z], -1), np.stack([u, v, slope], -1))
 
 
+def globe(axis: tuple[float, float, float], *, turned: bool = False) -> FlowField:
+    """A globe that turns around an axis, by parallels or, ``turned``, by meridians."""
+    longitude, latitude = np.meshgrid(np.linspace(0, 360, 91), np.linspace(90, -90, 46))
+    a, b = np.radians(longitude), np.radians(latitude)
+    points = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], -1)
+    if turned:
+        points = points.transpose(1, 0, 2)
+    return FlowField.from_arrays(points, np.cross(axis, points))
+
+
+def winds() -> FlowField:
+    """The jets and waves of the Earth, around which the meridians are not evenly spread."""
+    field = web_views(examples.weather(), Options.split(level=250, globe=True))[0].field
+    picks = np.delete(np.arange(181), [20, 21, 40, 90, 91, 92])
+    return FlowField.from_arrays(field.points[:, picks], field.velocity[0][:, picks])
+
+
+def bowl() -> FlowField:
+    """A stream over the middle of an elliptic bowl, with a hole beside it."""
+    angle, radius = np.meshgrid(np.linspace(0, 2 * np.pi, 73), np.linspace(0, 1, 31))
+    x, y = 2 * radius * np.cos(angle), radius * np.sin(angle)
+    points = np.stack([x, y, 0.2 * (x**2 + y**2)], axis=-1)
+    velocity = np.stack([np.ones_like(x), 0.3 * x, 0.4 * (x + 0.3 * x * y)], axis=-1)
+    valid = np.hypot(x - 0.7, y - 0.1) > 0.15
+    return FlowField.from_arrays(points, velocity, valid=valid)
+
+
 FIELDS: dict[str, Callable[[], FlowField]] = {
+    "across": lambda: globe((1, 0, 0)),
+    "around": lambda: globe((0.02, 0, 1), turned=True),
+    "winds": winds,
+    "bowl": bowl,
     "plane": gyre,
     "bent": waves,
     "torus": torus,
