@@ -6,6 +6,8 @@ import type { Uniform } from "./uniforms.ts";
 
 /** Lines of nodes with their velocity in a plane, beyond those within which it is used. */
 const SPARE_LINES = 3;
+/** Angle by which lines may differ from where even ones would be. */
+const ROUNDING = 1e-6;
 /** Poles that a surface has, at most. */
 const MOST_POLES = 2;
 
@@ -121,19 +123,24 @@ export class Poles {
     return [this.cells + 1, Math.max(this.poles.length, 1)];
   }
 
-  /** Angles and lengths of the rays, in texels of four numbers. */
+  /** Angles and lengths of the rays, and the last ray before each share of a turn, in texels. */
   get angles(): Float32Array {
-    const count = this.cells + 1;
-    const result = new Float32Array(4 * count * Math.max(this.poles.length, 1));
+    const { cells } = this;
+    const [width, height] = this.raysSize;
+    const result = new Float32Array(4 * width * height);
     this.poles.forEach((_, n) => {
-      let before = -Infinity;
-      for (let k = 0; k < count; k += 1) {
+      const angles: number[] = [];
+      for (let k = 0; k <= cells; k += 1) {
         const [p, q] = this.ray(n, k);
         let angle = Math.atan2(q, p);
-        while (angle < before) angle += 2 * Math.PI;
-        before = angle;
-        result.set([angle, Math.hypot(p, q)], 4 * (n * count + k));
+        while (angle < angles[k - 1]) angle += 2 * Math.PI;
+        angles.push(angle);
       }
+      angles.forEach((angle, k) => {
+        const turn = angles[0] + (2 * Math.PI * k) / cells + ROUNDING;
+        const line = angles.findLastIndex((other) => other <= turn);
+        result.set([angle, Math.hypot(...this.ray(n, k)), line], 4 * (n * width + k));
+      });
     });
     return result;
   }

@@ -1117,11 +1117,13 @@ across*ray[c]+around2*depth*turn:still[c]}texels.copyWithin(to+2,from+2,from+4)}
 let[a,b,c,x,y]=[0,0,0,0,0];for(let k=0;k<this.cells;k+=1){let[p,q]=this.ray(n,k),square=p*p+q*q,part=texels[this.at(line,
 k)+component]*inward;[x,y]=[x+part*p,y+part*q],[a,b,c]=[a+p*p/square,b+p*q/square,c+q*q/square]}let determinant2=a*c-b*b;
 return[(c*x-b*y)/determinant2,(a*y-b*x)/determinant2]}get raysSize(){return[this.cells+1,Math.max(this.poles.length,1)]}get angles(){
-let count2=this.cells+1,result2=new Float32Array(4*count2*Math.max(this.poles.length,1));return this.poles.forEach((_,n)=>{
-let before=-1/0;for(let k=0;k<count2;k+=1){let[p,q]=this.ray(n,k),angle=Math.atan2(q,p);for(;angle<before;)angle+=2*Math.
-PI;before=angle,result2.set([angle,Math.hypot(p,q)],4*(n*count2+k))}}),result2}get uniforms(){let numbers=this.poles.flatMap(
-({line,inward,near},n)=>[line,inward,near,this.shift(n)]),planes=this.poles.flatMap(({plane})=>plane);for(;numbers.length<
-8;)numbers.push(0);for(;planes.length<12;)planes.push(0);return{u_poles:numbers,u_planes:planes,u_polar:Number(this.isAlongJ)}}};var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=8,
+let{cells}=this,[width,height]=this.raysSize,result2=new Float32Array(4*width*height);return this.poles.forEach((_,n)=>{
+let angles=[];for(let k=0;k<=cells;k+=1){let[p,q]=this.ray(n,k),angle=Math.atan2(q,p);for(;angle<angles[k-1];)angle+=2*Math.
+PI;angles.push(angle)}angles.forEach((angle,k)=>{let turn=angles[0]+2*Math.PI*k/cells+1e-6,line=angles.findLastIndex(other=>other<=
+turn);result2.set([angle,Math.hypot(...this.ray(n,k)),line],4*(n*width+k))})}),result2}get uniforms(){let numbers=this.poles.
+flatMap(({line,inward,near},n)=>[line,inward,near,this.shift(n)]),planes=this.poles.flatMap(({plane})=>plane);for(;numbers.
+length<8;)numbers.push(0);for(;planes.length<12;)planes.push(0);return{u_poles:numbers,u_planes:planes,u_polar:Number(this.
+isAlongJ)}}};var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=8,
 DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,ENDLESS=1e30,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape){
 let[rows,columns]=shape,width=padded.shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,n=0;j<
 rows;j+=1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%

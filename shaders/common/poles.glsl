@@ -4,7 +4,8 @@
 //#include common/constants.glsl
 
 #ifdef FLOWTEX_POLES
-uniform highp sampler2D u_rays; // angle in the plane, and length, of a cell along each line to a pole
+// Angle in the plane, and length, of a cell along each line to a pole; and the line before a share of a turn.
+uniform highp sampler2D u_rays;
 // The line of a pole, 1 where lines grow away from it and -1 where they fall, else 0; cells around it within
 // which the plane is used; and how many lines further the velocities in the plane lie.
 uniform vec4 u_poles[2];
@@ -26,9 +27,9 @@ int flowtexPole(vec2 at)
   return -1;
 }
 
-vec2 flowtexRay(int pole, float line)
+vec3 flowtexRay(int pole, float line)
 {
-  return texelFetch(u_rays, ivec2(int(line), pole), 0).xy;
+  return texelFetch(u_rays, ivec2(int(line), pole), 0).xyz;
 }
 
 // From index space to the plane of a pole; elsewhere nothing changes.
@@ -40,7 +41,7 @@ vec2 flowtexEnter(int pole, vec2 at)
   vec2 place = flowtexTurned(at);
   float around = clamp(place.x - cells * floor(place.x / cells), 0.0, cells);
   float line = min(floor(around), cells - 1.0);
-  vec2 ray = mix(flowtexRay(pole, line), flowtexRay(pole, line + 1.0), around - line);
+  vec3 ray = mix(flowtexRay(pole, line), flowtexRay(pole, line + 1.0), around - line);
   return abs(place.y - u_poles[pole].x) * ray.y * vec2(cos(ray.x), sin(ray.x));
 }
 
@@ -53,13 +54,12 @@ vec2 flowtexLeave(int pole, vec2 place)
   float first = flowtexRay(pole, 0.0).x;
   float angle = place == vec2(0.0) ? first : atan(place.y, place.x);
   angle += 2.0 * FLOWTEX_PI * ceil((first - angle) / (2.0 * FLOWTEX_PI));
-  float line = clamp(floor((angle - first) * cells / (2.0 * FLOWTEX_PI)), 0.0, cells - 1.0);
-  while (line > 0.0 && angle < flowtexRay(pole, line).x)
-    line -= 1.0;
+  float turn = (angle - first) / (2.0 * FLOWTEX_PI);
+  float line = flowtexRay(pole, clamp(floor(turn * cells), 0.0, cells - 1.0)).z;
   while (line < cells - 1.0 && angle >= flowtexRay(pole, line + 1.0).x)
     line += 1.0;
-  vec2 low = flowtexRay(pole, line);
-  vec2 high = flowtexRay(pole, line + 1.0);
+  vec3 low = flowtexRay(pole, line);
+  vec3 high = flowtexRay(pole, line + 1.0);
   float share = clamp((angle - low.x) / (high.x - low.x), 0.0, 1.0);
   float depth = length(place) / mix(low.y, high.y, share);
   return flowtexTurned(vec2(line + share, u_poles[pole].x + u_poles[pole].y * depth));

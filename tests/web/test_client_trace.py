@@ -87,10 +87,10 @@ def waves() -> FlowField:
     return FlowField.from_arrays(np.stack([x, y, z], -1), np.stack([u, v, slope], -1))
 
 
-def globe(axis: tuple[float, float, float], *, turned: bool = False) -> FlowField:
+def globe(*axis: float, uneven: float = 0.0, turned: bool = False) -> FlowField:
     """A globe that turns around an axis, by parallels or, ``turned``, by meridians."""
-    longitude, latitude = np.meshgrid(np.linspace(0, 360, 91), np.linspace(90, -90, 46))
-    a, b = np.radians(longitude), np.radians(latitude)
+    angle, latitude = np.meshgrid(np.linspace(0, 2 * np.pi, 91), np.linspace(90, -90, 46))
+    a, b = angle + uneven * np.sin(angle), np.radians(latitude)
     points = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], -1)
     if turned:
         points = points.transpose(1, 0, 2)
@@ -98,10 +98,8 @@ def globe(axis: tuple[float, float, float], *, turned: bool = False) -> FlowFiel
 
 
 def winds() -> FlowField:
-    """The jets and waves of the Earth, around which the meridians are not evenly spread."""
-    field = web_views(examples.weather(), Options.split(level=250, globe=True))[0].field
-    picks = np.delete(np.arange(181), [20, 21, 40, 90, 91, 92])
-    return FlowField.from_arrays(field.points[:, picks], field.velocity[0][:, picks])
+    """Jets and waves all over the Earth."""
+    return web_views(examples.weather(), Options.split(level=250, globe=True))[0].field
 
 
 def bowl() -> FlowField:
@@ -115,8 +113,9 @@ def bowl() -> FlowField:
 
 
 FIELDS: dict[str, Callable[[], FlowField]] = {
-    "across": lambda: globe((1, 0, 0)),
-    "around": lambda: globe((0.02, 0, 1), turned=True),
+    "across": lambda: globe(1, 0, 0),
+    "uneven": lambda: globe(1, 0.5, 0, uneven=0.3),
+    "turned": lambda: globe(0.3, 0, 1, turned=True),
     "winds": winds,
     "bowl": bowl,
     "plane": gyre,
