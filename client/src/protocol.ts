@@ -205,9 +205,9 @@ export interface TraceHeader {
   pathlines: boolean;
   /** Cells in a unit of lag: a slower particle rests. */
   rest: number;
-  /** Length of a path that is long enough for any picture, if there is one. */
-  longest: number | null;
-  poles: PoleHeader[];
+  /** Length of a path that is long enough for any picture. */
+  longest?: number;
+  poles?: PoleHeader[];
 }
 
 /** A pole: the value `line` of one component of positions (i, j), which grows away from it or falls. */

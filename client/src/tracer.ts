@@ -64,7 +64,7 @@ export function normalOf(padded: Part, trace: TraceHeader, shape: [number, numbe
       for (let k = 0; k < 3; k += 1) data[n + k] = Math.round((normal[k] / size) * NORMAL_MAX);
     }
   }
-  for (const { component, line, inward } of trace.poles) {
+  for (const { component, line, inward } of trace.poles ?? []) {
     const [at, last] = component ? [line - top, columns] : [line - left, rows];
     if (at < 0 || at >= (component ? rows : columns)) continue;
     const offset = (across: number, around: number) =>
@@ -144,7 +144,7 @@ export function programsOf({ programs, floats }: TraceContext, header: Traced, t
     return program;
   };
   const target = floats && "FLOWTEX_FLOATS";
-  const polar = trace.poles.length > 0 && "FLOWTEX_POLES";
+  const polar = trace.poles !== undefined && "FLOWTEX_POLES";
   return {
     follow: get(path, polar, trace.pathlines && "FLOWTEX_PATHLINES"),
     compose: trace.pathlines ? null : get(path, polar, "FLOWTEX_COMPOSED"),
@@ -175,7 +175,7 @@ export class Tracing {
     this.header = header;
     this.trace = trace;
     this.find = find;
-    this.poles = new Poles(trace.poles, trace.nodes, find("rays")?.data ?? []);
+    this.poles = new Poles(trace.poles ?? [], trace.nodes, find("rays")?.data ?? []);
     this.passes = this.slices(step);
   }
 

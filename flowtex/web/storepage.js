@@ -1131,7 +1131,7 @@ rows;j+=1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)dat
 [top,left]=trace.drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3){
 let at=width*(j+top+1)+3*(i+left+1),along=step=>[0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(
 along(3),along(width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}for(let{
-component,line,inward}of trace.poles){let[at,last]=component?[line-top,columns]:[line-left,rows];if(at<0||at>=(component?
+component,line,inward}of trace.poles??[]){let[at,last]=component?[line-top,columns]:[line-left,rows];if(at<0||at>=(component?
 rows:columns))continue;let offset=(across,around2)=>3*(component?across*columns+around2:around2*columns+across),sum=[0,0,
 0];for(let m=0;m<last;m+=1)for(let k=0;k<3;k+=1)sum[k]+=data[offset(at+inward,m)+k];let size=length2(sum)||1,mean=sum.map(
 x=>Math.round(x/size*NORMAL_MAX));for(let m=0;m<last;m+=1)data.set(mean,offset(at,m))}return{data,shape:[rows,columns,3]}}
@@ -1145,12 +1145,12 @@ to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:betwee
 function programsOf({programs,floats},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,get=(fragment,...variant)=>{
 let names=variant.filter(name=>typeof name=="string"),program=programs.get(fullVertex,fragment,...names);if(program.error)
 throw new Error(`the tracer cannot be built: ${program.error}`);return program},target=floats&&"FLOWTEX_FLOATS",polar=trace.
-poles.length>0&&"FLOWTEX_POLES";return{follow:get(path,polar,trace.pathlines&&"FLOWTEX_PATHLINES"),compose:trace.pathlines?
+poles!==void 0&&"FLOWTEX_POLES";return{follow:get(path,polar,trace.pathlines&&"FLOWTEX_PATHLINES"),compose:trace.pathlines?
 null:get(path,polar,"FLOWTEX_COMPOSED"),slopes:get(layers,"FLOWTEX_SLOPES",target),tangents:get(layers,polar,target)}}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;poles;constructor(graphics,header,trace,find,step){
-this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.poles=new Poles(trace.poles,trace.nodes,find(
-"rays")?.data??[]),this.passes=this.slices(step)}advance(until){if(!Object.values(programsOf(this.graphics,this.header,this.
-trace)).every(program=>program?.ready??!0))return null;let gl=this.graphics.context;try{do{let{done,value}=this.passes.next();
-if(gl.isContextLost())return null;if(done)return this.result=null,value}while(performance.now()<until);return null}finally{
+this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.poles=new Poles(trace.poles??[],trace.nodes,
+find("rays")?.data??[]),this.passes=this.slices(step)}advance(until){if(!Object.values(programsOf(this.graphics,this.header,
+this.trace)).every(program=>program?.ready??!0))return null;let gl=this.graphics.context;try{do{let{done,value}=this.passes.
+next();if(gl.isContextLost())return null;if(done)return this.result=null,value}while(performance.now()<until);return null}finally{
 this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",texture);for(let frame of this.frames)
 this.graphics.free("Framebuffer",frame);this.result&&!this.graphics.context.isContextLost()&&this.graphics.context.deleteTexture(
 this.result),this.result=null,this.textures.clear(),this.frames.length=0}data(name){let part=this.find(name);if(!part)throw new Error(
@@ -1853,51 +1853,55 @@ StoreError)return error;let fault=error instanceof NotFoundError&&!error.found?"
 fault,error instanceof Error?error.message:String(error))}var Store=class{url;described=new Map;constructor(url){this.url=
 url.replace(/\/+$/,"")}async attributes(){let objects=new Objects(this.url,this.described);return(await open.v3(root(objects),
 {kind:"group"})).attrs}async array(path){let objects=new Objects(this.url,this.described),array=await open.v3(root(objects).
-resolve(path),{kind:"array"});if(!array.is("number"))throw new StoreError("broken",`${path} has no numbers`);return array}};var MOST_LAYERS=64,MOST_LAGS=32,MOST_NODES=4096,MOST_BYTES=2**28,TRACED_FROM=["padded","unit","open","nearest","normal"],
-COARSE="A part of the surface is shown coarse:",ABSENT_STEP="A time step cannot be shown:",NO_STORE="The surface is show\
-n coarse:",REASONS={missing:"it is not in the store, or the store is not open to everyone.",broken:"what the store has o\
-f it is broken.",unreachable:"the store does not answer. It is away, the network is, or pages from elsewhere may not rea\
-d it (CORS)."},IDENTITY=["format","fingerprint","parameter","lines"],isCount=(value,most)=>Number.isInteger(value)&&Number(
-value)>0&&Number(value)<=most,areNumbers=(values,count2)=>Array.isArray(values)&&values.every(Number.isFinite)&&(count2??
-values.length)===values.length,areWhole=(values,count2)=>areNumbers(values,count2)&&values.every(Number.isInteger);function checkHeader(own,{
-geometry:whole,slices:all}){let{geometry,slices,ranges}=own,{shape,rows,columns}=geometry,{trace}=slices;if(!(areNumbers(
-shape,2)&&shape.every(n=>isCount(n,MOST_NODES)&&n>1)&&[rows,columns].every(({before,size},axis)=>Number.isInteger(before)&&
-isCount(size,MOST_NODES)&&before>=0&&before+shape[axis]<=size)&&Number.isInteger(geometry.levels)&&geometry.levels>=0&&2**
-geometry.levels<=Math.max(rows.size,columns.size)&&geometry.triangles===whole.triangles&&geometry.planar===whole.planar&&
-Number.isFinite(geometry.extent)&&areNumbers(geometry.periodic.map(Number),2)&&areNumbers(geometry.center,3)&&areNumbers(
-geometry.frame,9)&&isCount(slices.count,MOST_LAYERS)&&[2,4].includes(slices.channels)&&areNumbers(slices.lags)&&isCount(
-slices.lags.length,MOST_LAGS)&&slices.sides===all.sides&&areNumbers(slices.extra)&&slices.extra.every(n=>Number.isInteger(
-n)&&n>=0&&n<slices.count)&&areNumbers([slices.unit,slices.cell,slices.critical])&&(!trace||trace.parts.every(part=>TRACED_FROM.
-includes(part))&&areNumbers(trace.nodes,2)&&trace.nodes.every((n,axis)=>isCount(n,MOST_NODES)&&trace.drawn[axis]+shape[axis]<=
-n)&&areWhole([...trace.first,...trace.drawn],4)&&trace.drawn.every(n=>n>=0)&&areNumbers(trace.closed.map(Number),2)&&areNumbers(
-[...trace.offset,...trace.middle,trace.unit,trace.pace,trace.rest],12)&&(!trace.timed||areNumbers([trace.timed.unit,trace.
-timed.speed],2)))&&Object.values(ranges??{}).every(range=>areNumbers(range,2))))throw new Error("what is told of a tile \
-does not fit the page")}function sizesOf({geometry,slices}){let{shape,planar}=geometry,{trace,count:count2,channels,extra}=slices,
-size=(numbers,...more)=>[...numbers,...more].reduce((a,b)=>a*b,1),texels=[geometry.rows.size,geometry.columns.size],nodes=trace?.
-nodes??[],sizes={cells:[Uint8Array,[size(shape.map(n=>n-1))]],normal:[Int16Array,[size(shape,3)]],scalars:[Float32Array,
-[size(shape)]]};trace?(sizes.unit=[Uint16Array,[size(nodes)]],sizes.padded=[Float32Array,[size(nodes.map(n=>n+2),3)]],sizes.
-open=[Uint8Array,[size(nodes)]],sizes.nearest=[Int16Array,[size(nodes,2)]],sizes.flow=[Uint16Array,[size(nodes,3),size(nodes,
-4)]]):(sizes.position=[Float32Array,[size(shape,3)]],sizes.slices=[Uint16Array,[size(texels,count2,channels)]],sizes.extra=
-[Uint16Array,[size(texels,extra.length)]]);let needed=trace?["mesh",...trace.parts]:["mesh","position",...planar?[]:["no\
-rmal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){let{sizes}=sizesOf(header),blocks=header.geometry.
-shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){let kind=sizes[name.split("/")[0]];if(!(kind?
-data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof Float32Array&&own.length===3&&own[0]===
-blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]&&own[2]%2===1))throw new Error(`the part "${name}" of \
-a tile has another size than is told`)}}function speedOf(flow,{geometry,slices},typical){let[rows,columns]=geometry.shape,
-[channels,{drawn,nodes}={drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(rows*columns);for(let n=0;n<
-data.length;n+=1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=typical*fromHalf(Number(flow.
-data[channels*(at+1)-1]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest} speed`}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){
-let told=header.store;if(!told)throw new Error("the page does not tell where its store is");this.header=header,this.told=
-told,this.url=new URL(told.url,base),this.store=new Store(this.url.href)}open(){return this.opening?this.opening:(this.opening=
-this.compare().catch(error=>{let{fault,message}=storeError(error);if(fault==="other")throw error;fault==="unreachable"&&
-(this.opening=null);let text=`${fault==="missing"?NO_STORE:COARSE} ${REASONS[fault]}`;throw new StoreError(fault,text,message)}),
-this.opening)}async compare(){let{url}=this.told;if(!/^https?:/.test(this.url.protocol)){let text2=`This page looks for \
-its store at ${url} beside itself, which a browser does not read where the page is a file: open it from a web server.`;throw new StoreError(
-"other",text2)}let own=(await this.store.attributes()).flowtex;if(IDENTITY.every(name=>own?.[name]===this.told[name]))return;
-let text=`The store at ${url} holds another flow than this page, or one with other paths or of another version: export t\
-he page again.`;throw new StoreError("other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(
-COARSE,signal,async whole=>{let late=steps.filter(step=>!has(`slices/${step}`)&&!has(`flow/${step}`)),known=has("header")&&
-!late.length?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):{header:known,parts:[]},coming=new Map(
+resolve(path),{kind:"array"});if(!array.is("number"))throw new StoreError("broken",`${path} has no numbers`);return array}};var MOST_LAYERS=64,MOST_LAGS=32,MOST_NODES=4096,MOST_BYTES=2**28,TRACED_FROM=["padded","unit","open","nearest","normal",
+"rays"],COARSE="A part of the surface is shown coarse:",ABSENT_STEP="A time step cannot be shown:",NO_STORE="The surface\
+ is shown coarse:",REASONS={missing:"it is not in the store, or the store is not open to everyone.",broken:"what the sto\
+re has of it is broken.",unreachable:"the store does not answer. It is away, the network is, or pages from elsewhere may\
+ not read it (CORS)."},IDENTITY=["format","fingerprint","parameter","lines"],isCount=(value,most)=>Number.isInteger(value)&&
+Number(value)>0&&Number(value)<=most,areNumbers=(values,count2)=>Array.isArray(values)&&values.every(Number.isFinite)&&(count2??
+values.length)===values.length,areWhole=(values,count2)=>areNumbers(values,count2)&&values.every(Number.isInteger);function arePoles({
+nodes,longest=0,poles=[]}){return Number.isFinite(longest)&&poles.length<=2&&poles.every(({component,line,inward,near,plane})=>[
+0,1].includes(component)&&component===poles[0].component&&line===(inward>0?0:nodes[1-component]-1)&&[1,-1].includes(inward)&&
+isCount(near,MOST_NODES)&&areNumbers(plane,6))}function checkHeader(own,{geometry:whole,slices:all}){let{geometry,slices,
+ranges}=own,{shape,rows,columns}=geometry,{trace}=slices;if(!(areNumbers(shape,2)&&shape.every(n=>isCount(n,MOST_NODES)&&
+n>1)&&[rows,columns].every(({before,size},axis)=>Number.isInteger(before)&&isCount(size,MOST_NODES)&&before>=0&&before+shape[axis]<=
+size)&&Number.isInteger(geometry.levels)&&geometry.levels>=0&&2**geometry.levels<=Math.max(rows.size,columns.size)&&geometry.
+triangles===whole.triangles&&geometry.planar===whole.planar&&Number.isFinite(geometry.extent)&&areNumbers(geometry.periodic.
+map(Number),2)&&areNumbers(geometry.center,3)&&areNumbers(geometry.frame,9)&&isCount(slices.count,MOST_LAYERS)&&[2,4].includes(
+slices.channels)&&areNumbers(slices.lags)&&isCount(slices.lags.length,MOST_LAGS)&&slices.sides===all.sides&&areNumbers(slices.
+extra)&&slices.extra.every(n=>Number.isInteger(n)&&n>=0&&n<slices.count)&&areNumbers([slices.unit,slices.cell,slices.critical])&&
+(!trace||trace.parts.every(part=>TRACED_FROM.includes(part))&&areNumbers(trace.nodes,2)&&trace.nodes.every((n,axis)=>isCount(
+n,MOST_NODES)&&trace.drawn[axis]+shape[axis]<=n)&&areWhole([...trace.first,...trace.drawn],4)&&trace.drawn.every(n=>n>=0)&&
+areNumbers(trace.closed.map(Number),2)&&areNumbers([...trace.offset,...trace.middle,trace.unit,trace.pace,trace.rest],12)&&
+arePoles(trace)&&(!trace.timed||areNumbers([trace.timed.unit,trace.timed.speed],2)))&&Object.values(ranges??{}).every(range=>areNumbers(
+range,2))))throw new Error("what is told of a tile does not fit the page")}function sizesOf({geometry,slices}){let{shape,
+planar}=geometry,{trace,count:count2,channels,extra}=slices,size=(numbers,...more)=>[...numbers,...more].reduce((a,b)=>a*
+b,1),texels=[geometry.rows.size,geometry.columns.size],nodes=trace?.nodes??[],sizes={cells:[Uint8Array,[size(shape.map(n=>n-
+1))]],normal:[Int16Array,[size(shape,3)]],scalars:[Float32Array,[size(shape)]]};if(trace){sizes.unit=[Uint16Array,[size(
+nodes)]],sizes.padded=[Float32Array,[size(nodes.map(n=>n+2),3)]],sizes.open=[Uint8Array,[size(nodes)]],sizes.nearest=[Int16Array,
+[size(nodes,2)]];let poles=trace.poles??[];sizes.rays=[Float32Array,[size(poles.slice(0,1).map(pole=>nodes[pole.component]),
+2,poles.length)]],sizes.flow=[Uint16Array,[size(nodes,3),size(nodes,4)]]}else sizes.position=[Float32Array,[size(shape,3)]],
+sizes.slices=[Uint16Array,[size(texels,count2,channels)]],sizes.extra=[Uint16Array,[size(texels,extra.length)]];let needed=trace?
+["mesh",...trace.parts]:["mesh","position",...planar?[]:["normal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){
+let{sizes}=sizesOf(header),blocks=header.geometry.shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){
+let kind=sizes[name.split("/")[0]];if(!(kind?data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof
+Float32Array&&own.length===3&&own[0]===blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]&&own[2]%2===1))
+throw new Error(`the part "${name}" of a tile has another size than is told`)}}function speedOf(flow,{geometry,slices},typical){
+let[rows,columns]=geometry.shape,[channels,{drawn,nodes}={drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(
+rows*columns);for(let n=0;n<data.length;n+=1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=
+typical*fromHalf(Number(flow.data[channels*(at+1)-1]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest} s\
+peed`}}var Stream=class{header;told;url;store;headers=new Map;opening=null;constructor(header,base){let told=header.store;
+if(!told)throw new Error("the page does not tell where its store is");this.header=header,this.told=told,this.url=new URL(
+told.url,base),this.store=new Store(this.url.href)}open(){return this.opening?this.opening:(this.opening=this.compare().
+catch(error=>{let{fault,message}=storeError(error);if(fault==="other")throw error;fault==="unreachable"&&(this.opening=null);
+let text=`${fault==="missing"?NO_STORE:COARSE} ${REASONS[fault]}`;throw new StoreError(fault,text,message)}),this.opening)}async compare(){
+let{url}=this.told;if(!/^https?:/.test(this.url.protocol)){let text2=`This page looks for its store at ${url} beside its\
+elf, which a browser does not read where the page is a file: open it from a web server.`;throw new StoreError("other",text2)}
+let own=(await this.store.attributes()).flowtex;if(IDENTITY.every(name=>own?.[name]===this.told[name]))return;let text=`\
+The store at ${url} holds another flow than this page, or one with other paths or of another version: export the page ag\
+ain.`;throw new StoreError("other",text)}async tile(key,steps,signal,has){let name=nameOf(key);return this.loaded(COARSE,
+signal,async whole=>{let late=steps.filter(step=>!has(`slices/${step}`)&&!has(`flow/${step}`)),known=has("header")&&!late.
+length?this.headers.get(name):void 0,surface=known===void 0?this.surface(key,whole):{header:known,parts:[]},coming=new Map(
 late.map(step=>[step,this.flow(key,step,whole)])),flows=[...coming.values()],rest=async()=>{let{header,parts:parts2}=await surface;
 if(this.headers.set(name,header),!header)return parts2;let[values,...slices]=await Promise.all([this.values(key,header,steps,
 has,whole,coming),...flows]);if(checkParts(slices.flat(),header,this.header.mesh.tileCells),!slices.every(each=>each.length))

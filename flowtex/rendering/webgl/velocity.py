@@ -3,8 +3,8 @@
 It takes a fraction of the bytes of slices, and of the time. What travels is the velocity in index
 space, the nodes' positions with a ghost line around them, and what is blanked, of all nodes that
 paths of the drawn ones may reach. It is the same for paths by length and by time, streamlines and
-pathlines. ``shaders/webgl2/trace.glsl`` follows the paths with steps of half a cell, and composes
-longer ones of a flow that stands still; ``shaders/webgl2/layers.glsl`` makes texels of them as
+pathlines. ``shaders/webgl2/trace.glsl`` follows the paths with steps of half a cell, next to a pole
+in the plane there, and composes longer ones of a flow that stands still; ``shaders/webgl2/layers.glsl`` makes texels of them as
 :class:`~flowtex.textures.TextureSet` does.
 """
 
@@ -15,6 +15,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.vectors import norm
 from flowtex.field.interpolation import fill_blanked, nearest_known
+from flowtex.field.poles import Poles
 from flowtex.rendering.webgl.packing import HALF_MAX, half
 from flowtex.rendering.webgl.protocol import Header, Parts, plain_list
 from flowtex.textures import SurfaceGeometry, TextureSet
@@ -110,17 +111,25 @@ def trace_header(textures: TextureSet) -> Header:
         else None,
         "pathlines": not store.streamlines,
         "rest": rest,
-        "longest": store.long_enough if not timed and np.isfinite(store.long_enough) else None,
+        **({} if poles is None else _poles(poles, geometry.frame)),
+        **({} if timed or np.isinf(store.long_enough) else {"longest": store.long_enough}),
+    }
+
+
+def _poles(poles: Poles, frame: Floats) -> Header:
+    """Return what a client has to know of the poles, beside the part "rays"."""
+    near = Charts(poles).near
+    return {
         "poles": [
             {
                 "component": pole.component,
                 "line": pole.line,
                 "inward": pole.inward,
-                "near": Charts(poles).near,
-                "plane": plain_list(pole.size * pole.plane @ geometry.frame.T),
+                "near": near,
+                "plane": plain_list(pole.size * pole.plane @ frame.T),
             }
-            for pole in poles or ()
-        ],
+            for pole in poles
+        ]
     }
 
 
