@@ -133,7 +133,11 @@ class SliceStore:
     def _trace_with(self, field: FlowField, **options: Any) -> TraceSlices:
         # A part of a surface is one of many, whose bars would tell nothing.
         alone = self._nodes is None
-        parts: dict[str, Any] = {"nodes": self._nodes, "longest": self.long_enough, "progress": alone}
+        parts: dict[str, Any] = {
+            "nodes": self._nodes,
+            "longest": self.long_enough,
+            "progress": alone,
+        }
         return trace(field, lags=self.lags, unit=self.unit, **parts, **options)
 
 

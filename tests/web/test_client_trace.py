@@ -17,6 +17,7 @@ from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField, examples
 from flowtex._util.array_types import Floats
+from flowtex.camera import Camera
 from flowtex.options import Options
 from flowtex.rendering.cpu import render
 from flowtex.rendering.uniforms import ViewState
@@ -240,6 +241,31 @@ def test_another_moment_is_traced_from_what_is_there(client: ClientPage, lines: 
         assert root < 2 * ROOT
         assert share < 2 * SHARE
     assert client.page.evaluate("events") == []
+
+
+@pytest.mark.parametrize("height", [1.2, 0.3, 0.05])
+@pytest.mark.parametrize("name", ["across", "winds"])
+def test_pictures_over_a_pole_are_those_of_numpy(
+    client: ClientPage, name: str, height: float
+) -> None:
+    field, settings = FIELDS[name](), Settings(samples=11)
+    top = field.points[..., 2].max()
+    above = (0.1 * top, 0.05 * top, 3 * top), (0.02 * top, 0.01 * top, top), (0, 1, 0)
+    camera = Camera(*above, parallel=True, parallel_scale=height * top)
+    textures = TextureSet.build(SliceStore(field), settings)
+    plain = Colours(plain=(0.6, 0.6, 0.6), background=(1.0, 0.0, 0.0))
+    data = ClientData(textures, plain, traces=True)
+    assert data.traced
+    header = data.header(settings, camera=state(camera))
+    client.mount(packed(data, header, (0,)), SIZE, controls=False, smooth=False)
+    client.sharp()
+    judge = render(textures, settings, camera, SIZE)
+    root, share, edge = difference(
+        client.picture(), judge.rgb((0.6, 0.6, 0.6), background=(1, 0, 0))
+    )
+    assert judge.covered.mean() > 0.4 and edge < 200
+    assert root < 2 * ROOT
+    assert share < 2 * SHARE
 
 
 @pytest.mark.parametrize("hidden", [[FLOATS], [FLOATS, HALVES]])
