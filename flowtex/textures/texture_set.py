@@ -257,7 +257,7 @@ class TextureSet:
         p_i, p_j = surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j
         for pole in surface.poles or ():
-            # One point has one slope, of which its nodes hold a component each, in units of their own.
+            # One point has one slope, of which each of its nodes holds a component in its own unit.
             unit = pole.lines(slices.unit)[pole.line]
             across = pole.lines(rate)[pole.line, :, pole.component] / unit
             still = pole.vector(across) @ pole.plane

@@ -4,8 +4,8 @@ It takes a fraction of the bytes of slices, and of the time. What travels is the
 space, the nodes' positions with a ghost line around them, and what is blanked, of all nodes that
 paths of the drawn ones may reach. It is the same for paths by length and by time, streamlines and
 pathlines. ``shaders/webgl2/trace.glsl`` follows the paths with steps of half a cell, next to a pole
-in the plane there, and composes longer ones of a flow that stands still; ``shaders/webgl2/layers.glsl`` makes texels of them as
-:class:`~flowtex.textures.TextureSet` does.
+in the plane there, and composes longer ones of a flow that stands still;
+``shaders/webgl2/layers.glsl`` makes texels of them as :class:`~flowtex.textures.TextureSet` does.
 """
 
 from __future__ import annotations
