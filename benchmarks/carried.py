@@ -1,9 +1,10 @@
 """What is carried to a browser: ``python benchmarks/carried.py``.
 
-Pages of a steady gyre on a crooked grid and of a cylinder's wake at 31 times, with the velocity,
-which the browser traces, and with slices: bytes of the page and of a node at one time, processor
-time of writing it, and seconds from opening it in headless Chromium until the picture is whole.
-``--meshes`` chooses others, as rows x columns or ``wake``. Compare within one run.
+Pages of a steady gyre on a crooked grid, of a cylinder's wake at 31 times and of winds on the
+globe, with the velocity, which the browser traces, and with slices: bytes of the page and of a node
+at one time, processor time of writing it, and seconds from opening it in headless Chromium until
+the picture is whole. ``--meshes`` chooses others, as rows x columns, ``wake``, ``globe``, or the
+path of data that are shown on the globe. Compare within one run.
 """
 
 from __future__ import annotations
@@ -13,12 +14,17 @@ import shutil
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
+from scenes import gyre_field
 
-#: Rows and columns of nodes, and the cylinder's wake along pathlines.
-MESHES = ("70x120", "250x500", "500x1000", "wake")
+from flowtex import examples
+from flowtex.options import Options
+
+#: Rows and columns of nodes, the cylinder's wake along pathlines, and winds.
+MESHES = ("70x120", "250x500", "500x1000", "wake", "globe")
 SIZE = {"width": 800, "height": 600}
 #: Software drawing: Mesa's, which is several times as fast as Chromium's own.
 MESA = ["--use-angle=gl-egl", "--ignore-gpu-blocklist"]
@@ -29,13 +35,10 @@ COMPLETE = '.flowtex[data-sharp="true"][data-tiles="0"]'
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--meshes", nargs="*", default=list(MESHES), help="rows x columns, or wake")
+    parser.add_argument("--meshes", nargs="*", default=list(MESHES), help="such as 70x120 globe")
     arguments = parser.parse_args()
     from playwright.sync_api import sync_playwright
-    from scenes import gyre_field
 
-    from flowtex.examples import cylinder_field
-    from flowtex.options import Options
     from flowtex.web.export import page_data, page_pieces
     from flowtex.web.view import web_views
 
@@ -44,19 +47,15 @@ def main() -> None:
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=MESA)
         for mesh in arguments.meshes:
-            options = Options.split(**({"lines": "pathlines"} if mesh == "wake" else {}))
-            if mesh == "wake":
-                field = cylinder_field()
-            else:
-                rows, columns = (int(n) for n in mesh.split("x"))
-                field = gyre_field(columns, rows, crooked=True)
+            data, options = _flow(mesh)
+            field = web_views(data, options)[0].field
             name = " × ".join(map(str, field.shape[::-1]))
             if len(field.times) > 1:
                 name += f", {len(field.times)} times"
             for traces in (True, False):
                 path = Path(folder) / f"{mesh}.html"
                 start = time.process_time()
-                views = web_views(field, options)
+                views = web_views(data, options)
                 scenes = page_data(views, traces=traces)
                 path.write_text("".join(page_pieces(views, scenes)), encoding="utf-8")
                 written = time.process_time() - start
@@ -76,6 +75,18 @@ def main() -> None:
                 )
         browser.close()
     Console(width=110).print(table)
+
+
+def _flow(mesh: str) -> tuple[Any, Options]:
+    """Return what is drawn, and the options with which it is."""
+    if mesh == "wake":
+        return examples.cylinder_field(), Options.split(lines="pathlines")
+    if mesh == "globe":
+        return examples.weather(), Options.split(globe=True, level=250)
+    if Path(mesh).exists():
+        return mesh, Options.split(globe=True)
+    rows, columns = (int(n) for n in mesh.split("x"))
+    return gyre_field(columns, rows, crooked=True), Options.split()
 
 
 if __name__ == "__main__":

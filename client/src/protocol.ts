@@ -205,6 +205,19 @@ export interface TraceHeader {
   pathlines: boolean;
   /** Cells in a unit of lag: a slower particle rests. */
   rest: number;
+  /** Length of a path that is long enough for any picture. */
+  longest?: number;
+  poles?: PoleHeader[];
+}
+
+/** A pole: the value `line` of one component of positions (i, j), which grows away from it or falls. */
+export interface PoleHeader {
+  component: number;
+  line: number;
+  inward: number;
+  /** Cells from the pole within which paths are followed in the plane there, and two vectors of its cells. */
+  near: number;
+  plane: number[];
 }
 
 type ShaderName =

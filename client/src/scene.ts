@@ -32,7 +32,7 @@ const USERS: Record<string, string[]> = {
   scalars: ["scalar"],
 };
 /** Parts that slices are traced from beside the flow. */
-const SOURCES = ["padded", "unit", "open", "nearest"];
+const SOURCES = ["padded", "unit", "open", "nearest", "rays"];
 
 type Scalar = Pick<Header["scalars"], "name" | "steps" | "number">;
 

@@ -12,6 +12,7 @@ import {
   type NamedPart,
   type StoreHeader,
   type TileHeader,
+  type TraceHeader,
 } from "./protocol.ts";
 import { Store, StoreError, storeError, type StoreFault } from "./store.ts";
 import { nameOf, type TileKey } from "./tilechoice.ts";
@@ -22,7 +23,7 @@ const MOST_LAGS = 32;
 const MOST_NODES = 4096;
 const MOST_BYTES = 2 ** 28;
 /** Parts that a tile may need beside its flow. */
-const TRACED_FROM = ["padded", "unit", "open", "nearest", "normal"];
+const TRACED_FROM = ["padded", "unit", "open", "nearest", "normal", "rays"];
 
 /** What is said of what could not be had, and why. */
 const COARSE = "A part of the surface is shown coarse:";
@@ -56,6 +57,23 @@ const areNumbers = (values: unknown, count?: number): values is number[] =>
   Array.isArray(values) && values.every(Number.isFinite) && (count ?? values.length) === values.length;
 const areWhole = (values: unknown, count: number): boolean =>
   areNumbers(values, count) && values.every(Number.isInteger);
+
+/** Whether what is told of the poles of a tile fits its nodes. */
+function arePoles({ nodes, longest = 0, poles = [] }: TraceHeader): boolean {
+  return (
+    Number.isFinite(longest) &&
+    poles.length <= 2 &&
+    poles.every(
+      ({ component, line, inward, near, plane }) =>
+        [0, 1].includes(component) &&
+        component === poles[0].component &&
+        line === (inward > 0 ? 0 : nodes[1 - component] - 1) &&
+        [1, -1].includes(inward) &&
+        isCount(near, MOST_NODES) &&
+        areNumbers(plane, 6),
+    )
+  );
+}
 
 /** Refuse what is told of a tile where it cannot be drawn. */
 function checkHeader(own: TileHeader, { geometry: whole, slices: all }: Header): void {
@@ -94,6 +112,7 @@ function checkHeader(own: TileHeader, { geometry: whole, slices: all }: Header):
         trace.drawn.every((n) => n >= 0) &&
         areNumbers(trace.closed.map(Number), 2) &&
         areNumbers([...trace.offset, ...trace.middle, trace.unit, trace.pace, trace.rest], 12) &&
+        arePoles(trace) &&
         (!trace.timed || areNumbers([trace.timed.unit, trace.timed.speed], 2)))) &&
     Object.values(ranges ?? {}).every((range) => areNumbers(range, 2));
   if (!fits) throw new Error("what is told of a tile does not fit the page");
@@ -116,6 +135,8 @@ function sizesOf({ geometry, slices }: Pick<Header, "geometry" | "slices">) {
     sizes.padded = [Float32Array, [size(nodes.map((n) => n + 2), 3)]];
     sizes.open = [Uint8Array, [size(nodes)]];
     sizes.nearest = [Int16Array, [size(nodes, 2)]];
+    const poles = trace.poles ?? [];
+    sizes.rays = [Float32Array, [size(poles.slice(0, 1).map((pole) => nodes[pole.component]), 2, poles.length)]];
     sizes.flow = [Uint16Array, [size(nodes, 3), size(nodes, 4)]];
   } else {
     sizes.position = [Float32Array, [size(shape, 3)]];

@@ -4,6 +4,7 @@
 
 import { fromHalf } from "./half.ts";
 import { makeLayers, sendLayer, type LayersSize } from "./layers.ts";
+import { Poles } from "./poles.ts";
 import type { Program, ProgramContext, Programs } from "./programs.ts";
 import type { Data, Header, Part, TraceHeader } from "./protocol.ts";
 import type { Uniform } from "./uniforms.ts";
@@ -21,7 +22,7 @@ const HALVES = Float32Array.from({ length: 1 << 16 }, (_, bits) => fromHalf(bits
 /** What the fourth channel of a layer has, as shaders/webgl2/layers.glsl knows it. */
 const [NOTHING, SPEED, REACH] = [0, 1, 2];
 /** Units of the textures that a pass has. */
-const UNITS = 7;
+const UNITS = 8;
 /** Lag up to which paths of a steady flow are followed; longer ones are composed. */
 const DIRECT_LAG = 4;
 /** Steps whose flow is held on the graphics card while paths through it are followed. */
@@ -29,6 +30,8 @@ const FLOWS_HELD = 4;
 /** Cells that the fastest particle goes in a pass, at most: a pass is never long. */
 const PASS_CELLS = 64;
 const MOST_PARTS = 64;
+/** Length of paths that do not end. */
+const ENDLESS = 1e30;
 /** Share of a lag by which rounding may miss a step. */
 const LAG_ROUNDING = 1e-5;
 
@@ -45,7 +48,7 @@ export function positionOf(padded: Part, trace: TraceHeader, shape: [number, num
   return { data, shape: [rows, columns, 3] };
 }
 
-/** Unit normals of the same nodes, by those around them. */
+/** Unit normals of the same nodes, by those around them; a pole has the mean of those of its ring. */
 export function normalOf(padded: Part, trace: TraceHeader, shape: [number, number]): Made {
   const [rows, columns] = shape;
   const width = 3 * padded.shape[1];
@@ -60,6 +63,19 @@ export function normalOf(padded: Part, trace: TraceHeader, shape: [number, numbe
       const size = length(normal) || 1;
       for (let k = 0; k < 3; k += 1) data[n + k] = Math.round((normal[k] / size) * NORMAL_MAX);
     }
+  }
+  for (const { component, line, inward } of trace.poles ?? []) {
+    const [at, last] = component ? [line - top, columns] : [line - left, rows];
+    if (at < 0 || at >= (component ? rows : columns)) continue;
+    const offset = (across: number, around: number) =>
+      3 * (component ? across * columns + around : around * columns + across);
+    const sum: Vector = [0, 0, 0];
+    for (let m = 0; m < last; m += 1) {
+      for (let k = 0; k < 3; k += 1) sum[k] += data[offset(at + inward, m) + k];
+    }
+    const size = length(sum) || 1;
+    const mean = sum.map((x) => Math.round((x / size) * NORMAL_MAX));
+    for (let m = 0; m < last; m += 1) data.set(mean, offset(at, m));
   }
   return { data, shape: [rows, columns, 3] };
 }
@@ -128,11 +144,12 @@ export function programsOf({ programs, floats }: TraceContext, header: Traced, t
     return program;
   };
   const target = floats && "FLOWTEX_FLOATS";
+  const polar = trace.poles !== undefined && "FLOWTEX_POLES";
   return {
-    follow: get(path, trace.pathlines && "FLOWTEX_PATHLINES"),
-    compose: trace.pathlines ? null : get(path, "FLOWTEX_COMPOSED"),
+    follow: get(path, polar, trace.pathlines && "FLOWTEX_PATHLINES"),
+    compose: trace.pathlines ? null : get(path, polar, "FLOWTEX_COMPOSED"),
     slopes: get(layers, "FLOWTEX_SLOPES", target),
-    tangents: get(layers, target),
+    tangents: get(layers, polar, target),
   };
 }
 
@@ -151,12 +168,14 @@ export class Tracing {
   private readonly flows = new Map<number, WebGLTexture>();
   /** Most cells that a particle goes in a unit of lag. */
   private fastest = 1;
+  private readonly poles: Poles;
 
   constructor(graphics: TraceContext, header: Traced, trace: TraceHeader, find: FindPart, step: number) {
     this.graphics = graphics;
     this.header = header;
     this.trace = trace;
     this.find = find;
+    this.poles = new Poles(trace.poles ?? [], trace.nodes, find("rays")?.data ?? []);
     this.passes = this.slices(step);
   }
 
@@ -241,20 +260,19 @@ export class Tracing {
     const unit = this.data("unit");
     const channels = data.length / unit.length;
     const flow = new Float32Array(4 * unit.length);
-    let most = 0;
     for (let n = 0, at = 0; n < unit.length; n += 1, at += channels) {
       const speed = HALVES[data[at + 2]];
       const size = HALVES[unit[n]] * trace.unit;
-      const i = (HALVES[data[at]] * speed) / size;
-      const j = (HALVES[data[at + 1]] * speed) / size;
-      flow[4 * n] = i;
-      flow[4 * n + 1] = j;
+      flow[4 * n] = (HALVES[data[at]] * speed) / size;
+      flow[4 * n + 1] = (HALVES[data[at + 1]] * speed) / size;
       flow[4 * n + 2] = speed;
       flow[4 * n + 3] = trace.timed ? trace.timed.unit : size;
-      most = Math.max(most, Math.abs(i), Math.abs(j));
     }
-    if (trace.timed) this.fastest = Math.max(this.fastest, most * trace.timed.speed * trace.timed.unit);
-    return flow;
+    const result = this.poles.laidOut(flow);
+    if (trace.timed) {
+      this.fastest = Math.max(this.fastest, this.poles.fastest(result) * trace.timed.speed * trace.timed.unit);
+    }
+    return result;
   }
 
   private wholeSpeed(step: number): Float32Array {
@@ -288,10 +306,10 @@ export class Tracing {
 
   /** The flow of a step on the graphics card, with that of the last one that was asked for. */
   private flowTexture(step: number): WebGLTexture {
-    const [rows, columns] = this.trace.nodes;
+    const { width, height } = this.poles.size;
     const gl = this.graphics.context;
     const known = this.flows.get(step);
-    const texture = known ?? this.texture(columns, rows, gl.RGBA32F, this.flow(step));
+    const texture = known ?? this.texture(width, height, gl.RGBA32F, this.flow(step));
     this.flows.delete(step);
     this.flows.set(step, texture);
     for (const [other, old] of this.flows) {
@@ -366,7 +384,9 @@ export class Tracing {
     this.result = result;
     gl.activeTexture(gl.TEXTURE0);
     makeLayers(gl, result, size);
-    const own = this.texture(columns, rows, gl.RGBA32F, this.flow(step));
+    const { poles } = this;
+    const own = this.texture(poles.size.width, poles.size.height, gl.RGBA32F, this.flow(step));
+    const rays = this.texture(...poles.raysSize, gl.RGBA32F, poles.angles);
     const constant = [
       this.texture(columns, rows, gl.RGBA32F, this.cells()),
       this.texture(columns + 2, rows + 2, gl.RGBA32F, this.padded()),
@@ -377,7 +397,8 @@ export class Tracing {
     const { lags, sides, count } = slices;
     const uniforms: Record<string, Uniform> = {
       ...{ u_flow: 0, u_cells: 1, u_padded: 2, u_speed: 3, u_before: 4, u_last: 5, u_earlier: 5 },
-      u_flowNext: 6,
+      ...{ u_flowNext: 6, u_rays: 7, ...poles.uniforms },
+      u_longest: trace.longest ?? ENDLESS,
       u_nodes: [columns, rows],
       u_closed: [Number(trace.closed[1]), Number(trace.closed[0])],
       u_first: [trace.first[1], trace.first[0]],
@@ -431,7 +452,7 @@ export class Tracing {
           for (const [begin, end] of parts) {
             const next = pool.find((each) => ![first, before, now, at].includes(each)) ?? pool[0];
             gl.bindFramebuffer(gl.FRAMEBUFFER, next[1]);
-            draw([columns, rows], [near, ...constant, at[0], before[0], far], composer ?? follow, {
+            draw([columns, rows], [near, ...constant, at[0], before[0], far, rays], composer ?? follow, {
               u_lagEarlier: earlier,
               u_from: begin,
               u_to: end,

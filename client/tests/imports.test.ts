@@ -12,7 +12,7 @@ const LAYERS = [
   "camera",
   "protocol",
   "uniforms quality",
-  "layers noise programs mesh maplines lonlat meshlevels tilechoice trianglemesh player colours legend",
+  "layers noise poles programs mesh maplines lonlat meshlevels tilechoice trianglemesh player colours legend",
   "tracer tilequeue stream",
   "context",
   "earthlayer",

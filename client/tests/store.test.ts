@@ -357,6 +357,27 @@ test("a header that does not fit is refused", async () => {
   }
 });
 
+test("poles that do not fit the nodes of a tile are refused", () => {
+  const { slices } = fixture.told;
+  const pole = { component: 1, line: 99, inward: -1, near: 6, plane: [1, 0, 0, 0, 1, 0] };
+  const isTaken = (...poles: unknown[]) => {
+    const traced = { nodes: [100, 80], first: [0, 0], drawn: [0, 0], closed: [false, true], unit: 1, pace: 1, rest: 0 };
+    const trace = { ...traced, parts: ["rays"], offset: [0, 0, 0, 0, 0, 0], middle: [0, 0, 0], poles };
+    const told = { ...fixture.told, slices: { ...slices, trace } };
+    try {
+      return Boolean((streamOf().stream as unknown as Inner).tileHeader(textPart(JSON.stringify(told))));
+    } catch {
+      return false;
+    }
+  };
+  assert.ok(isTaken(pole));
+  assert.ok(isTaken({ ...pole, line: 0, inward: 1 }, pole));
+  for (const wrong of [{ component: 2 }, { line: 1 }, { inward: 2 }, { near: -1 }, { near: 1e9 }, { plane: [1] }]) {
+    assert.ok(!isTaken({ ...pole, ...wrong }), JSON.stringify(wrong));
+  }
+  assert.ok(!isTaken(pole, pole, pole) && !isTaken(null));
+});
+
 interface Inner {
   tileHeader(part: NamedPart): object | null;
 }

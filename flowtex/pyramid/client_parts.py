@@ -1,7 +1,7 @@
 """What a browser is handed of a tile: files of its surface, of its flow, and of its values.
 
-The flow is the velocity, from which the client traces, where it can. Where it cannot, around a
-pole and along pathlines, it is slices, with a halo that does for the first, middle and last step.
+The flow is the velocity, from which the client traces, where it can. Where it cannot, along
+pathlines, it is slices, with a halo that does for the first, middle and last step.
 """
 
 from __future__ import annotations

@@ -270,10 +270,12 @@ class SurfaceGeometry(DrawnSurface):
 
     @property
     def is_smooth(self) -> bool:
-        """Whether every node has a position and a normal by those around it."""
+        """Whether every node has a position, and a normal by those around it or is a pole."""
         surface = self.field.surface
-        lengths = norm(np.cross(*surface.tangents))
-        return bool(surface.has_position.all() and not _is_small(lengths).any())
+        small = _is_small(norm(np.cross(*surface.tangents)))
+        for pole in surface.poles or ():
+            pole.lines(small)[pole.line] = False
+        return bool(surface.has_position.all() and not small.any())
 
     @cached_property
     def coordinate(self) -> Floats32:

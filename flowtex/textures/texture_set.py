@@ -257,9 +257,11 @@ class TextureSet:
         p_i, p_j = surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j
         for pole in surface.poles or ():
-            # One point has one slope, of which its nodes hold a component each.
-            across = pole.lines(rate)[pole.line, :, pole.component]
-            pole.lines(along)[pole.line] = pole.vector(across) @ pole.plane
+            # One point has one slope, of which each of its nodes holds a component in its own unit.
+            unit = pole.lines(slices.unit)[pole.line]
+            across = pole.lines(rate)[pole.line, :, pole.component] / unit
+            still = pole.vector(across) @ pole.plane
+            pole.lines(along)[pole.line] = unit[:, None] * still
         return np.asarray(along[texels] @ self.geometry.frame.T) / self._length
 
     @cached_property

@@ -77,7 +77,7 @@ class SliceStore:
             # On a globe the lags that are long enough beside a pole are many times that elsewhere.
             poles = field.surface.poles
             closed = poles is not None and poles.both
-            self._longest = (longest or longest_path(field)) if closed else np.inf
+            self.long_enough = (longest or longest_path(field)) if closed else np.inf
         else:
             self.parameter, self.lags, self.unit = slices.parameter, slices.lags, slices.unit
 
@@ -133,7 +133,11 @@ class SliceStore:
     def _trace_with(self, field: FlowField, **options: Any) -> TraceSlices:
         # A part of a surface is one of many, whose bars would tell nothing.
         alone = self._nodes is None
-        parts: dict[str, Any] = {"nodes": self._nodes, "longest": self._longest, "progress": alone}
+        parts: dict[str, Any] = {
+            "nodes": self._nodes,
+            "longest": self.long_enough,
+            "progress": alone,
+        }
         return trace(field, lags=self.lags, unit=self.unit, **parts, **options)
 
 

@@ -8,20 +8,25 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping
-from typing import Any
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bytes, Floats
+from flowtex._util.array_types import Bools, Bytes, Floats
 from flowtex._util.colours import rgb
 from flowtex.camera import Camera
 from flowtex.field.interpolation import steps_around
 from flowtex.options import NO_VALUE_COLOR
 from flowtex.rendering.cpu import Picture, render
+from flowtex.rendering.map_overlay import SPACING_PX, SPACINGS, STROKES, map_lines
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData
 from flowtex.settings import Settings
 from flowtex.web.view import WebView
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 __all__ = ["preview_png"]
 
@@ -50,7 +55,9 @@ def preview_png(
     drawn = _drawn(view, scene, (size[0] // coarser, size[1] // coarser), camera, time)
     from PIL import Image
 
-    picture = np.asarray(Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC))
+    whole = Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC)
+    _draw_lines(whole, scene, Camera.from_dict(camera))
+    picture = np.asarray(whole)
     # Colours are chosen among a few pixels: among all of them it takes longer than the drawing.
     few = Image.fromarray(np.ascontiguousarray(picture[::4, ::4])).quantize(160)
     reduced = Image.fromarray(picture).quantize(palette=few, dither=Image.Dither.NONE)
@@ -97,6 +104,32 @@ def _drawn(
         return drawn
     behind = 255.0 * np.asarray(ground)
     return np.rint(behind + opacity * (drawn - behind)).astype(np.uint8)
+
+
+def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None:
+    """Draw the coasts and the graticule of a map over a picture, or of the near side of a globe."""
+    from PIL import ImageDraw
+
+    field, size = scene.field, np.array(picture.size)
+    if field.projection is None:
+        return
+    draw = ImageDraw.Draw(picture, "RGBA")
+    fine = SPACING_PX * camera.height / (size[1] / 2)
+    spacing = next((some for some in SPACINGS if some <= fine), 0.0)
+    for option, lines in map_lines(field, has_globe=False).items():
+        if not getattr(scene.colours, option):
+            continue
+        lines = lines.thinned(spacing) if spacing else lines
+        places = camera.project(lines.points, size[0] / size[1])
+        seen: Bools = np.isfinite(places[..., 0])
+        if field.surface.on_globe:
+            seen &= np.sum(lines.points * (camera.eye[:3] - camera.eye[3] * lines.points), -1) > 0
+        pixels = (places * [0.5, -0.5] + 0.5) * size
+        stroke = STROKES[option]
+        colour = tuple(round(255 * c) for c in (*rgb(stroke.color), stroke.opacity))
+        for begin, end in pairwise(lines.starts):
+            for some in np.split(np.arange(begin, end), 1 + np.flatnonzero(~seen[begin:end])):
+                draw.line([tuple(p) for p in pixels[some][seen[some]]], fill=colour)
 
 
 def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between: float) -> Floats:

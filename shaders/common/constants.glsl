@@ -90,6 +90,7 @@ const mat3 FLOWTEX_FROM_CONES = mat3(
 
 // Tracing.
 const float FLOWTEX_ENDLESS = 1e30;        // reach of a path that has not ended
+const float FLOWTEX_LEAST_REACH = 1e-30;   // of a path whose reach has a sign
 const float FLOWTEX_STEP_CELLS = 0.5;      // longest step
 const int FLOWTEX_PIECES = 16;             // of a path that is composed, at most
 const float FLOWTEX_MANY_LAGS = 1e4;       // reach of a path that does not end, in lags

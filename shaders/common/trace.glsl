@@ -1,5 +1,6 @@
 // Paths in index space through a velocity at nodes, as flowtex/trace follows them: bilinear between
-// the nodes, along the direction of the flow, ended where the surface or the flow does.
+// the nodes, along the direction of the flow, ended where the surface or the flow does, and at a length that
+// does for any picture.
 //
 // Wrappers supply
 //   vec4 flowtexNode(ivec2 node, float lag)
@@ -10,13 +11,17 @@
 //   bool flowtexOpen(ivec2 cell)
 // which tells whether a cell is not blanked.
 
-// Where a path has come: displacement in cells, the lag at which it has ended, and the rate in cells in a
-// unit of lag with which it goes on straight.
+//#include common/poles.glsl
+
+// Where a path has come: displacement in cells, the lag at which it has ended, the rate in cells in a unit of
+// lag with which it goes on straight, and whether it came so close to a pole that others cannot be put
+// together of it, whose neighbours pass the pole on its other side.
 struct FlowtexPath
 {
   vec2 moved;
   float reach;
   vec2 ahead;
+  bool polar;
 };
 
 FlowtexPath flowtexPathOf(ivec2 node, bool earlier);
@@ -32,11 +37,11 @@ ivec2 flowtexCellOf(vec2 at, out vec2 inside)
   return ivec2(cell);
 }
 
-// The same at a position.
-vec2 flowtexRate(vec2 at, float lag)
+// The same at a position, or in the plane of a pole there.
+vec2 flowtexRate(int pole, vec2 at, float lag)
 {
   vec2 inside;
-  ivec2 cell = flowtexCellOf(at, inside);
+  ivec2 cell = flowtexCellOf(at, inside) + flowtexShift(pole);
   vec3 low = mix(flowtexNode(cell, lag).xyz, flowtexNode(cell + ivec2(1, 0), lag).xyz, inside.x);
   vec3 high =
     mix(flowtexNode(cell + ivec2(0, 1), lag).xyz, flowtexNode(cell + ivec2(1, 1), lag).xyz, inside.x);
@@ -51,14 +56,14 @@ bool flowtexAlive(vec2 at)
 }
 
 // How far along first * x + bend * x * x a path is inside, by bisection; all of ``piece`` where it does not leave.
-float flowtexInside(vec2 at, vec2 first, vec2 bend, float piece)
+float flowtexInside(int pole, vec2 place, vec2 first, vec2 bend, float piece)
 {
   float low = 0.0;
   float high = piece;
   for (int n = 0; n < FLOWTEX_BISECTIONS; ++n)
   {
     float middle = n == 0 ? piece : 0.5 * (low + high);
-    if (flowtexAlive(at + middle * (first + bend * middle)))
+    if (flowtexAlive(flowtexLeave(pole, place + middle * (first + bend * middle))))
       low = middle;
     else
       high = middle;
@@ -66,44 +71,72 @@ float flowtexInside(vec2 at, vec2 first, vec2 bend, float piece)
   return low;
 }
 
-#ifndef FLOWTEX_COMPOSED
+// How far a path has come that goes on from a place in the plane of a pole, or in index space.
+vec2 flowtexMoved(vec2 start, vec2 moved, int pole, vec2 place, vec2 next)
+{
+  return pole < 0 ? moved + next : flowtexLeave(pole, place + next) - start;
+}
+
+// Goes on straight where a path has ended, and ends it where it is long enough; tells whether it goes on.
+bool flowtexGoesOn(inout FlowtexPath path, vec2 start, float unit, float from, float to)
+{
+  if (path.reach >= FLOWTEX_ENDLESS && from * unit < u_longest)
+    return true;
+  if (path.reach >= FLOWTEX_ENDLESS)
+  {
+    path.reach = from;
+    path.ahead = vec2(0.0);
+  }
+  vec2 at = start + path.moved;
+  int pole = flowtexPole(at);
+  path.moved = flowtexMoved(start, path.moved, pole, flowtexEnter(pole, at), path.ahead * (to - from));
+  return false;
+}
+
+#if defined(FLOWTEX_POLES) || !defined(FLOWTEX_COMPOSED)
 // Follows a path from ``start`` on, from a lag to another one in units of ``unit``, by the midpoint rule.
 void flowtexFollow(inout FlowtexPath path, vec2 start, float unit, float side, float from, float to)
 {
-  if (path.reach < FLOWTEX_ENDLESS)
-  {
-    path.moved += path.ahead * (to - from);
-    return;
-  }
   float lag = from;
   int steps = 0;
+  int pole = -1;
   float h = 0.0;
+  vec2 place = vec2(0.0);
   vec2 next = vec2(0.0);
+  vec2 moved = path.moved;
   bool ended = false;
   do
   {
-    path.moved += next;
+    path.moved = moved;
     lag += h;
-    vec2 at = start + path.moved;
-    vec2 rate = side * unit * flowtexRate(at, lag);
+    vec2 at = start + moved;
+    pole = flowtexPole(at);
+    place = flowtexEnter(pole, at);
+    path.polar = path.polar || pole >= 0;
+    vec2 rate = side * unit * flowtexRate(pole, at, lag);
     float speed = max(abs(rate.x), abs(rate.y));
     bool rests = speed < u_rest;
     h = rests ? 0.0 : min(FLOWTEX_STEP_CELLS / max(speed, FLOWTEX_LEAST_SPEED), to - lag);
-    next = h * side * unit * flowtexRate(at + 0.5 * h * rate, lag + 0.5 * h);
-    ended = rests || ++steps >= FLOWTEX_MOST_STEPS || !flowtexAlive(at + next);
+    vec2 middle = flowtexLeave(pole, place + 0.5 * h * rate);
+    next = h * side * unit * flowtexRate(pole, middle, lag + 0.5 * h);
+    vec2 there = flowtexLeave(pole, place + next);
+    moved = pole < 0 ? moved + next : there - start;
+    ended = rests || ++steps >= FLOWTEX_MOST_STEPS || !flowtexAlive(there);
   }
   while (!ended && lag + h < to * (1.0 - FLOWTEX_LAG_ROUNDING));
   // Without a graphics card what stands in a loop is run each time, whoever needs it.
   if (ended)
   {
-    float low = flowtexInside(start + path.moved, next, vec2(0.0), 1.0);
+    float low = flowtexInside(pole, place, next, vec2(0.0), 1.0);
     path.reach = lag + low * h;
     path.ahead = h > 0.0 ? next / h : vec2(0.0);
-    next = path.ahead * (to - lag);
+    moved = flowtexMoved(start, path.moved, pole, place, path.ahead * (to - lag));
   }
-  path.moved += next;
+  path.moved = moved;
 }
-#else
+#endif
+
+#ifdef FLOWTEX_COMPOSED
 // Paths around a position, at two lags: mean displacements in a unit of lag, the reach, and the unit.
 struct FlowtexNear
 {
@@ -111,13 +144,14 @@ struct FlowtexNear
   vec2 earlier;
   float reach;
   float unit;
+  bool polar;
 };
 
 FlowtexNear flowtexNearOf(vec2 at, float lag, float earlier)
 {
   vec2 inside;
   ivec2 cell = flowtexCellOf(at, inside);
-  FlowtexNear near = FlowtexNear(vec2(0.0), vec2(0.0), 0.0, 0.0);
+  FlowtexNear near = FlowtexNear(vec2(0.0), vec2(0.0), 0.0, 0.0, false);
   for (int n = 0; n < 4; ++n)
   {
     ivec2 corner = ivec2(n & 1, n >> 1);
@@ -129,24 +163,22 @@ FlowtexNear flowtexNearOf(vec2 at, float lag, float earlier)
     // A path ends only between nodes whose paths all end.
     near.reach += weight * min(path.reach, FLOWTEX_MANY_LAGS * lag);
     near.unit += weight * flowtexNode(cell + corner, 0.0).w;
+    near.polar = near.polar || path.polar;
   }
   return near;
 }
 
-// Continues a path by those that begin where it has come, which have been followed up to ``from``.
-void flowtexCompose(inout FlowtexPath path, vec2 start, float unit, float earlier, float from, float to)
+// Continues a path by those that begin where it has come, which have been followed up to ``from``, and gives the
+// lag up to which that goes: to a pole, at most.
+float flowtexCompose(inout FlowtexPath path, vec2 start, float unit, float earlier, float from, float to)
 {
-  if (path.reach < FLOWTEX_ENDLESS)
-  {
-    path.moved += path.ahead * (to - from);
-    return;
-  }
   float lag = from;
   int pieces = 0;
   float piece = 0.0;
   float scale = 1.0;
   float ends = 0.0;
   bool ended = false;
+  bool polar = false;
   vec2 first = vec2(0.0);
   vec2 bend = vec2(0.0);
   do
@@ -159,17 +191,21 @@ void flowtexCompose(inout FlowtexPath path, vec2 start, float unit, float earlie
     bend = (near.slope - near.earlier) / (from - earlier);
     first = near.slope - bend * from;
     ends = ++pieces > FLOWTEX_PIECES ? 0.0 : near.reach;
+    polar = near.polar;
     ended = ends < piece || !flowtexAlive(start + path.moved + piece * (first + bend * piece));
   }
-  while (!ended && lag + piece / scale < to * (1.0 - FLOWTEX_LAG_ROUNDING));
+  while (!polar && !ended && lag + piece / scale < to * (1.0 - FLOWTEX_LAG_ROUNDING));
+  if (polar)
+    return lag;
   if (ended)
   {
-    ends = min(ends, flowtexInside(start + path.moved, first, bend, piece));
+    ends = min(ends, flowtexInside(-1, start + path.moved, first, bend, piece));
     path.reach = lag + ends / scale;
     path.ahead = (first + 2.0 * bend * ends) * scale;
     path.moved += ends * (first + bend * ends) + path.ahead * (to - path.reach);
   }
   else
     path.moved += piece * (first + bend * piece);
+  return to;
 }
 #endif

@@ -19,6 +19,10 @@ uniform float u_pace;
 uniform float u_unit;    // that of the texels
 uniform float u_cell;    // cells of the last layer, in units
 uniform float u_planar;
+//#include common/poles.glsl
+#ifdef FLOWTEX_POLES
+uniform vec3 u_planes[4]; // what the planes of the poles are spanned by
+#endif
 #ifdef FLOWTEX_FLOATS
 out vec4 flowtexOut;
 #else
@@ -77,7 +81,7 @@ vec4 flowtexTexel(vec2 texel)
   vec4 result = vec4(0.0);
 #ifdef FLOWTEX_SLOPES
   vec2 moved = uintBitsToFloat(texelFetch(u_before, node, 0).xy);
-  float reach = uintBitsToFloat(texelFetch(u_last, node, 0).z);
+  float reach = abs(uintBitsToFloat(texelFetch(u_last, node, 0).z));
   result.xyz = (flowtexPosition(vec2(node) + moved) - flowtexPadded(node)) / (u_lag * unit);
   if (u_fourth > 1.5)
     // Where nothing moves, the neighbours alone decide.
@@ -92,9 +96,19 @@ vec4 flowtexTexel(vec2 texel)
   }
   else
   {
-    vec3 alongI = flowtexPadded(node + ivec2(1, 0)) - flowtexPadded(node - ivec2(1, 0));
-    vec3 alongJ = flowtexPadded(node + ivec2(0, 1)) - flowtexPadded(node - ivec2(0, 1));
-    result = vec4(0.5 * (rate.x * alongI + rate.y * alongJ), unit * unit / u_unit) / unit;
+    vec3 alongI = 0.5 * (flowtexPadded(node + ivec2(1, 0)) - flowtexPadded(node - ivec2(1, 0)));
+    vec3 alongJ = 0.5 * (flowtexPadded(node + ivec2(0, 1)) - flowtexPadded(node - ivec2(0, 1)));
+#ifdef FLOWTEX_POLES
+    // One point has one velocity, of which its nodes hold a component each.
+    int pole = flowtexPole(vec2(node));
+    if (pole >= 0 && flowtexTurned(vec2(node)).y == u_poles[pole].x)
+    {
+      rate = flow.w * flowtexPace(flowtexNode(node + flowtexShift(pole), 0.0).xyz);
+      alongI = u_planes[2 * pole];
+      alongJ = u_planes[2 * pole + 1];
+    }
+#endif
+    result = vec4(rate.x * alongI + rate.y * alongJ, unit * unit / u_unit) / unit;
   }
 #endif
   if (u_planar > 0.5)

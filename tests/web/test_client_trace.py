@@ -17,6 +17,7 @@ from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField, examples
 from flowtex._util.array_types import Floats
+from flowtex.camera import Camera
 from flowtex.options import Options
 from flowtex.rendering.cpu import render
 from flowtex.rendering.uniforms import ViewState
@@ -87,7 +88,37 @@ def waves() -> FlowField:
     return FlowField.from_arrays(np.stack([x, y, z], -1), np.stack([u, v, slope], -1))
 
 
+def globe(*axis: float, uneven: float = 0.0, turned: bool = False) -> FlowField:
+    """A globe that turns around an axis, by parallels or, ``turned``, by meridians."""
+    angle, latitude = np.meshgrid(np.linspace(0, 2 * np.pi, 91), np.linspace(90, -90, 46))
+    a, b = angle + uneven * np.sin(angle), np.radians(latitude)
+    points = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], -1)
+    if turned:
+        points = points.transpose(1, 0, 2)
+    return FlowField.from_arrays(points, np.cross(axis, points))
+
+
+def winds() -> FlowField:
+    """Jets and waves all over the Earth."""
+    return web_views(examples.weather(), Options.split(level=250, globe=True))[0].field
+
+
+def bowl() -> FlowField:
+    """A stream over the middle of an elliptic bowl, with a hole beside it."""
+    angle, radius = np.meshgrid(np.linspace(0, 2 * np.pi, 73), np.linspace(0, 1, 31))
+    x, y = 2 * radius * np.cos(angle), radius * np.sin(angle)
+    points = np.stack([x, y, 0.2 * (x**2 + y**2)], axis=-1)
+    velocity = np.stack([np.ones_like(x), 0.3 * x, 0.4 * (x + 0.3 * x * y)], axis=-1)
+    valid = np.hypot(x - 0.7, y - 0.1) > 0.15
+    return FlowField.from_arrays(points, velocity, valid=valid)
+
+
 FIELDS: dict[str, Callable[[], FlowField]] = {
+    "across": lambda: globe(1, 0, 0),
+    "uneven": lambda: globe(1, 0.5, 0, uneven=0.3),
+    "turned": lambda: globe(0.3, 0, 1, turned=True),
+    "winds": winds,
+    "bowl": bowl,
     "plane": gyre,
     "bent": waves,
     "torus": torus,
@@ -210,6 +241,31 @@ def test_another_moment_is_traced_from_what_is_there(client: ClientPage, lines: 
         assert root < 2 * ROOT
         assert share < 2 * SHARE
     assert client.page.evaluate("events") == []
+
+
+@pytest.mark.parametrize("height", [1.2, 0.3, 0.05])
+@pytest.mark.parametrize("name", ["across", "winds"])
+def test_pictures_over_a_pole_are_those_of_numpy(
+    client: ClientPage, name: str, height: float
+) -> None:
+    field, settings = FIELDS[name](), Settings(samples=11)
+    top = field.points[..., 2].max()
+    above = (0.1 * top, 0.05 * top, 3 * top), (0.02 * top, 0.01 * top, top), (0, 1, 0)
+    camera = Camera(*above, parallel=True, parallel_scale=height * top)
+    textures = TextureSet.build(SliceStore(field), settings)
+    plain = Colours(plain=(0.6, 0.6, 0.6), background=(1.0, 0.0, 0.0))
+    data = ClientData(textures, plain, traces=True)
+    assert data.traced
+    header = data.header(settings, camera=state(camera))
+    client.mount(packed(data, header, (0,)), SIZE, controls=False, smooth=False)
+    client.sharp()
+    judge = render(textures, settings, camera, SIZE)
+    root, share, edge = difference(
+        client.picture(), judge.rgb((0.6, 0.6, 0.6), background=(1, 0, 0))
+    )
+    assert judge.covered.mean() > 0.3 and edge < 200
+    assert root < 2 * ROOT
+    assert share < 2 * SHARE
 
 
 @pytest.mark.parametrize("hidden", [[FLOATS], [FLOATS, HALVES]])

@@ -22,9 +22,11 @@ from waiting import wait_until
 
 import flowtex
 from flowtex import examples
+from flowtex.camera import Camera
 from flowtex.examples._double_gyre import nodes as nodes_of
 from flowtex.options import Options
 from flowtex.web.export import export
+from flowtex.web.preview import preview_png
 from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
@@ -384,3 +386,24 @@ def test_a_page_without_webgl_says_so_and_keeps_its_picture(
     page.goto((tmp_path / "page.html").as_uri())
     page.get_by_text("for want of WebGL2").wait_for()
     assert page.locator("#preview").count() == 1
+
+
+def test_the_first_picture_of_a_globe_has_the_coasts_of_its_near_side() -> None:
+    winds = examples.weather()
+
+    def dark(*focus: float) -> NDArray[np.bool_]:
+        pictures = []
+        for coastlines in (True, False):
+            lines = {"coastlines": coastlines, "graticule": False}
+            view = web_views(winds, Options.split(level=250, globe=True, scalars=False, **lines))[0]
+            a, b = np.radians(focus)
+            way = np.array([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)])
+            camera = Camera(tuple(20e6 * way), tuple(6.3e6 * way), (0, 0, 1))
+            data = preview_png(view, (160, 120), camera=camera.to_dict())
+            with Image.open(io.BytesIO(data)) as image:
+                pictures.append(np.asarray(image.convert("L")).astype(int))
+        return pictures[0] < pictures[1] - 30
+
+    europe, pacific = dark(15, 45), dark(-130, 0)
+    assert 0.02 < europe.mean() < 0.3
+    assert pacific.mean() < 0.5 * europe.mean()

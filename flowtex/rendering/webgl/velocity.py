@@ -3,9 +3,9 @@
 It takes a fraction of the bytes of slices, and of the time. What travels is the velocity in index
 space, the nodes' positions with a ghost line around them, and what is blanked, of all nodes that
 paths of the drawn ones may reach. It is the same for paths by length and by time, streamlines and
-pathlines. ``shaders/webgl2/trace.glsl`` follows the paths with steps of half a cell, and composes
-longer ones of a flow that stands still; ``shaders/webgl2/layers.glsl`` makes texels of them as
-:class:`~flowtex.textures.TextureSet` does.
+pathlines. ``shaders/webgl2/trace.glsl`` follows the paths with steps of half a cell, next to a pole
+in the plane there, and composes longer ones of a flow that stands still;
+``shaders/webgl2/layers.glsl`` makes texels of them as :class:`~flowtex.textures.TextureSet` does.
 """
 
 from __future__ import annotations
@@ -15,9 +15,11 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.vectors import norm
 from flowtex.field.interpolation import fill_blanked, nearest_known
+from flowtex.field.poles import Poles
 from flowtex.rendering.webgl.packing import HALF_MAX, half
 from flowtex.rendering.webgl.protocol import Header, Parts, plain_list
 from flowtex.textures import SurfaceGeometry, TextureSet
+from flowtex.trace.charts import Charts
 from flowtex.trace.lags import drawn_lags
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
 
@@ -36,7 +38,7 @@ MOST_STEPS = 64
 
 
 def can_trace(textures: TextureSet) -> bool:
-    """Whether a client can trace a flow: on a structured surface without poles, with signs.
+    """Whether a client can trace a flow: on a structured surface, with signs.
 
     Half precision has to hold the sizes of its cells, and a client the steps of pathlines.
     """
@@ -44,7 +46,6 @@ def can_trace(textures: TextureSet) -> bool:
     if (
         not isinstance(textures.geometry, SurfaceGeometry)
         or textures.paper is not None
-        or field.surface.poles is not None
         or field.sign_free
         or store.given
     ):
@@ -82,6 +83,7 @@ def trace_header(textures: TextureSet) -> Header:
     """Return the numbers of tracing and of laying out the texels."""
     geometry = textures.grid
     surface, store = geometry.field.surface, textures.store
+    poles = surface.poles
     timed, last = store.parameter == "time", float(store.lags[-1])
     rest = (STILL_CELLS / last if store.streamlines else 0.0) if timed else RESTING_CELLS
     rows, columns = geometry.rows, geometry.columns
@@ -90,6 +92,8 @@ def trace_header(textures: TextureSet) -> Header:
         parts += ["open", "nearest"]
     if not (geometry.planar or geometry.is_smooth):
         parts += ["normal"]
+    if poles is not None:
+        parts += ["rays"]
     return {
         "parts": parts,
         # Of all nodes, and the one that the texel before the first would hold.
@@ -107,6 +111,25 @@ def trace_header(textures: TextureSet) -> Header:
         else None,
         "pathlines": not store.streamlines,
         "rest": rest,
+        **({} if poles is None else _poles(poles, geometry.frame)),
+        **({} if timed or np.isinf(store.long_enough) else {"longest": store.long_enough}),
+    }
+
+
+def _poles(poles: Poles, frame: Floats) -> Header:
+    """Return what a client has to know of the poles, beside the part "rays"."""
+    near = Charts(poles).near
+    return {
+        "poles": [
+            {
+                "component": pole.component,
+                "line": pole.line,
+                "inward": pole.inward,
+                "near": near,
+                "plane": plain_list(pole.size * pole.plane @ frame.T),
+            }
+            for pole in poles
+        ]
     }
 
 
@@ -122,6 +145,8 @@ def surface_parts(textures: TextureSet) -> Parts:
     if np.abs(padded).max() < least * 2**24:
         padded = np.rint(padded / least) * least
     parts["padded"] = np.ascontiguousarray(padded, "<f4")
+    if surface.poles is not None:
+        parts["rays"] = np.stack([pole.rays / pole.size for pole in surface.poles]).astype("<f4")
     valid = geometry.field.valid
     if _is_blanked(valid):
         rows, columns = nearest_known(valid)
