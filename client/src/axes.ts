@@ -184,6 +184,12 @@ function borderOf(host: AxesHost, from: [number, number], to: [number, number]):
   const way = subtract(places[PARTS], places[0]);
   const axis = way.map(Math.abs).indexOf(Math.max(...way.map(Math.abs)));
   if (Math.abs(way[axis]) < LEAST_SHARE * length(way)) return null;
+  // Lines along which the coordinate is the same have to lie across the border.
+  const [right, up] = camera.axes;
+  const border = from[1] === to[1] ? right : up;
+  const normal = header.geometry.frame.slice(6).map(Math.abs);
+  const across = [0, 1, 2].find((n) => n !== axis && n !== normal.indexOf(Math.max(...normal)));
+  if (Math.abs(border[across ?? 0]) > 1 - LEAST_SHARE) return null;
   return { name: withUnit(COORDINATES[axis], lengthUnit && `(${lengthUnit})`), values: places.map((place) => place[axis]) };
 }
 

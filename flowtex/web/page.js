@@ -412,7 +412,9 @@ from[1]+(to[1]-from[1])*n/PARTS)),{earth,lengthUnit}=header;if(earth?.map){let a
 map.slice(0,2),earth.map.slice(2)],degrees=places.map(place=>{if(place[along]<low[along]||place[along]>high[along])return NaN;
 let inside=place.map((c,n)=>n<2?clamp(c,low[n],high[n]):c);return lonLatOf(earth,inside,parts.get("lonlat"))?.[along]??NaN});
 return{letters:along?"NS":"EW",values:unwrapped(degrees)}}let way=subtract2(places[PARTS],places[0]),axis=way.map(Math.abs).
-indexOf(Math.max(...way.map(Math.abs)));return Math.abs(way[axis])<LEAST_SHARE*length2(way)?null:{name:withUnit(COORDINATES[axis],
+indexOf(Math.max(...way.map(Math.abs)));if(Math.abs(way[axis])<LEAST_SHARE*length2(way))return null;let[right,up]=camera.
+axes,border=from[1]===to[1]?right:up,normal=header.geometry.frame.slice(6).map(Math.abs),across=[0,1,2].find(n=>n!==axis&&
+n!==normal.indexOf(Math.max(...normal)));return Math.abs(border[across??0])>1-LEAST_SHARE?null:{name:withUnit(COORDINATES[axis],
 lengthUnit&&`(${lengthUnit})`),values:places.map(place=>place[axis])}}function unwrapped(degrees){let turns=0;return degrees.
 map((value,n)=>(n&&Number.isFinite(value-degrees[n-1])&&(turns-=Math.round((value-degrees[n-1])/360)),value+360*turns))}
 function placeAt(camera,{geometry},x,y){let[right,up,ahead]=camera.axes,{height}=camera,{parallel,position,focal_point:focus}=camera.

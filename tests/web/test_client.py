@@ -372,14 +372,60 @@ def test_the_bar_and_the_settings(client: ClientPage) -> None:
     page.locator("[data-name=levels]").click()
     page.locator("[data-name=settings]").click()
     client.sharp()
-    left, top = box(client)
-    page.mouse.move(left + 230, top + 150)
+    page.locator(".picture").hover()
     page.wait_for_function("() => viewers[0].root.shadowRoot.querySelector('.readout').textContent")
     read = page.locator(".readout").inner_text()
     assert read.startswith("(1, 0.5)")
     assert "speed" in read
     assert "m/s" in read
     assert page.locator(".legend").inner_text().split() == ["speed", "(m/s)", "0", "0.5", "1.0"]
+
+
+TICKS = """(kind) => {
+    const { stage, camera, root } = viewers[0];
+    const along = kind === "below" ? 0 : 1;
+    const size = along ? stage.clientHeight : stage.clientWidth;
+    return [...root.shadowRoot.querySelectorAll(`.axes .${kind}:not(.name)`)].map((text) => {
+        const value = Number(text.textContent.replace("−", "-"));
+        const place = camera.project(along ? [1, value, 0] : [value, 0.5, 0])[along];
+        const at = Number(text.getAttribute(along ? "y" : "x"));
+        return [at, (along ? 1 - place : 1 + place) / 2 * size];
+    });
+}"""
+
+
+def test_axes_tell_coordinates_or_a_length_beside_the_picture(client: ClientPage) -> None:
+    client.mount(scene(), (600, 400), smooth=False)
+    client.sharp()
+    page = client.page
+    outside = (".head", ".legend", ".bar")
+    picture = page.locator(".picture").bounding_box()
+    assert picture is not None
+    for name in outside:
+        place = page.locator(name).bounding_box()
+        assert place is None or (
+            place["y"] + place["height"] <= picture["y"]
+            or place["y"] >= picture["y"] + picture["height"]
+        )
+    for zoom in (1, 30):
+        number(client, f"(viewers[0].camera.zoomBy({zoom}), viewers[0].change())")
+        for kind in ("below", "aside"):
+            ticks = np.asarray(page.evaluate(TICKS, kind))
+            assert len(ticks) >= 2
+            np.testing.assert_allclose(*ticks.T, atol=0.6)
+    number(client, "(viewers[0].camera.rotate(0.4, 0.2), viewers[0].change())")
+    assert page.evaluate(TICKS, "below") == page.evaluate(TICKS, "aside") == []
+    page.locator("[data-name=settings]").click()
+    page.get_by_label("Axes").select_option("scale")
+    words = page.locator(".axes .beside").text_content()
+    assert words
+    length = float(words.split()[0])
+    lines = "(all) => Math.max(...all.map((line) => Number(line.getAttribute('x2'))))"
+    pixels = page.locator(".axes line").evaluate_all(lines)
+    height = number(client, "viewers[0].stage.clientHeight / viewers[0].camera.height / 2")
+    np.testing.assert_allclose(pixels, length * height, atol=0.1)
+    page.get_by_label("Axes").select_option("none")
+    assert page.locator(".axes > *").count() == 0
 
 
 def test_a_host_that_builds_anew_shows_all_settings(client: ClientPage) -> None:
