@@ -113,9 +113,9 @@ def legacy(declared: str, values: str = "1 2 3") -> bytes:
 
 
 def crashing() -> bytes:
-    """Return a legacy file by which VTK reads outside of its memory: a cell has 10^9 points."""
+    """Return a legacy file by which VTK reads outside of its memory: a cell has 10^8 points."""
     points = "POINTS 3 float\n0 0 0 1 0 0 0 1 0"
-    cells = "1000000000 0 1 2\nCELL_TYPES 1\n5"
+    cells = "100000000 0 1 2\nCELL_TYPES 1\n5"
     return legacy(f"DATASET UNSTRUCTURED_GRID\n{points}\nCELLS 1 4", cells)
 
 
