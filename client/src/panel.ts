@@ -21,7 +21,7 @@ const HINT_MS = 1600;
 const LATE_MS = 4000;
 const SAVED_MS = 5000;
 /** Height of a view from which on the bar and the legend stand outside the picture. */
-const LEAST_FRAMED_PX = 240;
+const LEAST_FRAMED_PX = 280;
 const KEY = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘" : "Ctrl";
 const HINT = `Click, or hold ${KEY}, to zoom with the wheel`;
 const TIME_RANGE = { min: "0", max: "1", step: "any", "aria-label": "Time" };

@@ -779,7 +779,8 @@ SVG2,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(na
 .ticks span { position: absolute; }
 :host(.flowtex-framed) .card { top: 8px; max-height: calc(100% - 16px); }
 .card {
-  position: absolute; left: 8px; top: 52px; max-width: calc(100% - 16px); max-height: calc(100% - 60px);
+  position: absolute; left: 8px; top: 52px; max-width: calc(100% - 16px); max-height: calc(100% - 60px); pointer-events:\
+ none;
   padding: 5px 6px 7px 10px; overflow: hidden; }
 .card button { pointer-events: auto; }
 .card .first { display: flex; align-items: center; justify-content: space-between; gap: 10px; }
@@ -917,7 +918,7 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
 @container (max-width: 220px) { .legend { display: none; } }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
 :host(.flowtex-bare) :is(.top, .path, .card, .settings, .bar, .handle) { display: none; }
-`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,LEAST_FRAMED_PX=240,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?"⌘":"Ctrl",
+`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,LEAST_FRAMED_PX=280,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?"⌘":"Ctrl",
 HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,
 styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;axes;axesMenu=dom(
 "select",{},AXES.map(kind=>dom("option",{},[kind])));axesRow=dom("label",{class:"row"},[dom("span",{class:"name"},["Axes"]),

@@ -105,9 +105,8 @@ def leaving(*, share: float = 0.6) -> FlowField:
 def mount(client: ClientPage, field: FlowField, **options: Any) -> None:
     view = web_views(field, Options.split(samples=9))[0]
     data = view.page_data()
-    client.mount(
-        packed(data, data.header(view.scene.settings)), (600, 300), smooth=False, **options
-    )
+    plain = {"controls": False, "smooth": False}
+    client.mount(packed(data, data.header(view.scene.settings)), (600, 300), **plain | options)
     client.sharp()
 
 
@@ -134,7 +133,7 @@ def test_a_click_shows_card_and_path(client: ClientPage) -> None:
 
 
 def test_what_leaves_the_surface_is_told(client: ClientPage) -> None:
-    mount(client, leaving())
+    mount(client, leaving(), controls=True)
     client.page.mouse.click(300, 150)
     client.page.locator(".card").wait_for()
     got = card(client.page)
@@ -152,7 +151,7 @@ def test_the_card_closes(client: ClientPage) -> None:
     page = client.page
     ways: list[Callable[[], None]] = [
         lambda: page.keyboard.press("Escape"),
-        lambda: page.mouse.click(560, 20),
+        lambda: page.mouse.click(597, 3),
         lambda: page.locator(".card button").click(),
         lambda: page.mouse.dblclick(320, 160),
     ]

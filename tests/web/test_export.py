@@ -252,7 +252,7 @@ def test_colours_are_chosen_on_a_page(
     with shown():
         page.get_by_text("auto", exact=True).click()
         page.locator("[data-cmap=viridis]").click()
-    inside = (slice(120, 300), slice(60, 300))
+    inside = (slice(150, 270), slice(140, 290))
     assert np.abs(drawn[1] - drawn[0])[inside].mean() > 20
     assert np.abs(drawn[2] - drawn[1])[inside].mean() > 20
     assert np.abs(drawn[3] - drawn[0])[inside].mean() < 1
