@@ -30,7 +30,8 @@ def lag_unit(field: FlowField, parameter: str) -> Floats:
 
     By arc length it is the local cell size, so cells of very different sizes share the same
     lags; by time it is one unit of the field's time. On triangles it is the size of small cells
-    everywhere: there paths are integrated to the last lag, which no path needs to be longer than.
+    everywhere: no path there needs to be longer than the last lag, and paths that have one unit can
+    be composed.
     """
     if parameter == "arclength":
         size = field.surface.cell_size
