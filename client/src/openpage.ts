@@ -9,8 +9,9 @@ import {
   type NamedPart,
   type PartInfo,
 } from "./protocol.ts";
+import type { Source } from "./source.ts";
 import { nameOf } from "./tilechoice.ts";
-import { mountPage, type SceneData, type Source } from "./views.ts";
+import { mountPage, type SceneData } from "./views.ts";
 
 /** Opens the store in which the rest of a page lies. */
 export type OpenStore = (header: Header) => Source;
@@ -42,8 +43,8 @@ function sceneOf(
 ): SceneData {
   for (const [{ digest }, text] of [...tiles.values()].flat()) if (text) texts.set(digest, text);
   if (openStore) return { header, parts: [], source: openStore(header) };
-  const loadTile: SceneData["loadTile"] = (key, steps) => {
-    const needed = (tiles.get(nameOf(key)) ?? []).filter(([{ name }]) => {
+  const load: Source["load"] = (key, steps) => {
+    const needed = ((key && tiles.get(nameOf(key))) ?? []).filter(([{ name }]) => {
       const part = tilePart(name)?.[1] ?? "";
       const step = stepOf(part);
       const isOfAll = part.startsWith("scalars/") && !isOfStep(part, step, header);
@@ -57,7 +58,7 @@ function sceneOf(
       }),
     );
   };
-  return { header, parts: [], loadTile };
+  return { header, parts: [], source: { load, atOnce: 1 } };
 }
 
 /** Unpack the page, and take the preview away once the client has drawn. */

@@ -1,7 +1,7 @@
 // What a view shows of a surface: all of it, or of a large one the root and the tiles that are there.
 //
-//   camera --> Pyramid.choose --> wanted tiles --> onTiles --> host
-//                     |                                          |
+//   camera --> Pyramid.choose --> wanted tiles --> Feed --> Source
+//                     |                                       |
 //                     +--> cover (those that are there) <-- setPart, and the levels of all meshes
 
 import type { Camera } from "./camera.ts";
@@ -29,7 +29,7 @@ import {
   type Choices,
   type TileKey,
 } from "./tilechoice.ts";
-import { Failures } from "./tilequeue.ts";
+import { Failures, type Feed, type Source } from "./source.ts";
 import { flowsOf } from "./tracer.ts";
 import type { Moment } from "./uniforms.ts";
 
@@ -43,9 +43,6 @@ const BUDGET_BYTES = 900e6;
 const BYTES_HELD = 3.5;
 /** Time steps of a tile that are held. */
 const STEPS_HELD = { slices: 4, flow: 24 };
-
-/** Asks for tiles in the order of need; what was asked for before is not needed any more. */
-export type AskTiles = (keys: TileKey[], steps: number[]) => void;
 
 /** A part of the surface that is drawn, with the tile that it is. */
 export interface Layer {
@@ -70,7 +67,8 @@ export interface TileHost {
   readonly settings: Settings;
   readonly canvas: HTMLCanvasElement;
   readonly ratio: number;
-  readonly options: { onTiles?: AskTiles; memory?: number };
+  readonly options: { source?: Source };
+  readonly feed: Feed | null;
   readonly lifetime: { later(call: () => void, delay: number): unknown };
   /** Draw the picture once more, with what has come. */
   refine(): void;
@@ -316,7 +314,7 @@ export class Tiles {
 
   /** Ask for what is missing, once the view has come to rest a little, and again where nothing comes. */
   private ask(all: number[]): void {
-    const { options, lifetime } = this.host;
+    const { feed, lifetime } = this.host;
     // Those that paths lead through are needed too.
     const lacking = (name: string, step: number) =>
       this.tiles.get(name)?.scene?.lacking(step) ?? flowsOf(this.root.header, step);
@@ -327,7 +325,7 @@ export class Tiles {
       performance.now() - this.lastCame < LOST_MS &&
       String(open.sort()) === String([...this.missing].sort()) &&
       (!open.length || String(steps) === String(this.asked.steps));
-    if (this.isWaiting || !options.onTiles) return;
+    if (this.isWaiting || !feed) return;
     if (isAsked) return this.watch();
     this.isWaiting = true;
     lifetime.later(() => {
@@ -335,7 +333,7 @@ export class Tiles {
       if (this.isOver) return;
       this.lastCame = performance.now();
       this.asked = { names: this.missing, steps };
-      options.onTiles?.(this.missing.map(keyOf), steps);
+      feed.wantTiles(this.missing.map(keyOf), steps);
       this.watch();
     }, REQUEST_MS);
   }
@@ -370,7 +368,7 @@ export class Tiles {
       }
       for (const { data } of parts.values()) bytes += BYTES_HELD * data.byteLength;
       bytes += scene?.tracedBytes ?? 0;
-      if (bytes > (this.host.options.memory ?? BUDGET_BYTES) && used < this.count) this.drop(name);
+      if (bytes > (this.host.options.source?.memory ?? BUDGET_BYTES) && used < this.count) this.drop(name);
     }
   }
 
