@@ -5,7 +5,7 @@ import type { ColourChoice } from "./colours.ts";
 import type { Point } from "./picking.ts";
 import type { PixelPlace, Sample } from "./pixelsum.ts";
 import type { Value } from "./protocol.ts";
-import type { Source } from "./source.ts";
+import type { Source } from "./sources/source.ts";
 
 /** A view that has the bar for another one as well. */
 interface Leader {

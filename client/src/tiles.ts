@@ -1,6 +1,6 @@
 // What a view shows of a surface: all of it, or of a large one the root and the tiles that are there.
 //
-//   camera --> Pyramid.choose --> wanted tiles --> Feed --> Source
+//   camera --> Pyramid.choose --> wanted tiles --> Requests --> Source
 //                     |                                       |
 //                     +--> cover (those that are there) <-- setPart, and the levels of all meshes
 
@@ -29,7 +29,7 @@ import {
   type Choices,
   type TileKey,
 } from "./tilechoice.ts";
-import { Failures, type Feed, type Source } from "./source.ts";
+import { Failures, type Requests, type Source } from "./sources/source.ts";
 import { flowsOf } from "./tracer.ts";
 import type { Moment } from "./uniforms.ts";
 
@@ -68,7 +68,7 @@ export interface TileHost {
   readonly canvas: HTMLCanvasElement;
   readonly ratio: number;
   readonly options: { source?: Source };
-  readonly feed: Feed | null;
+  readonly requests: Requests | null;
   readonly lifetime: { later(call: () => void, delay: number): unknown };
   /** Draw the picture once more, with what has come. */
   refine(): void;
@@ -314,7 +314,7 @@ export class Tiles {
 
   /** Ask for what is missing, once the view has come to rest a little, and again where nothing comes. */
   private ask(all: number[]): void {
-    const { feed, lifetime } = this.host;
+    const { requests, lifetime } = this.host;
     // Those that paths lead through are needed too.
     const lacking = (name: string, step: number) =>
       this.tiles.get(name)?.scene?.lacking(step) ?? flowsOf(this.root.header, step);
@@ -325,7 +325,7 @@ export class Tiles {
       performance.now() - this.lastCame < LOST_MS &&
       String(open.sort()) === String([...this.missing].sort()) &&
       (!open.length || String(steps) === String(this.asked.steps));
-    if (this.isWaiting || !feed) return;
+    if (this.isWaiting || !requests) return;
     if (isAsked) return this.watch();
     this.isWaiting = true;
     lifetime.later(() => {
@@ -333,7 +333,7 @@ export class Tiles {
       if (this.isOver) return;
       this.lastCame = performance.now();
       this.asked = { names: this.missing, steps };
-      feed.wantTiles(this.missing.map(keyOf), steps);
+      requests.wantTiles(this.missing.map(keyOf), steps);
       this.watch();
     }, REQUEST_MS);
   }

@@ -30,7 +30,7 @@ import {
 } from "./protocol.ts";
 import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
-import { Feed } from "./source.ts";
+import { Requests } from "./sources/source.ts";
 import { Tiles } from "./tiles.ts";
 import { flowsOf } from "./tracer.ts";
 import type { Program } from "./programs.ts";
@@ -45,7 +45,7 @@ const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify
 
 export class Viewer implements User {
   readonly options: Options;
-  readonly feed: Feed | null;
+  readonly requests: Requests | null;
   readonly graphics: Graphics = sharedGraphics();
   readonly lifetime = new Lifetime();
   readonly player = new Player();
@@ -77,7 +77,7 @@ export class Viewer implements User {
 
   constructor(element: HTMLElement, options: Options = {}) {
     this.options = options;
-    this.feed = options.source ? new Feed(options.source, this) : null;
+    this.requests = options.source ? new Requests(options.source, this) : null;
     const { root } = this;
     root.className = "flowtex";
     root.tabIndex = 0;
@@ -125,7 +125,7 @@ export class Viewer implements User {
     if (this.lifetime.isOver) return;
     this.player.playing = false;
     this.lifetime.end();
-    this.feed?.stop();
+    this.requests?.stop();
     this.tiles?.dispose();
     this.tiles = null;
     this.scene?.dispose();
@@ -146,7 +146,7 @@ export class Viewer implements User {
       );
       return;
     }
-    this.feed?.stop();
+    this.requests?.stop();
     const old = this.header;
     if (old && old.generation !== undefined && old.generation === header.generation) {
       return this.recolour(coloursOf(header));
@@ -457,7 +457,7 @@ export class Viewer implements User {
     const ahead = player.playing ? [1, 2].map((n) => (moment[1] + n) % header.slices.steps) : [];
     const steps = this.missing([moment[0], moment[1], ...this.next, ...ahead]);
     const { source, isComing } = this.options;
-    if (steps.length && source?.hasSteps && !isComing?.()) this.feed?.wantSteps(steps);
+    if (steps.length && source?.hasSteps && !isComing?.()) this.requests?.wantSteps(steps);
     const isMade = !lacking.length && scene.make(moment.slice(0, 2), until);
     this.root.dataset.lacking = String(lacking.length || Number(!isMade));
     this.panel.wait(lacking, isMade, this.renderer.leavesOut);

@@ -3,7 +3,7 @@
 import { dom } from "./dom.ts";
 import type { Header, NamedPart } from "./protocol.ts";
 import type { Options } from "./options.ts";
-import type { Source } from "./source.ts";
+import type { Source } from "./sources/source.ts";
 import { Viewer } from "./viewer.ts";
 
 /** A scene with the parts that are there, and where others come from. */
@@ -65,7 +65,6 @@ export function mountPage(
   const viewers = viewersIn(element, scenes.length, options, (n) => ({ source: scenes[n].source }));
   scenes.forEach(({ header }, n) => viewers[n].setHeader(header));
   scenes.forEach(({ parts }, n) => parts.forEach((part) => viewers[n].setPart(part)));
-  // What is wrong with a source is told before anybody looks closer.
-  scenes[0].source?.open?.().catch((error: Error) => viewers[0].lack(error.message));
+  viewers[0].requests?.open();
   return viewers[0];
 }

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { NamedPart } from "../src/protocol.ts";
-import { Failures, Feed, type Source, type Taker } from "../src/source.ts";
+import { Failures, Requests, type Source, type Taker } from "../src/sources/source.ts";
 import { Messages } from "../src/sources/messages.ts";
 import { nameOf, type TileKey } from "../src/tilechoice.ts";
 
@@ -27,7 +27,7 @@ function host(atOnce?: number) {
     setPart: ({ name }) => void given.push(name),
     lack: (...told) => void lacking.push(told),
   };
-  return { feed: new Feed(source, taker), running, given, lacking };
+  return { requests: new Requests(source, taker), running, given, lacking };
 }
 
 test("what failed is asked for again after a while", () => {
@@ -45,11 +45,11 @@ test("what failed is asked for again after a while", () => {
 
 test("what was wanted and is wanted no more is neither given nor a fault", async (context) => {
   context.mock.method(console, "warn", () => undefined);
-  const { feed, running, given, lacking } = host(2);
+  const { requests, running, given, lacking } = host(2);
   const names = () => running.map(({ name }) => name[4]);
-  feed.wantTiles([[0, 0, 0], [0, 0, 1], [0, 0, 2]], [0]);
+  requests.wantTiles([[0, 0, 0], [0, 0, 1], [0, 0, 2]], [0]);
   assert.deepEqual(names(), ["0", "1"]); // two at a time
-  feed.wantTiles([[0, 0, 1], [0, 0, 3], [0, 0, 4]], [0]);
+  requests.wantTiles([[0, 0, 1], [0, 0, 3], [0, 0, 4]], [0]);
   assert.deepEqual(running.map(({ signal }) => signal.aborted), [true, false, false]);
   running[0].end(new Error("stopped"));
   running[1].end();
@@ -61,17 +61,17 @@ test("what was wanted and is wanted no more is neither given nor a fault", async
   assert.deepEqual(given, ["0/0/1 0"]);
   assert.deepEqual(lacking, [
     ["A part of the surface is shown coarse: a fault", "0/0/3", [0]],
-    ["nobody answers", undefined, [0]], // which is tried again
+    ["A part of the surface is shown coarse: nobody answers", undefined, [0]], // which is tried again
   ]);
 });
 
 test("what was given up is had when it is wanted again", async () => {
-  const { feed, running, given } = host();
+  const { requests, running, given } = host();
   const keys: TileKey[] = [[0, 0, 1]];
-  feed.wantTiles(keys, [0]);
-  feed.stop();
-  feed.wantTiles(keys, [0]);
-  feed.wantTiles(keys, [0]); // it is on its way
+  requests.wantTiles(keys, [0]);
+  requests.stop();
+  requests.wantTiles(keys, [0]);
+  requests.wantTiles(keys, [0]); // it is on its way
   assert.deepEqual(running.map(({ signal }) => signal.aborted), [true, false]);
   running[0].end(new Error("stopped"));
   running[1].end();
@@ -82,9 +82,9 @@ test("what was given up is had when it is wanted again", async () => {
 
 test("of time steps those that are needed now come first, and few others", async (context) => {
   context.mock.method(console, "warn", () => undefined);
-  const { feed, running, given, lacking } = host(1);
-  feed.wantSteps([0, 1, 2, 3, 4, 5]);
-  feed.wantSteps([7, 1]);
+  const { requests, running, given, lacking } = host(1);
+  requests.wantSteps([0, 1, 2, 3, 4, 5]);
+  requests.wantSteps([7, 1]);
   assert.deepEqual(running.map(({ signal }) => signal.aborted), [false]);
   for (let n = 0; n < 6; n += 1) {
     running[n].end(n === 5 ? new Error("no disk") : undefined);

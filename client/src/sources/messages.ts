@@ -2,7 +2,7 @@
 // views of a widget as ever, before the message that ends their request.
 
 import type { NamedPart } from "../protocol.ts";
-import type { LoadTile, Source } from "../source.ts";
+import type { LoadTile, Source } from "./source.ts";
 
 /** The end of a request, with what went wrong. */
 export interface Loaded {

@@ -1,7 +1,7 @@
 // A source of parts that reads them from the store that they lie in: flowtex/pyramid/layout.py tells what is
 // where, and flowtex/pyramid/client_parts.py what the surface of a tile is.
 
-import { fromHalf } from "./half.ts";
+import { fromHalf } from "../half.ts";
 import {
   infosOfFile,
   partsOfFile,
@@ -13,10 +13,10 @@ import {
   type StoreHeader,
   type TileHeader,
   type TraceHeader,
-} from "./protocol.ts";
+} from "../protocol.ts";
 import type { LoadTile, Source } from "./source.ts";
 import { Store, StoreError, storeError, type StoreFault } from "./store.ts";
-import { nameOf, type TileKey } from "./tilechoice.ts";
+import { nameOf, type TileKey } from "../tilechoice.ts";
 
 /** Greatest numbers of layers and of lags, of nodes along a side of a tile, and of bytes of a file. */
 const MOST_LAYERS = 64;
@@ -26,10 +26,7 @@ const MOST_BYTES = 2 ** 28;
 /** Parts that a tile may need beside its flow. */
 const TRACED_FROM = ["padded", "unit", "open", "nearest", "normal", "rays"];
 
-/** What is said of what could not be had, and why. */
-const COARSE = "A part of the surface is shown coarse:";
-const ABSENT_STEP = "A time step cannot be shown:";
-const NO_STORE = "The surface is shown coarse:";
+/** Why something could not be had. */
 const REASONS: Record<Exclude<StoreFault, "other">, string> = {
   missing: "it is not in the store, or the store is not open to everyone.",
   broken: "what the store has of it is broken.",
@@ -179,6 +176,13 @@ function speedOf(flow: NamedPart, { geometry, slices }: Place, typical: number):
   return { name: "", data, shape: [rows, columns], digest: `${flow.digest} speed` };
 }
 
+/** An error with its reason in words for everybody, once. */
+function explained(error: unknown): StoreError {
+  const known = storeError(error);
+  if (known.fault === "other" || known.detail !== known.message) return known;
+  return new StoreError(known.fault, REASONS[known.fault], known.message);
+}
+
 export class Stream implements Source {
   readonly hasSteps = true;
   readonly atOnce = 6;
@@ -202,13 +206,10 @@ export class Stream implements Source {
 
   /** Make sure that the store is that of the page. */
   open(): Promise<void> {
-    if (this.opening) return this.opening;
-    this.opening = this.compare().catch((error) => {
-      const { fault, message } = storeError(error);
-      if (fault === "other") throw error;
-      if (fault === "unreachable") this.opening = null; // for another try
-      const text = `${fault === "missing" ? NO_STORE : COARSE} ${REASONS[fault]}`;
-      throw new StoreError(fault, text, message);
+    this.opening ??= this.compare().catch((error) => {
+      const fault = explained(error);
+      if (fault.fault === "unreachable") this.opening = null; // for another try
+      throw fault;
     });
     return this.opening;
   }
@@ -233,7 +234,7 @@ export class Stream implements Source {
   readonly load: LoadTile = async (tile, steps, signal, has) => {
     const key: TileKey = tile ?? [this.told.depth, 0, 0];
     const name = nameOf(key);
-    return this.loaded(tile ? COARSE : ABSENT_STEP, signal, async (whole) => {
+    return this.loaded(signal, async (whole) => {
       const late = steps.filter((step) => !has(`slices/${step}`) && !has(`flow/${step}`));
       const known = tile ? (has("header") && !late.length ? this.headers.get(name) : undefined) : this.header;
       const surface = known === undefined ? this.surface(key, whole) : { header: known, parts: [] };
@@ -258,23 +259,18 @@ export class Stream implements Source {
   };
 
   /** Call with a signal that ends all of it where a part fails. */
-  private async loaded<T>(what: string, signal: AbortSignal, load: (whole: AbortSignal) => Promise<T>) {
+  private async loaded<T>(signal: AbortSignal, load: (whole: AbortSignal) => Promise<T>): Promise<T> {
     const controller = new AbortController();
-    let stop = (): void => undefined;
-    const stopped = new Promise<never>((_, reject) => {
-      stop = () => reject(signal.reason);
-      signal.addEventListener("abort", stop, { once: true });
-    });
+    signal.addEventListener("abort", () => controller.abort(), { once: true });
     try {
-      // What is for all who ask goes on though one of them has gone.
-      return await Promise.race([this.open().then(() => load(controller.signal)), stopped]);
+      await this.open();
+      signal.throwIfAborted();
+      return await load(controller.signal);
     } catch (error) {
       signal.throwIfAborted();
-      const { fault, message } = storeError(error);
-      throw fault === "other" ? error : new StoreError(fault, `${what} ${REASONS[fault]}`, message);
+      throw explained(error);
     } finally {
       controller.abort();
-      signal.removeEventListener("abort", stop);
     }
   }
 

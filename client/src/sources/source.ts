@@ -1,14 +1,14 @@
 // How parts travel to a view: whoever has them is its Source, and gives those of a tile, or of the whole
-// surface, at time steps. A view asks for what it shows by its Feed, the most needed first.
+// surface, at time steps. A view asks for what it shows by its Requests, the most needed first.
 //
-//   kernel.ts      messages of a notebook's kernel          openpage.ts   text in an exported page
-//   app/browser.ts files of the application's server        stream.ts     objects of a Zarr store
+//   messages.ts   a kernel answers         embedded.ts   text in an exported page
+//   files.ts      a server makes them      stream.ts     objects of a Zarr store
 //
 // flowtex/web/source.py is the other side of the first three.
 
-import type { NamedPart } from "./protocol.ts";
+import type { NamedPart } from "../protocol.ts";
 import type { StoreError } from "./store.ts";
-import { nameOf, type TileKey } from "./tilechoice.ts";
+import { nameOf, type TileKey } from "../tilechoice.ts";
 
 /** Gives the parts of a tile at time steps, or those of the whole; what is there already may be left out. */
 export type LoadTile = (
@@ -45,6 +45,7 @@ const FAILED_MS = 10000;
 /** Jobs that run at once where a source does not say, and time steps that wait though others are needed now. */
 const AT_ONCE = 4;
 const SPARE_STEPS = 4;
+const ALL_COARSE = "The surface is shown coarse";
 const COARSE = "A part of the surface is shown coarse";
 const ABSENT_STEP = "A time step cannot be shown";
 
@@ -68,8 +69,8 @@ export class Failures {
 
 /** Jobs of a source, some of which run at a time. */
 class Queue {
-  private readonly source: Source;
-  private readonly taker: Taker;
+  readonly source: Source;
+  readonly taker: Taker;
   private readonly running = new Map<string, AbortController>();
   /** Those that wait or run, and those of late that could not be had. */
   jobs: Job[] = [];
@@ -119,24 +120,37 @@ class Queue {
     this.next();
   }
 
-  private fail([key, steps]: Job, error: unknown): void {
-    const { fault, message = String(error), detail = "" } = error as Partial<StoreError>;
-    console.warn(message, detail);
-    this.failed.add(String([key, steps]));
-    const text = fault ? message : `${key ? COARSE : ABSENT_STEP}: ${message}`;
+  private fail(job: Job, error: unknown): void {
+    const [key, steps] = job;
+    this.failed.add(String(job));
     // Where nobody answers it is tried again.
-    this.taker.lack(text, key && fault !== "unreachable" ? nameOf(key) : undefined, steps);
+    const isAway = (error as Partial<StoreError>).fault === "unreachable";
+    const name = key && !isAway ? nameOf(key) : undefined;
+    this.taker.lack(wordsOf(key ? COARSE : ABSENT_STEP, error), name, steps);
   }
 }
 
+/** What is said of a fault; what is no sentence of its own follows on what cannot be shown for it. */
+function wordsOf(what: string, error: unknown): string {
+  const { fault, message = String(error), detail = "" } = error as Partial<StoreError>;
+  console.warn(message, detail);
+  return fault === "other" ? message : `${what}: ${message}`;
+}
+
 /** What a view asks of its source. */
-export class Feed {
+export class Requests {
   private readonly tiles: Queue;
   private readonly wholes: Queue;
 
   constructor(source: Source, taker: Taker) {
     this.tiles = new Queue(source, taker);
     this.wholes = new Queue(source, taker);
+  }
+
+  /** Tell what is wrong with the source before anybody looks closer. */
+  open(): void {
+    const { source, taker } = this.tiles;
+    source.open?.().catch((error) => taker.lack(wordsOf(ALL_COARSE, error)));
   }
 
   /** Tiles are lacking, in the order of need; no others that were asked for before are needed. */
