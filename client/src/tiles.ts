@@ -33,9 +33,8 @@ import { Failures, type Requests, type Source } from "./sources/source.ts";
 import { flowsOf } from "./tracer.ts";
 import type { Moment } from "./uniforms.ts";
 
-/** Milliseconds from a change of what is wanted to the request, and after which a request counts as lost. */
+/** Milliseconds from a change of what is wanted to the request. */
 const REQUEST_MS = 60;
-const LOST_MS = 8000;
 /** Milliseconds that tiles may take of a picture on their way to the graphics card. */
 const LOAD_MS = 25;
 /** Memory of the tiles in bytes where nobody says, and of a byte that came, here and on the graphics card. */
@@ -93,12 +92,10 @@ export class Tiles {
     names: "",
   };
   private drawn = "";
-  private asked: { names: string[]; steps: number[] } = { names: [], steps: [] };
   private count = 0;
   private isWaiting = false;
-  private isWatched = false;
+  private hasAsked = false;
   private isOver = false;
-  private lastCame = 0;
   /** Tiles that cannot be had, each with what of it was wanted. */
   private readonly failed = new Failures();
   /** Limits of triangles for the colours that the scene came with. */
@@ -147,7 +144,6 @@ export class Tiles {
       this.giveMap(tile);
       this.giveLimits(tile);
     } else tile.scene?.forget(part.name);
-    this.lastCame = performance.now();
     const { names, steps } = this.chosen;
     this.missing = this.missing.filter((missing) => !this.isHere(missing, steps));
     const shown = cover(this.chosen.choices, (other) => this.isHere(other, steps));
@@ -156,7 +152,6 @@ export class Tiles {
 
   /** Draw in other colours, of which a part of the header tells; what they need is asked for. */
   recolour(colours: Partial<Header> = {}): void {
-    this.asked = { names: [], steps: [] };
     const { mesh, scalars } = this.root.header;
     const { steps } = this.chosen;
     for (const tile of this.tiles.values()) {
@@ -264,7 +259,7 @@ export class Tiles {
     const until = performance.now() + LOAD_MS;
     const wanted = this.obtainable(wantedTiles(choices), steps, header.pyramid.depth);
     this.missing = wanted.filter((name) => !this.isHere(name, steps));
-    this.ask(steps);
+    this.ask();
     this.trim(steps);
     // The largest on the screen come first.
     for (const name of wanted) if (this.isHere(name, steps)) this.load(name, steps, until);
@@ -312,43 +307,22 @@ export class Tiles {
     return true;
   }
 
-  /** Ask for what is missing, once the view has come to rest a little, and again where nothing comes. */
-  private ask(all: number[]): void {
+  /** Ask for what is missing, and for nothing else, once the view has come to rest a little. */
+  private ask(): void {
     const { requests, lifetime } = this.host;
-    // Those that paths lead through are needed too.
-    const lacking = (name: string, step: number) =>
-      this.tiles.get(name)?.scene?.lacking(step) ?? flowsOf(this.root.header, step);
-    const needed = this.missing.flatMap((name) => all.flatMap((step) => lacking(name, step)));
-    const steps = [...new Set(needed)].sort((a, b) => a - b);
-    const open = this.asked.names.filter((name) => !this.isHere(name, this.asked.steps));
-    const isAsked =
-      performance.now() - this.lastCame < LOST_MS &&
-      String(open.sort()) === String([...this.missing].sort()) &&
-      (!open.length || String(steps) === String(this.asked.steps));
-    if (this.isWaiting || !requests) return;
-    if (isAsked) return this.watch();
+    if (!requests || this.isWaiting || !(this.missing.length || this.hasAsked)) return;
     this.isWaiting = true;
     lifetime.later(() => {
       this.isWaiting = false;
       if (this.isOver) return;
-      this.lastCame = performance.now();
-      this.asked = { names: this.missing, steps };
+      this.hasAsked = this.missing.length > 0;
+      // Those that paths lead through are needed too.
+      const lacking = (name: string, step: number) =>
+        this.tiles.get(name)?.scene?.lacking(step) ?? flowsOf(this.root.header, step);
+      const needed = this.missing.flatMap((name) => this.chosen.steps.flatMap((step) => lacking(name, step)));
+      const steps = [...new Set(needed)].sort((a, b) => a - b);
       requests.wantTiles(this.missing.map(keyOf), steps);
-      this.watch();
     }, REQUEST_MS);
-  }
-
-  /** Ask again for what is missing where nothing has come for a while, in a view at rest as well. */
-  private watch(): void {
-    if (this.isWatched || !this.missing.length) return;
-    this.isWatched = true;
-    this.host.lifetime.later(
-      () => {
-        this.isWatched = false;
-        if (!this.isOver) this.ask(this.chosen.steps);
-      },
-      LOST_MS - (performance.now() - this.lastCame),
-    );
   }
 
   /** Drop the tiles that were wanted longest ago where all take too much memory, and steps of long ago. */

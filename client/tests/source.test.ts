@@ -45,6 +45,9 @@ test("what failed is asked for again after a while", () => {
 
 test("what was wanted and is wanted no more is neither given nor a fault", async (context) => {
   context.mock.method(console, "warn", () => undefined);
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  let now = 0;
+  context.mock.method(performance, "now", () => now);
   const { requests, running, given, lacking } = host(2);
   const names = () => running.map(({ name }) => name[4]);
   requests.wantTiles([[0, 0, 0], [0, 0, 1], [0, 0, 2]], [0]);
@@ -61,8 +64,16 @@ test("what was wanted and is wanted no more is neither given nor a fault", async
   assert.deepEqual(given, ["0/0/1 0"]);
   assert.deepEqual(lacking, [
     ["A part of the surface is shown coarse: a fault", "0/0/3", [0]],
-    ["A part of the surface is shown coarse: nobody answers", undefined, [0]], // which is tried again
+    ["A part of the surface is shown coarse: nobody answers", undefined, [0]],
   ]);
+  requests.wantTiles([[0, 0, 4]], [0]); // too early to be tried again
+  assert.equal(running.length, 4);
+  now += 10_001;
+  context.mock.timers.tick(10_100);
+  assert.deepEqual(names().slice(4), ["4"]);
+  running[4].end();
+  await settled();
+  assert.deepEqual(given, ["0/0/1 0", "0/0/4 0"]);
 });
 
 test("what was given up is had when it is wanted again", async () => {
@@ -82,6 +93,7 @@ test("what was given up is had when it is wanted again", async () => {
 
 test("of time steps those that are needed now come first, and few others", async (context) => {
   context.mock.method(console, "warn", () => undefined);
+  context.mock.timers.enable({ apis: ["setTimeout"] });
   const { requests, running, given, lacking } = host(1);
   requests.wantSteps([0, 1, 2, 3, 4, 5]);
   requests.wantSteps([7, 1]);

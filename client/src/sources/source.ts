@@ -42,6 +42,8 @@ type Job = readonly [key: TileKey | null, steps: number[]];
 
 /** Milliseconds after which what could not be had may be asked for again. */
 const FAILED_MS = 10000;
+/** Milliseconds by which a timer may be early. */
+const SPARE_MS = 20;
 /** Jobs that run at once where a source does not say, and time steps that wait though others are needed now. */
 const AT_ONCE = 4;
 const SPARE_STEPS = 4;
@@ -72,9 +74,9 @@ class Queue {
   readonly source: Source;
   readonly taker: Taker;
   private readonly running = new Map<string, AbortController>();
-  /** Those that wait or run, and those of late that could not be had. */
+  /** Those that wait or run, and those that could not be had, which are tried again. */
   jobs: Job[] = [];
-  failed = new Failures();
+  private failed = new Failures();
 
   constructor(source: Source, taker: Taker) {
     this.source = source;
@@ -93,10 +95,16 @@ class Queue {
     this.next();
   }
 
+  /** Give up all, and forget what could not be had. */
+  stop(): void {
+    this.want([]);
+    this.failed = new Failures();
+  }
+
   private next(): void {
     for (const job of this.jobs) {
       if (this.running.size >= (this.source.atOnce ?? AT_ONCE)) return;
-      if (!this.running.has(String(job))) void this.run(job);
+      if (!this.running.has(String(job)) && !this.failed.has(String(job))) void this.run(job);
     }
   }
 
@@ -116,14 +124,15 @@ class Queue {
     }
     if (signal.aborted) return;
     this.running.delete(String(job));
-    this.jobs = this.jobs.filter((other) => String(other) !== String(job));
+    if (!this.failed.has(String(job))) this.jobs = this.jobs.filter((other) => String(other) !== String(job));
     this.next();
   }
 
   private fail(job: Job, error: unknown): void {
     const [key, steps] = job;
     this.failed.add(String(job));
-    // Where nobody answers it is tried again.
+    setTimeout(() => this.next(), FAILED_MS + SPARE_MS);
+    // A coarser tile takes the place of another, but where nobody answers.
     const isAway = (error as Partial<StoreError>).fault === "unreachable";
     const name = key && !isAway ? nameOf(key) : undefined;
     this.taker.lack(wordsOf(key ? COARSE : ABSENT_STEP, error), name, steps);
@@ -160,19 +169,15 @@ export class Requests {
 
   /** Time steps of the whole are lacking; a few that were asked for before may be needed again. */
   wantSteps(steps: number[]): void {
-    const { jobs, failed } = this.wholes;
-    const before = jobs.flatMap(([, some]) => some);
-    const isDue = (step: number) => !before.includes(step) && !failed.has(String([null, [step]]));
-    if (!steps.some(isDue)) return;
+    const before = this.wholes.jobs.flatMap(([, some]) => some);
+    if (steps.every((step) => before.includes(step))) return;
     const wanted = [...new Set([...steps, ...before])].slice(0, steps.length + SPARE_STEPS);
     this.wholes.want(wanted.map((step) => [null, [step]]));
   }
 
   /** Give up what is on its way: it is of a scene, or in colours, that are not shown any more. */
   stop(): void {
-    for (const queue of [this.tiles, this.wholes]) {
-      queue.want([]);
-      queue.failed = new Failures();
-    }
+    this.tiles.stop();
+    this.wholes.stop();
   }
 }
