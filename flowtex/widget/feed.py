@@ -1,8 +1,8 @@
 """Sends a client its arrays: coarse ones first, then all, then what it asks for.
 
-Two workers do all that takes time. One answers the client from the scene that there is; the other
+Two workers do what takes time. One sends the client what shows the scene that there is; the other
 makes the next scene, the whole one after a coarse one or that of new settings, and puts it in the
-place of the first when it can be shown.
+place of the first when it can be shown. What a client asks for is made by the scene's source.
 
 An array that was sent to some page already is offered by its digest and not sent: a page that
 shows the same mesh many times holds it once, and asks for what it lacks.
@@ -130,8 +130,10 @@ class Feed:
             self._answers.do(lambda: self._end(request))  # after what is being sent
             return
         self._requests.add(request)
-        made = self._source.ask(key, steps, lambda: request not in self._requests)
-        made.add_done_callback(partial(self._answer, self.scene, request, key))
+        source = self._source
+        answer = partial(self._answer, source.scene, request, key)
+        made = source.ask(key, steps, lambda: request not in self._requests)
+        made.add_done_callback(answer)
 
     def drop(self, request: str) -> None:
         """Give up what a client does not need any more."""
