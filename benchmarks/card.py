@@ -117,7 +117,7 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
 def _shown(whole: Any, settings: Any, camera: Any, size: tuple[int, int]) -> Iterator[Any]:
     """Give the key, data and parts of the root and of tiles, and the tiles that cover some."""
     from flowtex.rendering import tile_choice as choice
-    from flowtex.web.tiles import packed_tile, tile_loader
+    from flowtex.web.source import TileSource
 
     shown: dict[Any, Any] = {None: []}
     if whole.pyramid is not None:
@@ -127,15 +127,13 @@ def _shown(whole: Any, settings: Any, camera: Any, size: tuple[int, int]) -> Ite
         planes = np.array([[*side, reach - side @ focus] for side, reach in sides])
         sight = choice.TileView(None, half, size[1], planes, choice.cell_pixels(settings))
         shown = choice.cover(choice.choose_tiles(whole.pyramid, sight), lambda key: True)
-        loader, steps = tile_loader(whole, whole.pyramid), [whole.source(0)]
     yield None, whole, {**whole.surface(), **whole.step(0)}, shown.pop(None)
-    for key, finer in shown.items():  # one by one: all of them may be more than a loader keeps
-        loader.request([key], steps)
-        loader.wait()
-        tile = loader.get(key, steps)
-        if tile.prepared is not None:  # something of it is drawn
-            parts = {n.split("/", 4)[4]: p for n, p in packed_tile(whole, tile, [0]).items()}
-            yield key, tile.prepared[1], parts, finer
+    source = TileSource(whole)
+    for key, finer in shown.items():
+        tile = source.tile(key, [0])
+        if tile is not None:  # something of it is drawn
+            parts = {n.split("/", 4)[4]: p for n, p in source.parts(key, [0]).items()}
+            yield key, tile, parts, finer
 
 
 def _arrays(data: Any, parts: Any) -> dict[str, NDArray[Any]]:

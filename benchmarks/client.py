@@ -25,7 +25,7 @@ from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Parts
 from flowtex.tiles import TileKey
-from flowtex.web.tiles import packed_tile, tile_loader
+from flowtex.web.source import TileSource
 from flowtex.web.view import web_views
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
@@ -126,17 +126,8 @@ def large(*, gpu: bool, repeats: int) -> Table:
 
 def _tiles(whole: ClientData) -> Callable[[Any, Any], Parts]:
     """Return what gives the page the tiles of a scene."""
-    if whole.pyramid is None:
-        return lambda key, steps: {}
-    loader = tile_loader(whole, whole.pyramid)
-
-    def made(key: Any, steps: Any) -> Parts:
-        loader.request([TileKey(*key)], steps)
-        loader.wait()
-        tile = loader.get(TileKey(*key), steps)
-        return {} if tile is None else packed_tile(whole, tile, steps)
-
-    return made
+    source = TileSource(whole)
+    return lambda key, steps: source.parts(TileKey(*key), steps)
 
 
 def first_parts() -> float:

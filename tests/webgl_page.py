@@ -19,7 +19,7 @@ from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Parts, part_info, parts_file
 from flowtex.tiles import TileKey
 from flowtex.web.assets import asset
-from flowtex.web.tiles import packed_tile, tile_loader
+from flowtex.web.source import TileSource
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
@@ -49,12 +49,16 @@ MOUNT = """([scenes, options, size]) => {
   document.body.append(element);
   const heard = {};
   for (const name of options.hear ?? []) heard[name] = (value) => events.push([name, value]);
-  const loadTile = async (key, steps) => {
+  const load = async (key, steps) => {
+    if (!key) {
+      events.push(["load", ...steps]);
+      return [];
+    }
     const answer = await fetch(`http://tiles.test/${JSON.stringify([key, steps])}`);
     return client.partsOfFile(await answer.arrayBuffer());
   };
   const unpacked = [scenes].flat().map(({ header, parts }) => ({
-    header, parts: unpack(parts), loadTile,
+    header, parts: unpack(parts), source: { load, hasSteps: Boolean(options.gives) },
   }));
   const viewer = client.mountPage(element, unpacked, { ...options, ...heard });
   viewers.push(viewer);
@@ -88,17 +92,8 @@ def packed(scene: ClientData, header: Mapping[str, Any], steps: tuple[int, ...] 
 
 def tile_maker(data: ClientData) -> TileMaker:
     """Return what makes the tiles of a surface when they are asked for."""
-    assert data.pyramid is not None
-    loader = tile_loader(data, data.pyramid)
-
-    def tile(key: Any, steps: Any) -> Parts:
-        loader.request([TileKey(*key)], steps)
-        loader.wait()
-        made = loader.get(TileKey(*key), steps)
-        assert made is not None
-        return packed_tile(data, made, steps)
-
-    return tile
+    source = TileSource(data)
+    return lambda key, steps: source.parts(TileKey(*key), steps)
 
 
 @dataclass

@@ -1,64 +1,12 @@
 // What an exported page does: flowtex/web/export.py writes the page around it.
 
-import {
-  isOfStep,
-  partOfText,
-  stepOf,
-  tilePart,
-  type Header,
-  type NamedPart,
-  type PartInfo,
-} from "./protocol.ts";
-import { nameOf } from "./tilechoice.ts";
-import { mountPage, type SceneData, type Source } from "./views.ts";
+import type { Header, NamedPart } from "./protocol.ts";
+import { Embedded } from "./sources/embedded.ts";
+import type { Source } from "./sources/source.ts";
+import { mountPage } from "./views.ts";
 
 /** Opens the store in which the rest of a page lies. */
 export type OpenStore = (header: Header) => Source;
-
-/** A part with its text as the page has it; what lies in the page already has none. */
-type Packed = [info: PartInfo, text: string];
-
-/** What lies in the page of one of the views: its parts, and those of each tile by its name. */
-function packedOf(view: string): { parts: Packed[]; tiles: Map<string, Packed[]> } {
-  const [parts, tiles]: [Packed[], Map<string, Packed[]>] = [[], new Map()];
-  for (const element of document.querySelectorAll<HTMLElement>(`script[data-view="${view}"]`)) {
-    const info: PartInfo = JSON.parse(element.dataset.part ?? "");
-    const packed: Packed = [info, element.textContent ?? ""];
-    const tile = tilePart(info.name)?.[0];
-    if (tile) tiles.set(tile, [...(tiles.get(tile) ?? []), packed]);
-    else parts.push(packed);
-    element.remove();
-  }
-  return { parts, tiles };
-}
-
-/** A view as it lies in the page; `known` has what is unpacked, and `texts` what is not, by digests. */
-function sceneOf(
-  header: Header,
-  tiles: Map<string, Packed[]>,
-  known: Map<string, NamedPart>,
-  texts: Map<string, string>,
-  openStore?: OpenStore,
-): SceneData {
-  for (const [{ digest }, text] of [...tiles.values()].flat()) if (text) texts.set(digest, text);
-  if (openStore) return { header, parts: [], source: openStore(header) };
-  const loadTile: SceneData["loadTile"] = (key, steps) => {
-    const needed = (tiles.get(nameOf(key)) ?? []).filter(([{ name }]) => {
-      const part = tilePart(name)?.[1] ?? "";
-      const step = stepOf(part);
-      const isOfAll = part.startsWith("scalars/") && !isOfStep(part, step, header);
-      return Number.isNaN(step) || steps.includes(step) || isOfAll;
-    });
-    return Promise.all(
-      needed.map(async ([info, text]) => {
-        const part = known.get(info.digest);
-        if (part) return { ...part, name: info.name };
-        return partOfText(info, text || (texts.get(info.digest) ?? ""));
-      }),
-    );
-  };
-  return { header, parts: [], loadTile };
-}
 
 /** Unpack the page, and take the preview away once the client has drawn. */
 export async function openPage(openStore?: OpenStore): Promise<void> {
@@ -70,10 +18,13 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
     const headers: Header[] = JSON.parse(document.getElementById("headers")?.textContent ?? "");
     const known = new Map<string, NamedPart>();
     const texts = new Map<string, string>();
-    const packed = headers.map((_, n) => packedOf(String(n)));
-    const scenes = headers.map((header, n) =>
-      sceneOf({ ...headers[0], ...header }, packed[n].tiles, known, texts, openStore),
+    const embedded = headers.map(
+      (header, n) => new Embedded({ ...headers[0], ...header }, String(n), known, texts),
     );
+    const scenes = embedded.map((source) => {
+      const { header } = source;
+      return { header, parts: [], source: openStore ? openStore(header) : source };
+    });
     const look = () => {
       // The client says why in its own place, which the preview covers.
       status.hidden = !place.querySelector('[data-failed="true"]');
@@ -99,12 +50,12 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
     // Meanwhile the shaders are built.
     for (const [n, viewer] of together.entries()) {
       const view = together.length > 1 ? ` of view ${n + 1}` : "";
-      for (const [m, [info, text]] of packed[n].parts.entries()) {
-        const done = `${view}, ${m} of ${packed[n].parts.length} parts`;
-        (loading.lastElementChild as HTMLElement).textContent = done;
-        const part = known.get(info.digest) ?? (await partOfText(info, text));
-        known.set(info.digest, part);
-        viewer.setPart({ ...part, name: info.name });
+      const { parts } = embedded[n];
+      for (const [m, packed] of parts.entries()) {
+        (loading.lastElementChild as HTMLElement).textContent = `${view}, ${m} of ${parts.length} parts`;
+        const part = await embedded[n].unpacked(packed);
+        known.set(part.digest, part);
+        viewer.setPart(part);
       }
     }
     isComing = false;

@@ -5,7 +5,7 @@ import type { ColourChoice } from "./colours.ts";
 import type { Point } from "./picking.ts";
 import type { PixelPlace, Sample } from "./pixelsum.ts";
 import type { Value } from "./protocol.ts";
-import type { TileKey } from "./tilechoice.ts";
+import type { Source } from "./sources/source.ts";
 
 /** A view that has the bar for another one as well. */
 interface Leader {
@@ -29,20 +29,16 @@ export interface Options {
   onPoint?: (point: Point) => void;
   /** What tells how the texture at the chosen point comes about; its samples are drawn as well. */
   explainer?: Explainer;
-  /** The parts of a time step are lacking. */
-  onNeed?: (step: number) => void;
-  /** Tiles are lacking, in the order of need; no others that were asked for before are needed. */
-  onTiles?: (keys: TileKey[], steps: number[]) => void;
+  /** Where what is lacking comes from. */
+  source?: Source;
   /** A picture is complete. */
   onFrame?: () => void;
   onSetting?: (name: string, value: Value) => void;
-  /** Colours are chosen, which the host changes. */
   /** Whether parts are still on their way, which nobody has to ask for. */
   isComing?: () => boolean;
+  /** Colours are chosen, which the host changes. */
   onColours?: (choice: ColourChoice) => void;
   onControls?: (shown: boolean) => void;
-  /** Memory in bytes that tiles may take, here and on the graphics card. */
-  memory?: number;
   /** Whether nothing but the picture is shown. */
   bare?: boolean;
   /** Whether the host makes textures anew where a setting asks for it. */

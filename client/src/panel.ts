@@ -302,7 +302,8 @@ export class Panel {
     if (this.doing.textContent !== doing) this.doing.textContent = doing;
     if (this.count.textContent !== count) this.count.textContent = count;
     busy.hidden = !(doing || count);
-    if (!missing.length || viewer.options.onNeed || viewer.options.isComing?.() || this.lateTimer) return;
+    const { source, isComing } = viewer.options;
+    if (!missing.length || source?.hasSteps || isComing?.() || this.lateTimer) return;
     // Parts come in any order.
     this.lateTimer = viewer.lifetime.later(() => {
       this.lateTimer = null;

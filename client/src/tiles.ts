@@ -1,7 +1,7 @@
 // What a view shows of a surface: all of it, or of a large one the root and the tiles that are there.
 //
-//   camera --> Pyramid.choose --> wanted tiles --> onTiles --> host
-//                     |                                          |
+//   camera --> Pyramid.choose --> wanted tiles --> Requests --> Source
+//                     |                                       |
 //                     +--> cover (those that are there) <-- setPart, and the levels of all meshes
 
 import type { Camera } from "./camera.ts";
@@ -29,13 +29,12 @@ import {
   type Choices,
   type TileKey,
 } from "./tilechoice.ts";
-import { Failures } from "./tilequeue.ts";
+import { Failures, type Requests, type Source } from "./sources/source.ts";
 import { flowsOf } from "./tracer.ts";
 import type { Moment } from "./uniforms.ts";
 
-/** Milliseconds from a change of what is wanted to the request, and after which a request counts as lost. */
+/** Milliseconds from a change of what is wanted to the request. */
 const REQUEST_MS = 60;
-const LOST_MS = 8000;
 /** Milliseconds that tiles may take of a picture on their way to the graphics card. */
 const LOAD_MS = 25;
 /** Memory of the tiles in bytes where nobody says, and of a byte that came, here and on the graphics card. */
@@ -43,9 +42,6 @@ const BUDGET_BYTES = 900e6;
 const BYTES_HELD = 3.5;
 /** Time steps of a tile that are held. */
 const STEPS_HELD = { slices: 4, flow: 24 };
-
-/** Asks for tiles in the order of need; what was asked for before is not needed any more. */
-export type AskTiles = (keys: TileKey[], steps: number[]) => void;
 
 /** A part of the surface that is drawn, with the tile that it is. */
 export interface Layer {
@@ -70,7 +66,8 @@ export interface TileHost {
   readonly settings: Settings;
   readonly canvas: HTMLCanvasElement;
   readonly ratio: number;
-  readonly options: { onTiles?: AskTiles; memory?: number };
+  readonly options: { source?: Source };
+  readonly requests: Requests | null;
   readonly lifetime: { later(call: () => void, delay: number): unknown };
   /** Draw the picture once more, with what has come. */
   refine(): void;
@@ -95,12 +92,10 @@ export class Tiles {
     names: "",
   };
   private drawn = "";
-  private asked: { names: string[]; steps: number[] } = { names: [], steps: [] };
   private count = 0;
   private isWaiting = false;
-  private isWatched = false;
+  private hasAsked = false;
   private isOver = false;
-  private lastCame = 0;
   /** Tiles that cannot be had, each with what of it was wanted. */
   private readonly failed = new Failures();
   /** Limits of triangles for the colours that the scene came with. */
@@ -149,7 +144,6 @@ export class Tiles {
       this.giveMap(tile);
       this.giveLimits(tile);
     } else tile.scene?.forget(part.name);
-    this.lastCame = performance.now();
     const { names, steps } = this.chosen;
     this.missing = this.missing.filter((missing) => !this.isHere(missing, steps));
     const shown = cover(this.chosen.choices, (other) => this.isHere(other, steps));
@@ -158,7 +152,6 @@ export class Tiles {
 
   /** Draw in other colours, of which a part of the header tells; what they need is asked for. */
   recolour(colours: Partial<Header> = {}): void {
-    this.asked = { names: [], steps: [] };
     const { mesh, scalars } = this.root.header;
     const { steps } = this.chosen;
     for (const tile of this.tiles.values()) {
@@ -266,7 +259,7 @@ export class Tiles {
     const until = performance.now() + LOAD_MS;
     const wanted = this.obtainable(wantedTiles(choices), steps, header.pyramid.depth);
     this.missing = wanted.filter((name) => !this.isHere(name, steps));
-    this.ask(steps);
+    this.ask();
     this.trim(steps);
     // The largest on the screen come first.
     for (const name of wanted) if (this.isHere(name, steps)) this.load(name, steps, until);
@@ -314,43 +307,22 @@ export class Tiles {
     return true;
   }
 
-  /** Ask for what is missing, once the view has come to rest a little, and again where nothing comes. */
-  private ask(all: number[]): void {
-    const { options, lifetime } = this.host;
-    // Those that paths lead through are needed too.
-    const lacking = (name: string, step: number) =>
-      this.tiles.get(name)?.scene?.lacking(step) ?? flowsOf(this.root.header, step);
-    const needed = this.missing.flatMap((name) => all.flatMap((step) => lacking(name, step)));
-    const steps = [...new Set(needed)].sort((a, b) => a - b);
-    const open = this.asked.names.filter((name) => !this.isHere(name, this.asked.steps));
-    const isAsked =
-      performance.now() - this.lastCame < LOST_MS &&
-      String(open.sort()) === String([...this.missing].sort()) &&
-      (!open.length || String(steps) === String(this.asked.steps));
-    if (this.isWaiting || !options.onTiles) return;
-    if (isAsked) return this.watch();
+  /** Ask for what is missing, and for nothing else, once the view has come to rest a little. */
+  private ask(): void {
+    const { requests, lifetime } = this.host;
+    if (!requests || this.isWaiting || !(this.missing.length || this.hasAsked)) return;
     this.isWaiting = true;
     lifetime.later(() => {
       this.isWaiting = false;
       if (this.isOver) return;
-      this.lastCame = performance.now();
-      this.asked = { names: this.missing, steps };
-      options.onTiles?.(this.missing.map(keyOf), steps);
-      this.watch();
+      this.hasAsked = this.missing.length > 0;
+      // Those that paths lead through are needed too.
+      const lacking = (name: string, step: number) =>
+        this.tiles.get(name)?.scene?.lacking(step) ?? flowsOf(this.root.header, step);
+      const needed = this.missing.flatMap((name) => this.chosen.steps.flatMap((step) => lacking(name, step)));
+      const steps = [...new Set(needed)].sort((a, b) => a - b);
+      requests.wantTiles(this.missing.map(keyOf), steps);
     }, REQUEST_MS);
-  }
-
-  /** Ask again for what is missing where nothing has come for a while, in a view at rest as well. */
-  private watch(): void {
-    if (this.isWatched || !this.missing.length) return;
-    this.isWatched = true;
-    this.host.lifetime.later(
-      () => {
-        this.isWatched = false;
-        if (!this.isOver) this.ask(this.chosen.steps);
-      },
-      LOST_MS - (performance.now() - this.lastCame),
-    );
   }
 
   /** Drop the tiles that were wanted longest ago where all take too much memory, and steps of long ago. */
@@ -370,7 +342,7 @@ export class Tiles {
       }
       for (const { data } of parts.values()) bytes += BYTES_HELD * data.byteLength;
       bytes += scene?.tracedBytes ?? 0;
-      if (bytes > (this.host.options.memory ?? BUDGET_BYTES) && used < this.count) this.drop(name);
+      if (bytes > (this.host.options.source?.memory ?? BUDGET_BYTES) && used < this.count) this.drop(name);
     }
   }
 

@@ -30,6 +30,7 @@ import {
 } from "./protocol.ts";
 import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
+import { Requests } from "./sources/source.ts";
 import { Tiles } from "./tiles.ts";
 import { flowsOf } from "./tracer.ts";
 import type { Program } from "./programs.ts";
@@ -37,7 +38,6 @@ import { isNear, variantOf, type Moment, type ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
 
 const STILL_MS = 160; // for which a view that was moved counts as being moved
-const LOST_MS = 5000; // after which a request for a step counts as lost
 /** Time steps that are held where the host can send the others again, and where memory is short. */
 const STEPS_HELD = { slices: [12, 4], flow: [100, 24] };
 
@@ -45,6 +45,7 @@ const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify
 
 export class Viewer implements User {
   readonly options: Options;
+  readonly requests: Requests | null;
   readonly graphics: Graphics = sharedGraphics();
   readonly lifetime = new Lifetime();
   readonly player = new Player();
@@ -71,10 +72,12 @@ export class Viewer implements User {
   private busyUntil = 0;
   /** The camera that the scene came with. */
   private firstCamera: CameraState | null = null;
-  private readonly requests = new Map<number, number>();
+  /** Steps that the player goes on to. */
+  private next: number[] = [];
 
   constructor(element: HTMLElement, options: Options = {}) {
     this.options = options;
+    this.requests = options.source ? new Requests(options.source, this) : null;
     const { root } = this;
     root.className = "flowtex";
     root.tabIndex = 0;
@@ -122,6 +125,7 @@ export class Viewer implements User {
     if (this.lifetime.isOver) return;
     this.player.playing = false;
     this.lifetime.end();
+    this.requests?.stop();
     this.tiles?.dispose();
     this.tiles = null;
     this.scene?.dispose();
@@ -142,6 +146,7 @@ export class Viewer implements User {
       );
       return;
     }
+    this.requests?.stop();
     const old = this.header;
     if (old && old.generation !== undefined && old.generation === header.generation) {
       return this.recolour(coloursOf(header));
@@ -152,7 +157,6 @@ export class Viewer implements User {
     this.tiles?.dispose();
     this.scene?.dispose();
     this.makeScene(header);
-    this.requests.clear();
     if (!old || !isSamePlace(old.geometry, header.geometry)) {
       this.firstCamera = header.camera;
       this.camera = null;
@@ -170,7 +174,6 @@ export class Viewer implements User {
     if (!this.header) return;
     Object.assign(this.header, colours);
     for (const name of ["scalars", "mesh"]) this.scene?.forget(name);
-    this.requests.clear(); // what these colours need
     this.tiles?.recolour(colours);
     this.panel.showLegend();
     this.change();
@@ -196,7 +199,6 @@ export class Viewer implements User {
     const { name, digest } = part;
     const tile = tilePart(name);
     if (tile) return void this.tiles?.setPart(tile[0], { ...part, name: tile[1] });
-    this.requests.delete(stepOf(name));
     if (digest && this.parts.get(name)?.digest === digest) return;
     const held = this.graphics.hold(part);
     this.remove(name);
@@ -216,15 +218,16 @@ export class Viewer implements User {
   /** Hold a few time steps where the others can be traced, or sent by the host, again. */
   private trim(): void {
     const { header, options } = this;
-    if (!header || !options.onNeed) return;
+    const { hasSteps = false, memory = 0 } = options.source ?? {};
+    if (!header || !hasSteps) return;
     const kind = header.slices.trace ? "flow" : "slices";
     const named = (some: string) => [...this.parts.keys()].filter((name) => name.startsWith(some));
     const needed = this.player.moment.slice(0, 2).flatMap((step) => flowsOf(header, step));
-    for (const name of named(`${kind}/`).slice(0, -STEPS_HELD[kind][Number(!!options.memory)])) {
+    for (const name of named(`${kind}/`).slice(0, -STEPS_HELD[kind][Number(memory > 0)])) {
       const step = stepOf(name);
       if (needed.includes(step)) continue;
       for (const held of [kind, "extra"]) this.remove(`${held}/${step}`);
-      const values = options.memory ? named("scalars/") : [];
+      const values = memory ? named("scalars/") : [];
       for (const other of values) if (isOfStep(other, step, header)) this.remove(other);
     }
   }
@@ -452,7 +455,9 @@ export class Viewer implements User {
     if (!header || !scene) return null;
     const moment = player.moment;
     const ahead = player.playing ? [1, 2].map((n) => (moment[1] + n) % header.slices.steps) : [];
-    this.ask([moment[0], moment[1], ...ahead]);
+    const steps = this.missing([moment[0], moment[1], ...this.next, ...ahead]);
+    const { source, isComing } = this.options;
+    if (steps.length && source?.hasSteps && !isComing?.()) this.requests?.wantSteps(steps);
     const isMade = !lacking.length && scene.make(moment.slice(0, 2), until);
     this.root.dataset.lacking = String(lacking.length || Number(!isMade));
     this.panel.wait(lacking, isMade, this.renderer.leavesOut);
@@ -472,18 +477,9 @@ export class Viewer implements User {
     this.panel.tell(reason);
   }
 
-  /** Ask for the steps that are not there; tells whether all are. */
-  private ask(steps: number[]): boolean {
-    const now = performance.now();
-    const { onNeed, isComing } = this.options;
-    const lacking = [...new Set(steps.flatMap((step) => this.scene?.lacking(step) ?? []))];
-    for (const step of lacking) {
-      // A request that was lost is sent again.
-      if (!onNeed || isComing?.() || now - (this.requests.get(step) ?? -Infinity) < LOST_MS) continue;
-      this.requests.set(step, now);
-      onNeed(step);
-    }
-    return !lacking.length;
+  /** Steps that have to come before some can be shown. */
+  private missing(steps: number[]): number[] {
+    return [...new Set(steps.flatMap((step) => this.scene?.lacking(step) ?? []))];
   }
 
   frame(now: number, until: number): void {
@@ -540,7 +536,11 @@ export class Viewer implements User {
   /** Go on with the time or the clock. */
   private advance(now: number): void {
     const { player, options } = this;
-    const isMade = (steps: number[]) => this.ask(steps) && !!this.scene?.make(steps, now);
+    const isMade = (steps: number[]) => {
+      this.next = steps;
+      return !this.missing(steps).length && !!this.scene?.make(steps, now);
+    };
+    this.next = [];
     if (!player.playing || !player.advance(now, isMade)) return;
     if (player.varies) options.onTime?.(player.time);
     else options.onClock?.(player.clock);

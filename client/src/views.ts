@@ -3,42 +3,13 @@
 import { dom } from "./dom.ts";
 import type { Header, NamedPart } from "./protocol.ts";
 import type { Options } from "./options.ts";
-import type { StoreError } from "./store.ts";
-import { nameOf, type TileKey } from "./tilechoice.ts";
-import { TileQueue, type LoadTile } from "./tilequeue.ts";
+import type { Source } from "./sources/source.ts";
 import { Viewer } from "./viewer.ts";
 
-/** Tiles and time steps that are loaded at once from a source, and steps that are wanted at a time. */
-const TILES_AT_ONCE = 6;
-const STEPS_AT_ONCE = 2;
-const STEPS_WANTED = 4;
-/** Stands for the whole among the tiles. */
-const WHOLE: TileKey = [0, 0, 0];
-/** Memory that tiles from a source may take, in bytes. */
-const MEMORY = 180e6;
-
-/** Where what is not there yet comes from; errors are for everybody to read. */
-export interface Source {
-  /** Parts of a tile that are not there yet, of a moment. */
-  tile(
-    key: TileKey,
-    steps: number[],
-    signal: AbortSignal,
-    has: (part: string) => boolean,
-  ): Promise<NamedPart[]>;
-  /** Parts of the whole at a time step, of those that are lacking. */
-  root(step: number, signal: AbortSignal, lacking: () => string[]): Promise<NamedPart[]>;
-  /** Fails where there is nothing that belongs to the view. */
-  open(): Promise<void>;
-}
-
-/** A scene that is there as a whole. */
+/** A scene with the parts that are there, and where others come from. */
 export interface SceneData {
   header: Header;
   parts: NamedPart[];
-  /** Gives the tiles of a large surface. */
-  loadTile?: LoadTile;
-  /** Gives these and the time steps, where they are not there. */
   source?: Source;
 }
 
@@ -85,55 +56,15 @@ function linked(options: Options, others: () => Viewer[]): Options {
   };
 }
 
-/** What a view asks of a source. */
-function sourceFeed(source: Source, viewer: () => Viewer): Options {
-  const give = (part: NamedPart) => viewer().setPart(part);
-  const fail = (error: unknown, tile?: string, steps?: number[]) => {
-    const { fault, message = String(error), detail } = error as Partial<StoreError>;
-    console.warn(message, detail ?? "");
-    // Where nobody answers it is tried again.
-    viewer().lack(message, fault === "unreachable" ? undefined : tile, steps);
-  };
-  const tiles = new TileQueue(
-    (key, steps, signal) =>
-      source.tile(key, steps, signal, (part) => viewer().tiles?.has(nameOf(key), part) ?? false),
-    give,
-    TILES_AT_ONCE,
-    (key, error, steps) => fail(error, nameOf(key), steps),
-  );
-  const wholes = new TileQueue(
-    (_, [step], signal) => source.root(step, signal, () => viewer().scene?.missing(step, step) ?? []),
-    give,
-    STEPS_AT_ONCE,
-    (_, error) => fail(error),
-  );
-  let wanted: number[] = [];
-  return {
-    memory: MEMORY,
-    onTiles: (keys, steps) => tiles.request(keys, steps),
-    onNeed: (step) => {
-      wanted = [step, ...wanted.filter((other) => other !== step)].slice(0, STEPS_WANTED);
-      wholes.want(wanted.map((each) => [WHOLE, [each]]));
-    },
-  };
-}
-
-/** Show scenes that are there as a whole, beside each other; gives the first view. */
+/** Show scenes beside each other; gives the first view. */
 export function mountPage(
   element: HTMLElement,
   scenes: SceneData[],
   options: Options = {},
 ): Viewer {
-  const feeds = scenes.map(({ loadTile, source }, n): Options => {
-    const viewer = () => viewers[n];
-    if (source) return sourceFeed(source, viewer);
-    const queue = loadTile && new TileQueue(loadTile, (part) => viewer().setPart(part));
-    return { onTiles: (keys, steps) => queue?.request(keys, steps) };
-  });
-  const viewers = viewersIn(element, scenes.length, options, (n) => feeds[n]);
+  const viewers = viewersIn(element, scenes.length, options, (n) => ({ source: scenes[n].source }));
   scenes.forEach(({ header }, n) => viewers[n].setHeader(header));
   scenes.forEach(({ parts }, n) => parts.forEach((part) => viewers[n].setPart(part)));
-  // What is wrong with a source is told before anybody looks closer.
-  scenes[0].source?.open().catch((error: Error) => viewers[0].lack(error.message));
+  viewers[0].requests?.open();
   return viewers[0];
 }

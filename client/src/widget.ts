@@ -6,6 +6,7 @@ import { sharedGraphics } from "./context.ts";
 import { pictureOf } from "./dom.ts";
 import { throttled, type Timer } from "./lifetime.ts";
 import { decoded, type Header, type NamedPart, type PartInfo, type Value } from "./protocol.ts";
+import { Messages, type Loaded } from "./sources/messages.ts";
 import type { Viewer } from "./viewer.ts";
 import { viewersIn } from "./views.ts";
 
@@ -34,15 +35,14 @@ export interface Model {
 }
 
 /**
- * A message of the kernel: `parts` come with it, an `offer` names those that may be there already, and
- * `tiles` tells how many have been sent.
+ * A message of the kernel: `parts` come with it, an `offer` names those that may be there already, and a
+ * request has been `loaded`.
  */
-interface Message {
-  kind: "parts" | "offer" | "tiles" | "error";
+interface Message extends Partial<Omit<Loaded, "kind">> {
+  kind: "parts" | "offer" | "loaded" | "error";
   view?: number;
   generation?: number;
   parts?: PartInfo[];
-  seen?: number;
   text?: string;
 }
 
@@ -119,8 +119,9 @@ class WidgetView {
   private readonly sent = new Map<string, string>();
   private readonly handlers: [string, Handler][] = [];
   private early: Delivery[];
-  /** Number of the tile that came last, of each view. */
-  private readonly seen: number[] = [0, 0];
+  private readonly sources = HEADERS.map(
+    (_, view) => new Messages((content) => this.model.send({ ...content, view })),
+  );
   private frameTimer: Timer | null = null;
   private hasSentFrame = false;
   /** Style of the page around: the element's own is the widget's layout's. */
@@ -164,9 +165,7 @@ class WidgetView {
       onControls: (shown: boolean) => this.send("bar", shown),
     };
     return viewersIn(element, count, options, (n) => ({
-      onNeed: (step) => model.send({ kind: "need", step, view: n }),
-      onTiles: (keys, steps) =>
-        model.send({ kind: "tiles", keys, steps, seen: this.seen[n], view: n }),
+      source: this.sources[n],
       onFrame: () => this.planFrame(),
     }));
   }
@@ -229,7 +228,7 @@ class WidgetView {
     const { viewers, first } = this;
     this.listen("msg:custom", (message: Message, buffers: ArrayBufferView[]) => {
       if (hasParts(message)) this.take(opened(message, buffers));
-      if (message?.kind === "tiles") this.seen[message.view ?? 0] = message.seen ?? 0;
+      if (message?.kind === "loaded") this.sources[message.view ?? 0]?.end(message as Loaded);
       if (message?.kind === "error") {
         first.panel.fail("The kernel could not go on.", message.text ?? "");
       }

@@ -265,7 +265,9 @@ const CLIENT = `data:text/javascript,
   }
   export const partsOfFile = (file) => [file];`;
 interface FakeViewer {
-  options: Record<string, (...values: unknown[]) => void>;
+  options: Record<string, (...values: unknown[]) => void> & {
+    source: { hasSteps: boolean; load: (...values: unknown[]) => Promise<unknown> };
+  };
   log: unknown[][];
   sharp: boolean;
   playing: boolean;
@@ -274,12 +276,12 @@ interface FakeViewer {
 const viewers: FakeViewer[] = [];
 Object.assign(globalThis, { viewers });
 
-const source = { client: CLIENT, header: "header", surface: "/surface", steps: ["/0", "/1"], tiles: "/tile/" };
+const source = { client: CLIENT, header: "header", parts: "/parts." };
 const properties = { source, settings: {}, camera: null, time: 0, playing: false };
 
 async function begun(given: object = {}) {
   mock.method(globalThis, "fetch", (address: string) =>
-    Promise.resolve({ ok: !address.includes("gone"), status: 404, arrayBuffer: () => Promise.resolve(address) }),
+    Promise.resolve({ ok: !address.includes("9,"), status: 404, arrayBuffer: () => Promise.resolve(address) }),
   );
   const element = new FakeElement();
   const component = shown(browser, element, { ...properties, ...given });
@@ -291,7 +293,7 @@ async function begun(given: object = {}) {
 
 test("the browser draws what the server gives, and follows it", async () => {
   const { change, taken, viewer, leave } = await begun({ playing: true });
-  assert.deepEqual(taken(), [["setHeader", "header"], ["setPart", "/surface"], ["play"]]);
+  assert.deepEqual(taken(), [["setHeader", "header"], ["setPart", "/parts.whole"], ["play"]]);
   change({ settings: { grain: 3 } });
   change({ camera: { position: [1, 2, 3] } });
   change({ camera: null });
@@ -308,9 +310,9 @@ test("the browser draws what the server gives, and follows it", async () => {
     ["pause"],
     ["play"],
   ]);
-  change({ source: { ...source, header: "other", surface: "/other" } });
+  change({ source: { ...source, header: "other", parts: "/other." } });
   await settled();
-  assert.deepEqual(taken().slice(0, 2), [["setHeader", "other"], ["setPart", "/other"]]);
+  assert.deepEqual(taken().slice(0, 2), [["setHeader", "other"], ["setPart", "/other.whole"]]);
   leave();
   assert.deepEqual(taken(), [["dispose"]]);
 });
@@ -361,17 +363,16 @@ test("what a person does is told to the server, and not taken back from it", asy
   assert.deepEqual(told.at(-1), ["hover", null]);
 });
 
-test("a tile that the server does not give is shown coarse", async () => {
-  const { taken, viewer } = await begun({ source: { ...source, tiles: "/gone/" } });
-  taken();
-  viewer.options.onNeed(1);
-  await settled();
-  viewer.options.onTiles([[0, 1, 2]], [3]);
-  await settled();
-  assert.deepEqual(taken(), [
-    ["setPart", "/1"],
-    ["lack", "A part of the surface is shown coarse.", "0/1/2", [3]],
-  ]);
+test("parts are files of the server", async () => {
+  const { viewer, change } = await begun();
+  const { load, hasSteps } = viewer.options.source;
+  const { signal } = new AbortController();
+  assert.ok(hasSteps);
+  assert.deepEqual(await load(null, [1], signal), ["/parts.whole.1"]);
+  assert.deepEqual(await load([0, 1, 2], [3, 4], signal), ["/parts.0,1,2.3.4"]);
+  await assert.rejects(load([9, 1, 2], [3], signal), /9,1,2.3: 404/);
+  change({ source: { ...source, parts: "/other." } });
+  assert.deepEqual(await load(null, [1], signal), ["/other.whole.1"]);
 });
 
 test("a view that goes while it is loaded is not made", async () => {

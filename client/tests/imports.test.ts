@@ -8,12 +8,13 @@ import { test } from "node:test";
 const FOLDER = new URL("../src/", import.meta.url);
 /** Layers, the lowest first. */
 const LAYERS = [
-  "vectors half ticks dom keyboard lifetime pathlines reuse store modules.d app/vue",
+  "vectors half ticks dom keyboard lifetime pathlines reuse sources/store modules.d app/vue",
   "camera",
   "protocol",
   "uniforms quality",
   "layers noise poles programs mesh maplines lonlat meshlevels tilechoice trianglemesh player colours legend",
-  "tracer tilequeue stream",
+  "tracer sources/source",
+  "sources/embedded sources/files sources/messages sources/stream",
   "context",
   "earthlayer",
   "scene",

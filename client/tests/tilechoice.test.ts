@@ -2,17 +2,15 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { join, type Region } from "../src/meshlevels.ts";
-import type { MeshLimits, NamedPart, PyramidHeader } from "../src/protocol.ts";
+import type { MeshLimits, PyramidHeader } from "../src/protocol.ts";
 import {
   cellPixels,
   cover,
   fullIndex,
-  nameOf,
   Pyramid,
   wantedTiles,
   type TileView,
 } from "../src/tilechoice.ts";
-import { TileQueue } from "../src/tilequeue.ts";
 
 interface View {
   view: TileView;
@@ -81,25 +79,4 @@ test("a place on a coarse level lies among all nodes", () => {
   assert.equal(fullIndex(1.5, 2, 10), 6);
   assert.equal(fullIndex(2.5, 2, 10), 8.5); // the last line is always there
   assert.equal(fullIndex(3, 2, 10), 9);
-});
-
-test("tiles that are not wanted any more are given up", async () => {
-  const [given, aborted]: [string[], string[]] = [[], []];
-  const waiting: (() => void)[] = [];
-  const queue = new TileQueue(
-    (key, steps, signal) =>
-      new Promise((resolve) => {
-        signal.addEventListener("abort", () => aborted.push(nameOf(key)));
-        waiting.push(() => resolve([{ name: `${nameOf(key)} ${steps}` } as NamedPart]));
-      }),
-    (part) => given.push(part.name),
-  );
-  queue.request([[0, 0, 0], [0, 0, 1]], [0]);
-  queue.request([[0, 0, 1], [0, 0, 2]], [0]);
-  assert.deepEqual(aborted, ["0/0/0"]);
-  for (let n = 0; n < 3; n += 1) {
-    waiting.shift()?.();
-    await new Promise((resolve) => setTimeout(resolve, 0));
-  }
-  assert.deepEqual(given, ["0/0/1 0", "0/0/2 0"]);
 });

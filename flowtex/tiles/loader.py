@@ -101,7 +101,6 @@ class TileLoader:
     """Makes tiles of a pyramid in threads.
 
     ``prepare`` makes of textures, in a thread, what is needed to draw them beside their layers.
-    Where the client ``traces``, tiles have no layers.
     ``notify`` is called, in a thread, whenever a tile has become ready or has failed. Errors are
     kept in ``errors`` by tile; a tile that failed is tried again when it is asked for some seconds
     later, for what went wrong may be a network. ``clock`` gives the seconds.
@@ -114,14 +113,12 @@ class TileLoader:
         prepare: Callable[[TextureSet], Any] = lambda textures: None,
         notify: Callable[[], None] = lambda: None,
         budget: int = BUDGET_BYTES,
-        traces: bool = False,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.pyramid = pyramid
         self.errors: dict[TileKey, Exception] = {}
         self._failed: dict[TileKey, float] = {}
         self._prepare, self._notify, self._clock = prepare, notify, clock
-        self._traces = traces
         self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
         #: When each tile was asked for last, on a clock of requests.
         self._wanted: dict[TileKey, float] = {}
@@ -205,7 +202,7 @@ class TileLoader:
 
     def _tile(self, key: TileKey, step: int) -> Tile:
         """Return a tile without layers, with a halo that does for a destination time."""
-        textures = self.pyramid.textures(key) if self._traces else self.pyramid.tile(key, (step,))
+        textures = self.pyramid.tile(key, (step,))
         return Tile(key, textures, textures and self._prepare(textures))
 
     def _make(self, key: TileKey, step: int) -> None:
@@ -213,7 +210,7 @@ class TileLoader:
         try:
             with stoppable(lambda: not self._is_wanted(key)), _turn():
                 tile = self._tiles.get(key, lambda: self._tile(key, step))
-                tile.layers[step] = None if self._traces else tile.make(step)
+                tile.layers[step] = tile.make(step)
                 self._tiles.put(key, tile)  # which has grown
         except Stopped:
             pass

@@ -36,7 +36,7 @@ from flowtex.tiles import Pyramid
 from flowtex.web import preview
 from flowtex.web.assets import asset
 from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
-from flowtex.web.tiles import all_tiles
+from flowtex.web.source import TileSource
 from flowtex.web.view import WebView, web_views
 
 __all__ = [
@@ -335,7 +335,7 @@ def _parts(scene: ClientData) -> Iterator[tuple[str, AnyArray]]:
     return chain(
         scene.surface().items(),
         (part for step in steps for part in scene.step(step).items()),
-        (part for tile in all_tiles(scene) for part in tile.items()),
+        (part for tile in TileSource(scene, budget=0).tiles() for part in tile.items()),
     )
 
 

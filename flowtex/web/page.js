@@ -82,7 +82,15 @@ a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){le
 name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.filter(
 covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),!1):(shown.
 set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**level,nodes-
-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
+1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var Embedded=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(header,view,known,texts){this.header=header,
+this.known=known,this.texts=texts;for(let element of document.querySelectorAll(`script[data-view="${view}"]`)){let info=JSON.
+parse(element.dataset.part??""),packed=[info,element.textContent??""],tile=tilePart(info.name)?.[0];tile?this.tiles.set(
+tile,[...this.tiles.get(tile)??[],packed]):this.parts.push(packed),tile&&packed[1]&&texts.set(info.digest,packed[1]),element.
+remove()}}load=(key,steps)=>{let needed=((key&&this.tiles.get(nameOf(key)))??[]).filter(([{name}])=>{let part=tilePart(name)?.[1]??
+"",step=stepOf(part),isOfAll=part.startsWith("scalars/")&&!isOfStep(part,step,this.header);return Number.isNaN(step)||steps.
+includes(step)||isOfAll});return Promise.all(needed.map(packed=>this.unpacked(packed)))};async unpacked([info,text]){let{
+digest,name}=info,part=this.known.get(digest);return part?{...part,name}:partOfText(info,text||(this.texts.get(digest)??
+""))}};function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
 attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
 12z",pause:"M8.5 6v12M15.5 6v12",home:"M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8\
 -4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M\
@@ -96,15 +104,7 @@ digits)))}var UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.l
 function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.
 max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.
 getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),
-left+=widths[n];return all.convertToBlob(format)}var FAILED_MS=1e4,Failures=class{times=new Map;now;constructor(now=()=>performance.now()){this.now=now}add(name){this.times.
-set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},TileQueue=class{load;give;most;fail;running=new Map;wanted=[];constructor(load,give,most=1,fail=(_,error)=>{
-throw error}){this.load=load,this.give=give,this.most=most,this.fail=fail}request(keys,steps){this.want(keys.map(key=>[key,
-steps]))}want(jobs){this.wanted=[...jobs];let names=new Set(jobs.map(([key,steps])=>`${nameOf(key)} ${steps}`));for(let[
-name,controller]of this.running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.length&&this.running.
-size<this.most;){let[key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;this.running.has(name)||
-this.run(name,key,steps)}}async run(name,key,steps){let controller=new AbortController;this.running.set(name,controller);
-try{let parts=await this.load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(this.give)}catch(error){
-controller.signal.aborted||this.fail(key,error,steps)}finally{this.running.delete(name),this.next()}}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+left+=widths[n];return all.convertToBlob(format)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
 colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
 let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
 Math.min(share,1)}}function mapOf(header,maps,name){let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
@@ -951,9 +951,9 @@ showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missi
 {pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?"playing":"moving"}`:
 "",doing="";missing.length?doing="Loading data":isMade?pending&&(doing="Loading tiles"):doing="Tracing paths";let count2=doing===
 "Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==doing&&(this.doing.textContent=
-doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.hidden=!(doing||count2),!(!missing.length||
-viewer.options.onNeed||viewer.options.isComing?.()||this.lateTimer)&&(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=
-null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){
+doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.hidden=!(doing||count2);let{source,isComing}=viewer.
+options;!missing.length||source?.hasSteps||isComing?.()||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.
+lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){
 let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):
 null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.
 hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.
@@ -1363,8 +1363,27 @@ this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTextu
 TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.resources.
 get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,
 after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.
-get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOST_MS=8e3,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
-choices:new Map,steps:[],names:""};drawn="";asked={names:[],steps:[]};count=0;isWaiting=!1;isWatched=!1;isOver=!1;lastCame=0;failed=new Failures;limits;constructor(host,root){
+get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
+now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
+Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
+taker}want(jobs){this.jobs=jobs;let names=new Set(jobs.map(String));for(let[name,controller]of this.running)names.has(name)||
+(this.running.delete(name),controller.abort());this.next()}stop(){this.want([]),this.failed=new Failures}next(){for(let job of this.
+jobs){if(this.running.size>=(this.source.atOnce??AT_ONCE))return;!this.running.has(String(job))&&!this.failed.has(String(
+job))&&this.run(job)}}async run(job){let{source,taker}=this,[key,steps]=job,controller=new AbortController,{signal}=controller,
+has=part=>key?taker.tiles?.has(nameOf(key),part)??!1:taker.parts.has(part);this.running.set(String(job),controller);try{
+let parts=await source.load(key,steps,signal,has);if(!signal.aborted)for(let part of parts)taker.setPart(part)}catch(error){
+signal.aborted||this.fail(job,error)}signal.aborted||(this.running.delete(String(job)),this.failed.has(String(job))||(this.
+jobs=this.jobs.filter(other=>String(other)!==String(job))),this.next())}fail(job,error){let[key,steps]=job;this.failed.add(
+String(job)),setTimeout(()=>this.next(),FAILED_MS+SPARE_MS);let isAway=error.fault==="unreachable",name=key&&!isAway?nameOf(
+key):void 0;this.taker.lack(wordsOf(key?COARSE:ABSENT_STEP,error),name,steps)}};function wordsOf(what,error){let{fault,message=String(
+error),detail=""}=error;return console.warn(message,detail),fault==="other"?message:`${what}: ${message}`}var Requests=class{tiles;wholes;constructor(source,taker){
+this.tiles=new Queue(source,taker),this.wholes=new Queue(source,taker)}open(){let{source,taker}=this.tiles;source.open?.().
+catch(error=>taker.lack(wordsOf(ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.want(keys.map(key=>[key,steps]))}wantSteps(steps){
+let before=this.wholes.jobs.flatMap(([,some])=>some);if(steps.every(step=>before.includes(step)))return;let wanted=[...new Set(
+[...steps,...before])].slice(0,steps.length+SPARE_STEPS);this.wholes.want(wanted.map(step=>[null,[step]]))}stop(){this.tiles.
+stop(),this.wholes.stop()}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+choices:new Map,steps:[],names:""};drawn="";count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;limits;constructor(host,root){
 this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
 root.header.scalars.name}`}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
@@ -1372,97 +1391,92 @@ let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(th
 h"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.
 get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().
 decode(part.data));tile.scene?.dispose(),tile.ranges=own?.ranges,tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null},
-tile.parts),this.giveMap(tile),this.giveLimits(tile)}else tile.scene?.forget(part.name);this.lastCame=performance.now();
-let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,steps));let shown=cover(this.
-chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.refine()}recolour(colours={}){
-this.asked={names:[],steps:[]};let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.tiles.values()){
-let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.scalars,scalars)},
-colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);for(let name of["scalars","mesh"])scene.forget(name);if((steps.
-length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))&&(scalars.log===tile.scalars.log||
-scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.startsWith("scalars/"));for(let name of others)
-this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{parts:new Map,scene:void 0,scalars,used:this.count}}giveLimits(tile){
-let{mesh,scalars}=this.root.header;if(tile.scalars=scalars,!tile.scene)return;let range=tile.ranges?.[scalars.name??""],
-from=range&&{...scalars,low:range[0],high:range[1],log:!1};tile.scene.header.mesh=from?narrowed(this.limits,from,scalars):
-mesh}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange([
-before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(
-camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.
-keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.
-sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape}=scene.levels(sight);for(let finer of shown.get(
-names[n])??[])this.hide(levels,shape[1],finer,names[n]);let{pyramid}=this.root.header,[row,column]=key.slice(1).map(at=>at*
-(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row,column,shape,levels}});return this.layers=layers,this.setTriangles(
-names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row,column,size]=this.pyramid?.finerPart(
-keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/columns);j+=1)levels.fill(-1,j*columns+column,
-j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[names[n],levels]));
-if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,mesh,pyramid}=this.
-root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.triangles?[]:join(parts,
-blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){
-let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
-pyramid,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),planes:camera.
-planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.tiles.
-get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,
-header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(steps),this.trim(steps);for(let name of wanted)
-this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,
-steps,until));return this.wanted=wanted.length,this.pending=wanted.filter(name=>!this.isHere(name,steps)||!this.isLoaded(
-name,steps)).length,this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,steps,depth){let needs=[
-steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.failed.has(this.need(name,some))),found=names.map(
-name=>{let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([level,row,column]));)[level,row,column]=[level+
-1,row>>1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){
-let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){
-let scene=this.tiles.get(name)?.scene;return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.
-tiles.get(name)?.scene;return!scene||this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.
-host.refine(),!1):(scene.load(steps),!0)}ask(all){let{options,lifetime}=this.host,lacking=(name,step)=>this.tiles.get(name)?.
-scene?.lacking(step)??flowsOf(this.root.header,step),needed=this.missing.flatMap(name=>all.flatMap(step=>lacking(name,step))),
-steps=[...new Set(needed)].sort((a,b)=>a-b),open=this.asked.names.filter(name=>!this.isHere(name,this.asked.steps)),isAsked=performance.
-now()-this.lastCame<LOST_MS&&String(open.sort())===String([...this.missing].sort())&&(!open.length||String(steps)===String(
-this.asked.steps));if(!(this.isWaiting||!options.onTiles)){if(isAsked)return this.watch();this.isWaiting=!0,lifetime.later(
-()=>{this.isWaiting=!1,!this.isOver&&(this.lastCame=performance.now(),this.asked={names:this.missing,steps},options.onTiles?.(
-this.missing.map(keyOf),steps),this.watch())},REQUEST_MS)}}watch(){this.isWatched||!this.missing.length||(this.isWatched=
-!0,this.host.lifetime.later(()=>{this.isWatched=!1,this.isOver||this.ask(this.chosen.steps)},LOST_MS-(performance.now()-
-this.lastCame)))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,
+tile.parts),this.giveMap(tile),this.giveLimits(tile)}else tile.scene?.forget(part.name);let{names,steps}=this.chosen;this.
+missing=this.missing.filter(missing=>!this.isHere(missing,steps));let shown=cover(this.chosen.choices,other=>this.isHere(
+other,steps));String([...shown.keys()])!==names&&this.host.refine()}recolour(colours={}){let{mesh,scalars}=this.root.header,
+{steps}=this.chosen;for(let tile of this.tiles.values()){let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.
+assign(header,{mesh:narrowed(mesh,tile.scalars,scalars)},colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);
+for(let name of["scalars","mesh"])scene.forget(name);if((steps.length?scene.scalarParts(steps[0],steps[steps.length-1]):
+[]).every(name=>parts.has(name))&&(scalars.log===tile.scalars.log||scalars.name===null))continue;let others=[...parts.keys()].
+filter(name=>name.startsWith("scalars/"));for(let name of others)this.release(tile,name)}}emptyTile(){let{scalars}=this.
+root.header;return{parts:new Map,scene:void 0,scalars,used:this.count}}giveLimits(tile){let{mesh,scalars}=this.root.header;
+if(tile.scalars=scalars,!tile.scene)return;let range=tile.ranges?.[scalars.name??""],from=range&&{...scalars,low:range[0],
+high:range[1],log:!1};tile.scene.header.mesh=from?narrowed(this.limits,from,scalars):mesh}giveMap({scene,parts}){let map=this.
+root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange([before,after]){let{camera,canvas}=this.
+host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(camera,steps),layers=[{scene:this.root,
+key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(name)?.
+scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.
+map(({scene,key},n)=>{let{levels,shape}=scene.levels(sight);for(let finer of shown.get(names[n])??[])this.hide(levels,shape[1],
+finer,names[n]);let{pyramid}=this.root.header,[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{
+step:key[0],row,column,shape,levels}});return this.layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){
+let[row,column,size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/
+columns);j+=1)levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(
+parts.map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;
+this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].
+shape,joins=geometry.triangles?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.
+setTriangles(levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)
+return new Map;this.pyramid??=new Pyramid(header.pyramid,this.root.part("places").data);let choices=this.pyramid.choose(
+{...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=
+1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+
+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(
+name,steps)),this.ask(),this.trim(steps);for(let name of wanted)this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(
+choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));return this.wanted=wanted.length,this.pending=wanted.
+filter(name=>!this.isHere(name,steps)||!this.isLoaded(name,steps)).length,this.chosen={choices,steps,names:String([...shown.
+keys()])},shown}obtainable(names,steps,depth){let needs=[steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.
+failed.has(this.need(name,some))),found=names.map(name=>{let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf(
+[level,row,column]));)[level,row,column]=[level+1,row>>1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});
+return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===
+null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){let scene=this.tiles.get(name)?.scene;
+return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||
+this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.host.refine(),!1):(scene.load(steps),
+!0)}ask(){let{requests,lifetime}=this.host;!requests||this.isWaiting||!(this.missing.length||this.hasAsked)||(this.isWaiting=
+!0,lifetime.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=this.missing.length>0;let lacking=(name,step)=>this.
+tiles.get(name)?.scene?.lacking(step)??flowsOf(this.root.header,step),needed=this.missing.flatMap(name=>this.chosen.steps.
+flatMap(step=>lacking(name,step))),steps=[...new Set(needed)].sort((a,b)=>a-b);requests.wantTiles(this.missing.map(keyOf),
+steps)},REQUEST_MS))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,
 scene,used}=tile,kind=scene?.header.slices.trace?"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}\
 /`)),needed=scene?steps.flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-
 STEPS_HELD[kind],0))){let step=stepOf(part);if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(
 tile,`${each}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)
 this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>
-(this.host.options.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.
-scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
-part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,LOST_MS2=5e3,STEPS_HELD2={slices:[12,4],flow:[100,24]},isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
-b),Viewer=class{options;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.createElement("d\
-iv");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
-this];renderer;busyUntil=0;firstCamera=null;requests=new Map;constructor(element,options={}){this.options=options;let{root}=this;
-root.className="flowtex",root.tabIndex=0,Object.assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.
-setAttribute("data-lm-suppress-shortcuts","true"),root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(
-this),this.panel=new Panel(this),element.append(root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.
-observe(),this.graphics.gl||this.panel.fail("This browser has no WebGL2, which the picture is drawn with.","Turn on hard\
-ware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.
-observe(new ResizeObserver(()=>this.panel.arrange()),root),lifetime.observe(new ResizeObserver(()=>this.resize()),this.stage);
-let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.
-request()});lifetime.observe(seen,root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(
-window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.
-size,frames:this.renderer.frames}}dispose(){if(!this.lifetime.isOver){this.player.playing=!1,this.lifetime.end(),this.tiles?.
-dispose(),this.tiles=null,this.scene?.dispose(),this.scene=null;for(let name of[...this.parts.keys()])this.remove(name);
-this.graphics.leave(this),this.renderer.dispose(),this.root.remove()}}setHeader(header){if(header.format!==4){this.panel.
-fail(`The scene has format ${header.format}, and this client reads format ${4}.`,"Use the client of the flowtex that mad\
-e the scene.");return}let old=this.header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.
-recolour(coloursOf(header));if(this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
-header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header),this.requests.clear(),(!old||!isSamePlace(old.
-geometry,header.geometry))&&(this.firstCamera=header.camera,this.camera=null),old&&old.generation!==header.generation)for(let name of[
-...this.parts.keys()])name.includes("/")&&this.remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){
-Object.assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.requests.clear(),this.
-tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){if(this.options.onColours)return this.
-options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.
-header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(
-this.graphics,header,this.parts),this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(
-name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});if(this.requests.delete(stepOf(name)),digest&&
-this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),
-this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&
-this.panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){
-let{header,options}=this;if(!header||!options.onNeed)return;let kind=header.slices.trace?"flow":"slices",named=some=>[...this.
-parts.keys()].filter(name=>name.startsWith(some)),needed=this.player.moment.slice(0,2).flatMap(step=>flowsOf(header,step));
-for(let name of named(`${kind}/`).slice(0,-STEPS_HELD2[kind][+!!options.memory])){let step=stepOf(name);if(needed.includes(
-step))continue;for(let held of[kind,"extra"])this.remove(`${held}/${step}`);let values=options.memory?named("scalars/"):
-[];for(let other of values)isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){Object.entries(settings).
-every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
+(this.host.options.source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
+tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
+part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,STEPS_HELD2={slices:[12,4],flow:[100,24]},isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
+this];renderer;busyUntil=0;firstCamera=null;next=[];constructor(element,options={}){this.options=options,this.requests=options.
+source?new Requests(options.source,this):null;let{root}=this;root.className="flowtex",root.tabIndex=0,Object.assign(root.
+dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.setAttribute("data-lm-suppress-shortcuts","true"),root.setAttribute(
+"role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.append(root),this.pointers=
+new Pointers(this),this.graphics.users.add(this),this.observe(),this.graphics.gl||this.panel.fail("This browser has no W\
+ebGL2, which the picture is drawn with.","Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome\
+ or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.panel.arrange()),root),lifetime.
+observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.
+length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,root),lifetime.listen(document,"visibili\
+tychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics;
+return{...this.lifetime.stats(),objects,users:users.size,frames:this.renderer.frames}}dispose(){if(!this.lifetime.isOver){
+this.player.playing=!1,this.lifetime.end(),this.requests?.stop(),this.tiles?.dispose(),this.tiles=null,this.scene?.dispose(),
+this.scene=null;for(let name of[...this.parts.keys()])this.remove(name);this.graphics.leave(this),this.renderer.dispose(),
+this.root.remove()}}setHeader(header){if(header.format!==4){this.panel.fail(`The scene has format ${header.format}, and \
+this client reads format ${4}.`,"Use the client of the flowtex that made the scene.");return}this.requests?.stop();let old=this.
+header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));if(this.
+header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.tiles?.dispose(),this.
+scene?.dispose(),this.makeScene(header),(!old||!isSamePlace(old.geometry,header.geometry))&&(this.firstCamera=header.camera,
+this.camera=null),old&&old.generation!==header.generation)for(let name of[...this.parts.keys()])name.includes("/")&&this.
+remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){Object.assign(this.header,colours);for(let name of[
+"scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){
+if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
+let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){
+this.scene=new Scene(this.graphics,header,this.parts),this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,
+tile=tilePart(name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});if(digest&&this.parts.get(name)?.
+digest===digest)return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(
+name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),
+this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){let{header,options}=this,
+{hasSteps=!1,memory=0}=options.source??{};if(!header||!hasSteps)return;let kind=header.slices.trace?"flow":"slices",named=some=>[
+...this.parts.keys()].filter(name=>name.startsWith(some)),needed=this.player.moment.slice(0,2).flatMap(step=>flowsOf(header,
+step));for(let name of named(`${kind}/`).slice(0,-STEPS_HELD2[kind][+(memory>0)])){let step=stepOf(name);if(needed.includes(
+step))continue;for(let held of[kind,"extra"])this.remove(`${held}/${step}`);let values=memory?named("scalars/"):[];for(let other of values)
+isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
+settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
 name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
 this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(
 state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;
@@ -1493,73 +1507,58 @@ this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0
 header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,1)}lost(){this.tiles?.
 dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;
 return this.scene?.missing(before,after)??[]}available(until){let{header,scene,player,shown,lacking}=this;if(!header||!scene)
-return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.slices.steps):[];this.ask([moment[0],
-moment[1],...ahead]);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until);return this.root.dataset.lacking=String(
-lacking.length||+!isMade),this.panel.wait(lacking,isMade,this.renderer.leavesOut),isMade&&String(moment.slice(0,2))!==String(
-shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:(lacking.length||this.request(),shown&&scene.isMade(
-shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}ask(steps){
-let now=performance.now(),{onNeed,isComing}=this.options,lacking=[...new Set(steps.flatMap(step=>this.scene?.lacking(step)??
-[]))];for(let step of lacking)!onNeed||isComing?.()||now-(this.requests.get(step)??-1/0)<LOST_MS2||(this.requests.set(step,
-now),onNeed(step));return!lacking.length}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.
-gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(this.header,
-until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.
-isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(header,this.settings,isClose);return this.graphics.
-programs.get(vertex,fragment,...variant)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),
-tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(
-part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);this.camera||this.place();let program=this.
-program(header);if(this.scene?.prepare(),!shown||!this.camera)return;if(program.error){this.panel.fail("The shader does \
-not compile with this graphics driver.",program.error);return}if(!program.ready||!this.scene?.earth.isReady)return this.
-request();let isComplete=!this.sharp&&this.renderer.draw(program,shown,until);this.root.dataset.drawn="true",isComplete&&
-(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.scene.pickers,header.slices.critical&&this.
-program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{player,options}=this,isMade=steps=>this.
-ask(steps)&&!!this.scene?.make(steps,now);!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(
-player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
-let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,
-constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.
-anchor??[0,0,0],range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);return{focus,anchor:isFar(
-subtract2(local,old))?isFar(local)?local:[0,0,0]:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.
-clock,density,pixel:2*camera.height/Math.max(this.stage.clientHeight*density,1)}}get canPick(){let{scene,graphics}=this;
-return!!scene&&!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.find(x,y)?.
-point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,
-shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint(
-{layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var TILES_AT_ONCE=6,STEPS_AT_ONCE=2,STEPS_WANTED=4,WHOLE=[0,0,0],MEMORY=18e7;function viewersIn(element,count2,options,own=()=>({})){
-if(count2<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom("div",{class:"flowtex-pair"});pair.style.cssText=
-"display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);let viewers=[];for(let n=0;n<count2;n+=1){let cell=dom(
-"div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==
-n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.push(new Viewer(cell,{...options,...own(n),...linked(options,others),
-...follower}))}for(let viewer of viewers)viewer.together=viewers;return viewers}function linked(options,others){let both=(follow,report)=>(...values)=>{
-for(let other of others())follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)=>other.setCamera(
-camera),options.onCamera),onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.
-setClock(clock),options.onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}
-function sourceFeed(source,viewer){let give=part=>viewer().setPart(part),fail=(error,tile,steps)=>{let{fault,message=String(
-error),detail}=error;console.warn(message,detail??""),viewer().lack(message,fault==="unreachable"?void 0:tile,steps)},tiles=new TileQueue(
-(key,steps,signal)=>source.tile(key,steps,signal,part=>viewer().tiles?.has(nameOf(key),part)??!1),give,TILES_AT_ONCE,(key,error,steps)=>fail(
-error,nameOf(key),steps)),wholes=new TileQueue((_,[step],signal)=>source.root(step,signal,()=>viewer().scene?.missing(step,
-step)??[]),give,STEPS_AT_ONCE,(_,error)=>fail(error)),wanted=[];return{memory:MEMORY,onTiles:(keys,steps)=>tiles.request(
-keys,steps),onNeed:step=>{wanted=[step,...wanted.filter(other=>other!==step)].slice(0,STEPS_WANTED),wholes.want(wanted.map(
-each=>[WHOLE,[each]]))}}}function mountPage(element,scenes,options={}){let feeds=scenes.map(({loadTile,source},n)=>{let viewer=()=>viewers[n];
-if(source)return sourceFeed(source,viewer);let queue=loadTile&&new TileQueue(loadTile,part=>viewer().setPart(part));return{
-onTiles:(keys,steps)=>queue?.request(keys,steps)}}),viewers=viewersIn(element,scenes.length,options,n=>feeds[n]);return scenes.
-forEach(({header},n)=>viewers[n].setHeader(header)),scenes.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),
-scenes[0].source?.open().catch(error=>viewers[0].lack(error.message)),viewers[0]}function packedOf(view){let[parts,tiles]=[[],new Map];for(let element of document.querySelectorAll(`script[data-view="${view}\
-"]`)){let info=JSON.parse(element.dataset.part??""),packed=[info,element.textContent??""],tile=tilePart(info.name)?.[0];
-tile?tiles.set(tile,[...tiles.get(tile)??[],packed]):parts.push(packed),element.remove()}return{parts,tiles}}function sceneOf(header,tiles,known,texts,openStore){
-for(let[{digest},text]of[...tiles.values()].flat())text&&texts.set(digest,text);return openStore?{header,parts:[],source:openStore(
-header)}:{header,parts:[],loadTile:(key,steps)=>{let needed=(tiles.get(nameOf(key))??[]).filter(([{name}])=>{let part=tilePart(
-name)?.[1]??"",step=stepOf(part),isOfAll=part.startsWith("scalars/")&&!isOfStep(part,step,header);return Number.isNaN(step)||
-steps.includes(step)||isOfAll});return Promise.all(needed.map(async([info,text])=>{let part=known.get(info.digest);return part?
-{...part,name:info.name}:partOfText(info,text||(texts.get(info.digest)??""))}))}}}async function openPage(openStore){let place=document.
-getElementById("flowtex"),status=document.getElementById("status"),loading=document.getElementById("loading");try{let headers=JSON.
-parse(document.getElementById("headers")?.textContent??""),known=new Map,texts=new Map,packed=headers.map((_,n)=>packedOf(
-String(n))),scenes=headers.map((header,n)=>sceneOf({...headers[0],...header},packed[n].tiles,known,texts,openStore)),look=()=>{
+return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.slices.steps):[],steps=this.
+missing([moment[0],moment[1],...this.next,...ahead]),{source,isComing}=this.options;steps.length&&source?.hasSteps&&!isComing?.()&&
+this.requests?.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until);return this.root.dataset.
+lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,isMade,this.renderer.leavesOut),isMade&&String(moment.slice(
+0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:(lacking.length||this.request(),
+shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),
+this.panel.tell(reason)}missing(steps){return[...new Set(steps.flatMap(step=>this.scene?.lacking(step)??[]))]}frame(now,until){
+if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
+canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
+ picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
+variant=variantOf(header,this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){
+if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??
+[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.
+available(until);this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)
+return;if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}
+if(!program.ready||!this.scene?.earth.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,
+shown,until);this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.
+clear(),this.scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.
+request()}advance(now){let{player,options}=this,isMade=steps=>(this.next=steps,!this.missing(steps).length&&!!this.scene?.
+make(steps,now));this.next=[],!(!player.playing||!player.advance(now,isMade))&&(player.varies?options.onTime?.(player.time):
+options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,
+camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
+focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
+range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);return{focus,anchor:isFar(subtract2(
+local,old))?isFar(local)?local:[0,0,0]:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,
+density,pixel:2*camera.height/Math.max(this.stage.clientHeight*density,1)}}get canPick(){let{scene,graphics}=this;return!!scene&&
+!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.find(x,y)?.point??null}ground(x,y){
+let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;
+if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({
+layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count2,options,own=()=>({})){if(count2<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
+"div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
+let viewers=[];for(let n=0;n<count2;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100\
+%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.
+push(new Viewer(cell,{...options,...own(n),...linked(options,others),...follower}))}for(let viewer of viewers)viewer.together=
+viewers;return viewers}function linked(options,others){let both=(follow,report)=>(...values)=>{for(let other of others())
+follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)=>other.setCamera(camera),options.onCamera),
+onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.setClock(clock),options.
+onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}function mountPage(element,scenes,options={}){
+let viewers=viewersIn(element,scenes.length,options,n=>({source:scenes[n].source}));return scenes.forEach(({header},n)=>viewers[n].
+setHeader(header)),scenes.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0].requests?.open(),
+viewers[0]}async function openPage(openStore){let place=document.getElementById("flowtex"),status=document.getElementById("status"),
+loading=document.getElementById("loading");try{let headers=JSON.parse(document.getElementById("headers")?.textContent??""),
+known=new Map,texts=new Map,embedded=headers.map((header,n)=>new Embedded({...headers[0],...header},String(n),known,texts)),
+scenes=embedded.map(source=>{let{header}=source;return{header,parts:[],source:openStore?openStore(header):source}}),look=()=>{
 status.hidden=!place.querySelector('[data-failed="true"]'),loading.hidden=!status.hidden,status.textContent="This browse\
 r cannot draw the flow, for want of WebGL2; here is a picture of it.",!place.querySelector('.flowtex:not([data-drawn="tr\
 ue"])')&&(watch.disconnect(),document.getElementById("preview")?.remove(),loading.remove())},watch=new MutationObserver(
 look),attributeFilter=["data-drawn","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let isComing=!0,
 {root,together}=mountPage(place,scenes,{isComing:()=>isComing});document.addEventListener("keydown",event=>{event.target===
 document.body&&!root.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()});for(let[n,viewer]of together.
-entries()){let view=together.length>1?` of view ${n+1}`:"";for(let[m,[info,text]]of packed[n].parts.entries()){let done=`${view}\
-, ${m} of ${packed[n].parts.length} parts`;loading.lastElementChild.textContent=done;let part=known.get(info.digest)??await partOfText(
-info,text);known.set(info.digest,part),viewer.setPart({...part,name:info.name})}}isComing=!1,loading.textContent="Drawin\
-g the first picture";for(let viewer of together)viewer.change()}catch(error){loading.remove(),status.hidden=!1;let reason=error instanceof
-Error?error.message:String(error);throw status.textContent=`The flow cannot be drawn here: ${reason}`,error}}openPage();
+entries()){let view=together.length>1?` of view ${n+1}`:"",{parts}=embedded[n];for(let[m,packed]of parts.entries()){loading.
+lastElementChild.textContent=`${view}, ${m} of ${parts.length} parts`;let part=await embedded[n].unpacked(packed);known.
+set(part.digest,part),viewer.setPart(part)}}isComing=!1,loading.textContent="Drawing the first picture";for(let viewer of together)
+viewer.change()}catch(error){loading.remove(),status.hidden=!1;let reason=error instanceof Error?error.message:String(error);
+throw status.textContent=`The flow cannot be drawn here: ${reason}`,error}}openPage();

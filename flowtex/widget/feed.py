@@ -1,8 +1,8 @@
 """Sends a client its arrays: coarse ones first, then all, then what it asks for.
 
-Two workers do all that takes time. One answers the client from the scene that there is; the other
+Two workers do what takes time. One sends the client what shows the scene that there is; the other
 makes the next scene, the whole one after a coarse one or that of new settings, and puts it in the
-place of the first when it can be shown.
+place of the first when it can be shown. What a client asks for is made by the scene's source.
 
 An array that was sent to some page already is offered by its digest and not sent: a page that
 shows the same mesh many times holds it once, and asks for what it lacks.
@@ -16,6 +16,7 @@ import time
 import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from contextlib import suppress
 from functools import partial
 from typing import Any
@@ -23,13 +24,14 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
+from flowtex._util.progress import Stopped
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
 from flowtex.scene import Change
 from flowtex.tiles import TileKey
 from flowtex.web import preview
+from flowtex.web.source import TileSource
 from flowtex.web.view import WebView
-from flowtex.widget.tile_feed import TileFeed
 from flowtex.widget.worker import Worker, WorkerPool
 
 __all__ = ["Feed"]
@@ -82,7 +84,8 @@ class Feed:
         self._lock = threading.RLock()  # scene and generation, and the order of messages
         self._generation = self._order = 0
         self._live = self._closed = self._drawing = False
-        self._asked: set[int] = set()
+        #: Requests that a client waits for.
+        self._requests: set[str] = set()
         #: Steps that come with a new header, and until when they are not sent to who asks.
         self._coming: tuple[float, tuple[int, ...]] = (0.0, ())
         self._sent: dict[str, str] = {}
@@ -93,8 +96,7 @@ class Feed:
         self._timer = self._resend_timer(RESEND_WAITS_S)
         self._answers = Worker(ANSWER_POOL, self._failed)
         self._builds = Worker(BUILD_POOL, self._failed)
-        # Apart from the answers, which may be tracing for long.
-        self._tiles = TileFeed(Worker(ANSWER_POOL, self._failed), self._send_tile, self.scene)
+        self._source = TileSource(self.scene)
         view.scene.observe(self._scene_changed)
 
     @property
@@ -119,26 +121,45 @@ class Feed:
 
     def ready(self) -> None:
         """Answer a client that has nothing yet."""
-        self._tiles.forget()
         self._answers.do(lambda: self._send_parts(self._first_parts), urgency=1)
 
-    def need(self, step: int) -> None:
-        """Answer a client that needs a step."""
-        is_coming = step in self._coming[1] and time.monotonic() < self._coming[0]
-        if step in self._asked or is_coming or not 0 <= step < self.scene.steps:
+    def load(self, request: str, key: TileKey | None, steps: Sequence[int]) -> None:
+        """Answer a client that needs a tile, or the whole, at time steps."""
+        until, coming = self._coming
+        if key is None and time.monotonic() < until and set(steps) <= set(coming):
+            self._answers.do(lambda: self._end(request))  # after what is being sent
             return
-        self._asked.add(step)
-        self._answers.do(lambda: self._send_step(step), urgency=1)
+        self._requests.add(request)
+        source = self._source
+        answer = partial(self._answer, source.scene, request, key)
+        made = source.ask(key, steps, lambda: request not in self._requests)
+        made.add_done_callback(answer)
 
-    def need_tiles(self, keys: Sequence[TileKey], steps: Sequence[int], seen: int) -> None:
-        """Answer a client that needs tiles; :meth:`TileFeed.request` has the parameters."""
-        self._tiles.request(keys, steps, seen)
+    def drop(self, request: str) -> None:
+        """Give up what a client does not need any more."""
+        self._requests.discard(request)
 
-    def _send_tile(self, scene: ClientData, parts: Parts, number: int) -> None:
+    def _answer(
+        self, scene: ClientData, request: str, key: TileKey | None, made: Future[Parts]
+    ) -> None:
+        """Send what has been made of a scene, or what went wrong."""
+        self._requests.discard(request)
+        error = made.exception()
+        if isinstance(error, Stopped) or self._closed:
+            return
+        if error is not None:
+            traceback.print_exception(error)
+            self._end(request, error=_words(error))
+            return
         with self._lock:
-            if scene is self.scene and not self._closed:
-                self._deliver(parts, again=True, offer=False)
-                self._send({"kind": "tiles", "seen": number}, [])
+            if scene is self.scene:
+                self._live = True
+                self._deliver(made.result(), again=True, offer=key is None)
+            self._end(request)
+
+    def _end(self, request: str, **told: str) -> None:
+        with self._lock:
+            self._send({"kind": "loaded", "request": request, **told}, [])
 
     def _resend_timer(self, waits: tuple[float, ...]) -> threading.Timer:
         timer = threading.Timer(waits[0], self._send_again, [waits[1:]])
@@ -186,7 +207,7 @@ class Feed:
         self._closed = True
         self._timer.cancel()
         self._answers.close()
-        self._tiles.close()
+        self._source.close()
         self._builds.close()
         for event in (self.pictured, self.settled):
             event.set()
@@ -242,7 +263,8 @@ class Feed:
             if scene.traced != self.scene.traced:
                 self._sent.clear()  # a client that traces makes some of the arrays itself
             self.scene = scene
-            self._tiles.show(scene)
+            self._source.close()
+            self._source = TileSource(scene)
             self._generation += 1
             self._announce(self.header)
             if self._live:
@@ -256,8 +278,7 @@ class Feed:
         with self._lock:
             if self._closed:
                 return
-            self.scene = scene
-            self._tiles.recolour(scene)
+            self.scene = self._source.scene = scene
             self._announce(self.header)
             if self._live:
                 kept = ("flow/", "slices/", "extra/")
@@ -270,10 +291,6 @@ class Feed:
         for step in scene.moment(self._moment()):
             parts |= scene.step(step)
         return parts
-
-    def _send_step(self, step: int) -> None:
-        self._asked.discard(step)
-        self._send_parts(lambda scene: scene.step(step) if step < scene.steps else {})
 
     def _send_parts(self, parts_of: Callable[[ClientData], Parts]) -> None:
         """Send parts of the present scene, also when it is replaced while they are made."""
@@ -338,7 +355,11 @@ class Feed:
         traceback.print_exception(error)
         self.settled.set()
         with suppress(Exception):
-            self._send({"kind": "error", "text": f"{type(error).__name__}: {error}"}, [])
+            self._send({"kind": "error", "text": _words(error)}, [])
+
+
+def _words(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}"
 
 
 def _was_sent(digest: str) -> bool:

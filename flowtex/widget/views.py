@@ -83,15 +83,19 @@ class Views:
                 feed.ready()
         if not (isinstance(number, int) and 0 <= number < len(self.feeds)):
             return
-        step, names = message.get("step"), message.get("names")
+        names, request = message.get("names"), message.get("request")
         if kind == "appearance" and isinstance(message.get("changes"), dict):
             self._take_appearance(message["changes"])
-        if kind == "need" and isinstance(step, int):
-            self.feeds[number].need(step)
         if kind == "want" and isinstance(names, list) and all(isinstance(n, str) for n in names):
             self.feeds[number].want(names)
-        if kind == "tiles":
-            self.feeds[number].need_tiles(*_tiles_of(message))
+        if kind == "drop" and isinstance(request, str):
+            self.feeds[number].drop(request)
+        key, steps = message.get("key"), message.get("steps")
+        if kind == "load" and isinstance(request, str) and _are_whole(steps):
+            if key is None:
+                self.feeds[number].load(request, None, steps)
+            elif _are_whole(key) and len(key) == len(TileKey._fields):
+                self.feeds[number].load(request, TileKey(*key), steps)
 
     def _take_appearance(self, changes: dict[str, Any]) -> None:
         """Take colours that were chosen in the browser; what does not fit changes nothing there."""
@@ -138,14 +142,6 @@ class Views:
         for feed, view in zip(self.feeds, self.views, strict=True):
             feed.close()
             view.close()
-
-
-def _tiles_of(message: dict[str, Any]) -> tuple[list[TileKey], list[int], int]:
-    """Return what a client asks for: tiles, time steps, and the last number that it has seen."""
-    keys, steps, seen = (message.get(name) for name in ("keys", "steps", "seen"))
-    if not _are_whole(steps) or not isinstance(keys, list) or not isinstance(seen, int):
-        return [], [], 0
-    return [TileKey(*key) for key in keys if _are_whole(key) and len(key) == 3], steps, seen
 
 
 def _are_whole(values: Any) -> TypeGuard[list[int]]:

@@ -483,15 +483,15 @@ STANDS_STILL = """() => {
 def test_playing_goes_through_the_times_and_asks_for_what_is_missing(client: ClientPage) -> None:
     packed_scene = scene(swinging, straight(1, (0, 0)), steps=(0, 1, 2), time=0.0)
     late = {k: packed_scene["parts"].pop(k) for k in list(packed_scene["parts"]) if k[-2:] == "/2"}
-    client.mount(packed_scene, SIZE, hear=["onNeed", "onTime"], smooth=False)
+    client.mount(packed_scene, SIZE, hear=["onTime"], gives=True, smooth=False)
     client.sharp()
     assert number(client, "events") == []
     number(client, "viewers[0].setTime(0.39)")
     number(client, "viewers[0].play()")
-    client.page.wait_for_function("() => events.some(([name]) => name === 'onNeed')")
+    client.page.wait_for_function("() => events.some(([name]) => name === 'load')")
     client.page.wait_for_function(STANDS_STILL)
-    needed = {tuple(e) for e in number(client, "events.filter(([name]) => name === 'onNeed')")}
-    assert needed == {("onNeed", 2)}
+    needed = {tuple(e) for e in number(client, "events.filter(([name]) => name === 'load')")}
+    assert needed == {("load", 2)}
     assert number(client, "viewers[0].player.time") < 0.4 + 1e-9
     client.page.evaluate(
         "(parts) => unpack(parts).forEach((part) => viewers[0].setPart(part))",
@@ -765,7 +765,7 @@ def test_a_widget_takes_traits_and_messages_as_they_come(client: ClientPage) -> 
     assert page.evaluate(offer, 0) == [{"kind": "want", "names": ["position"], "view": 0}]
     assert page.evaluate(offer, 5) == []
     number(client, "(model.fire('msg:custom', null, []), null)")
-    number(client, "(model.fire('msg:custom', { kind: 'tiles', seen: 3 }, []), null)")
+    number(client, "(model.fire('msg:custom', { kind: 'loaded', request: 'x' }, []), null)")
     assert number(client, "host.dataset.failed") is None
     # Parts of a scene that is still to come wait for its header.
     page.wait_for_function("() => host.dataset.sharp === 'true'")

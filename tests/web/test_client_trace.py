@@ -221,7 +221,7 @@ def test_another_moment_is_traced_from_what_is_there(client: ClientPage, lines: 
     plain = Colours(plain=(0.6, 0.6, 0.6), background=(1.0, 0.0, 0.0))
     data = ClientData(textures, plain, traces=True)
     header = data.header(settings, camera=state(camera), time=0.8)
-    hidden = {"hear": ["onNeed"], "controls": False, "smooth": False}
+    hidden = {"gives": True, "controls": False, "smooth": False}
     client.mount(packed(data, header, (0, 1, 2)), SIZE, **hidden)
     client.sharp()
     for time, steps, between in ((0.55, (1, 2), 0.375), (0.1, (0, 1), 0.25)):

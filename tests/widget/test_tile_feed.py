@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from types import SimpleNamespace
@@ -10,8 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from waiting import wait_until
+from waiting import PATIENCE_S, wait_until
 
+from flowtex._util.progress import check
 from flowtex.options import Options
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.textures import TextureSet
@@ -38,7 +40,8 @@ class Client:
         self.header: Header = {}
         self.arrays: dict[str, Any] = {}
         self.order: list[str] = []
-        self.seen = 0
+        self.requests = 0
+        self.loaded: list[str] = []
         self.errors: list[Any] = []
         views = web_views(field, Options.split(samples=9, **options))
         self.views = Views(views, lambda number, header: self._take(header), self._receive)
@@ -53,18 +56,25 @@ class Client:
     def _receive(self, message: dict[str, Any], buffers: list[Any]) -> None:
         if message["kind"] == "error":
             self.errors.append(message["text"])
-        if message["kind"] == "tiles":
-            self.seen = message["seen"]
+        if message["kind"] == "loaded":
+            self.loaded.append(message["request"])
+            self.errors += [message["error"]] if "error" in message else []
         for info, data in zip(message.get("parts", ()), buffers, strict=False):
             array = np.frombuffer(data, info["dtype"]).reshape(info["shape"])
             self.arrays[info["name"]] = array
             self.order.append(info["name"])
 
-    def ask(self, *keys: tuple[int, int, int], steps: tuple[int, ...] = (0,)) -> None:
-        self.views.handle_message(
-            {"kind": "tiles", "keys": list(map(list, keys)), "steps": list(steps)}
-            | {"seen": self.seen, "view": 0}
-        )
+    def ask(self, key: tuple[int, int, int] | None, *steps: int) -> str:
+        """Ask for a tile; return the name of the request."""
+        self.requests += 1
+        message = {"kind": "load", "key": key and list(key), "steps": list(steps), "view": 0}
+        self.views.handle_message({**message, "request": str(self.requests)})
+        return str(self.requests)
+
+    def load(self, key: tuple[int, int, int] | None, *steps: int) -> None:
+        """Ask for a tile, and wait for all of it."""
+        request = self.ask(key, *steps)
+        self.wait(lambda: request in self.loaded)
 
     def wait(self, ready: Callable[[], bool]) -> None:
         wait_until(ready, lambda: self.order)
@@ -91,8 +101,8 @@ def test_tiles_come_with_all_that_draws_them(make: Callable[..., Client]) -> Non
     pyramid = client.header["pyramid"]
     assert pyramid["depth"] == 2
     assert pyramid["shapes"] == [[76, 151], [39, 76], [20, 39]]
-    client.ask((0, 0, 1), (0, 0, 0), steps=(0, 1))
-    client.wait(lambda: client.seen == 4)
+    client.load((0, 0, 1), 0, 1)
+    client.load((0, 0, 0), 0, 1)
     own = json.loads(client.arrays["tile/0/0/1/header"].tobytes())
     rows, columns = own["geometry"]["shape"]
     assert (rows, columns) == (65, 65)
@@ -106,37 +116,46 @@ def test_tiles_come_with_all_that_draws_them(make: Callable[..., Client]) -> Non
     assert "tile/0/0/0/position" not in client.arrays
 
 
-def test_what_was_dropped_is_sent_again_and_what_is_on_its_way_is_not(
-    make: Callable[..., Client],
+def test_what_is_given_up_is_neither_made_nor_sent(
+    make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     client = make(swirl())
-    client.ask((1, 0, 1))
-    client.wait(lambda: client.seen == 1)
-    sent = client.order.count("tile/1/0/1/header")
-    client.ask((1, 0, 1))  # it has seen the tile, and so it has dropped it
-    client.wait(lambda: client.seen == 2)
-    assert client.order.count("tile/1/0/1/header") == sent + 1
-    client.seen = 1  # as if the second had not come yet
-    client.ask((1, 0, 1), (1, 0, 0))
-    client.wait(lambda: client.seen == 3)
-    assert client.order.count("tile/1/0/1/header") == sent + 1
+    client.load((1, 0, 1), 0)
+    client.load((1, 0, 1), 0)  # a client that has dropped it asks again
+    assert client.order.count("tile/1/0/1/header") == 2
+    began, go = threading.Event(), threading.Event()
+    textures = Pyramid.textures
+
+    def slow(*arguments: Any) -> Any:
+        began.set()
+        assert go.wait(PATIENCE_S)
+        check()
+        return textures(*arguments)
+
+    monkeypatch.setattr(Pyramid, "textures", slow)
+    request = client.ask((1, 0, 0), 0)
+    assert began.wait(PATIENCE_S)
+    client.views.handle_message({"kind": "drop", "request": request})
+    go.set()
+    client.load((0, 0, 1), 0)
+    client.load((1, 0, 0), 0)  # the first has made nothing
+    assert client.order.count("tile/1/0/0/header") == 1
+    assert request not in client.loaded
+    assert client.errors == []
 
 
 def test_tiles_in_other_colours_are_the_same(
     make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     client = make(swirl(), cmap="magma")
-    client.ask((0, 0, 1))
-    client.wait(lambda: client.seen == 1)
+    client.load((0, 0, 1), 0)
     before, generation = client.arrays.copy(), client.header["generation"]
     tile = "tile/0/0/1"
     monkeypatch.setattr(TextureSet, "layers", None)
     scene = client.views.first
     scene.appearance = replace(scene.appearance, scalars="depth", clim=(0.0, 3.0))
     client.wait(lambda: "scalars/0/1" in client.arrays)
-    client.seen = 0  # what is on its way has other colours
-    client.ask((0, 0, 1))
-    client.wait(lambda: client.seen == 2)
+    client.load((0, 0, 1), 0)
     assert (client.header["scalars"]["name"], client.header["generation"]) == ("depth", generation)
     depth = swirl().scalars["depth"][0, :65, 64:129]
     np.testing.assert_allclose(client.arrays[f"{tile}/scalars/0/1"], depth, rtol=1e-6)
@@ -147,7 +166,11 @@ def test_tiles_in_other_colours_are_the_same(
     assert client.errors == []
 
 
-def test_errors_are_told_once(make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_errors_are_told_to_who_asked(
+    make: Callable[..., Client],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     client = make(swirl())
 
     def fail(*arguments: Any) -> None:
@@ -156,16 +179,14 @@ def test_errors_are_told_once(make: Callable[..., Client], monkeypatch: pytest.M
 
     with monkeypatch.context() as patch:
         patch.setattr(Pyramid, "textures", fail)
-        client.ask((1, 0, 1))
-        client.wait(lambda: bool(client.errors))
-    client.ask((1, 0, 1), (1, 0, 0))
-    client.wait(lambda: client.seen > 0)
+        client.load((1, 0, 1), 0)
+    assert "disk is gone" in capsys.readouterr().err
+    client.load((1, 0, 1), 0)
     assert client.errors == ["OSError: the disk is gone"]
-    assert "tile/1/0/1/header" not in client.arrays
-    # Some seconds later the disk is there again.
-    monkeypatch.setattr("flowtex.tiles.loader.RETRY_S", -1.0)
-    client.ask((1, 0, 1))
-    client.wait(lambda: "tile/1/0/1/header" in client.arrays)
+    assert "tile/1/0/1/header" in client.order
+    client.load((7, 0, 0), 0)
+    client.load(None, 9)
+    assert [error.split(":")[0] for error in client.errors[1:]] == ["KeyError", "IndexError"]
 
 
 def test_tiles_are_not_taken_for_time_steps(make: Callable[..., Client]) -> None:
@@ -182,10 +203,14 @@ def test_tiles_are_not_taken_for_time_steps(make: Callable[..., Client]) -> None
     assert asked == [2]
 
 
-@pytest.mark.parametrize("keys", [None, [1], [[0, "a", 0]], [[0, 0]]])
-def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Client], keys: Any) -> None:
+@pytest.mark.parametrize(
+    "wrong",
+    [{"key": 1}, {"key": [0, "a", 0]}, {"key": [0, 0]}, {"steps": [0.5]}, {"request": 3}],
+)
+def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Client], wrong: Any) -> None:
     client = make(swirl())
-    client.views.handle_message({"kind": "tiles", "keys": keys, "steps": [0], "seen": 0})
-    client.ask((1, 0, 1))
-    client.wait(lambda: client.seen == 1)
+    given = {"kind": "load", "request": "a", "key": [1, 0, 1], "steps": [0]}
+    client.views.handle_message({**given, **wrong})
+    client.load((1, 0, 0), 0)
+    assert client.loaded == ["1"]
     assert client.errors == []

@@ -175,10 +175,9 @@ def test_a_client_that_is_ready_gets_what_it_needs(
     scene = widget._views.feeds[0].scene
     np.testing.assert_array_equal(heard.arrays["flow/1"], scene.step(1)["flow/1"])
     np.testing.assert_array_equal(heard.arrays["padded"], scene.surface()["padded"])
-    heard.say(kind="need", step=3)
+    heard.say(kind="load", request="a", key=None, steps=[3])
     heard.wait(lambda: "flow/3" in heard.arrays)
-    heard.say(kind="need", step=7)
-    heard.say(kind="need", step="x")
+    heard.say(kind="load", request="b", key=None, steps=["x"])
     heard.say(kind="what")
     assert "flow/0" not in heard.arrays
 
@@ -233,7 +232,7 @@ def test_triangles_come_at_once_and_have_tiles(make: Make, monkeypatch: pytest.M
     assert widget._views.feeds[0].settled.wait(PATIENCE_S)
     assert widget._header is header
     key = [header["pyramid"]["depth"] - 1, 0, 0]
-    heard.say(kind="tiles", keys=[key], steps=[0], seen=0)
+    heard.say(kind="load", request="a", key=key, steps=[0])
     name = f"tile/{key[0]}/0/0"
     heard.wait(lambda: {f"{name}/triangles", f"{name}/slices/0"} <= set(heard.arrays))
     # The triangle that was clicked is one of a coarser level.

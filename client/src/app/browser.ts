@@ -6,29 +6,23 @@ import type * as Client from "../client.ts";
 import { throttled } from "../lifetime.ts";
 import type { Options } from "../options.ts";
 import { placeIn } from "../pointers.ts";
-import type { Header, NamedPart, Settings } from "../protocol.ts";
-import { nameOf } from "../tilechoice.ts";
-import { TileQueue } from "../tilequeue.ts";
+import type { Header, Settings } from "../protocol.ts";
+import { loadFiles } from "../sources/files.ts";
 import type { Viewer } from "../viewer.ts";
 import { vue, type Emit } from "./vue.ts";
 
 /** Milliseconds between two messages to the server. */
 const MESSAGE_MS = 100;
-/** Tiles that the server makes at a time. */
-const MOST_TILES = 3;
 
-/** Where the client and the parts of a scene are found, and the scene's header. */
-interface Source {
+/** Where the client is found, the scene's header, and the address of its parts before their names. */
+interface Scene {
   client: string;
   header: Header;
-  surface: string;
-  steps: string[];
-  /** Address of the tiles, before their names. */
-  tiles: string;
+  parts: string;
 }
 
 interface Props {
-  source: Source;
+  source: Scene;
   settings: Settings;
   camera: CameraState | null;
   time: number;
@@ -50,13 +44,9 @@ class BrowserView {
   private lastTime = NaN;
   private isDisposed = false;
   private started = 0;
-  private readonly tiles = new TileQueue(
-    (key, steps, signal) =>
-      this.parts(`${this.props.source.tiles}${[...key, ...steps].join(".")}`, signal),
-    (part) => this.viewer?.setPart(part),
-    MOST_TILES,
-    // A coarser one is in its place, until it is asked for again.
-    (key, _, steps) => this.viewer?.lack("A part of the surface is shown coarse.", nameOf(key), steps),
+  private readonly load = loadFiles(
+    () => this.props.source.parts,
+    (file) => this.client?.partsOfFile(file) ?? [],
   );
   private readonly watcher = new MutationObserver(() => this.look());
 
@@ -91,29 +81,16 @@ class BrowserView {
       onPoint: ({ index, position }) =>
         emit("point", this.viewer?.header?.geometry.triangles ? position : [...index]),
       onSetting: (name, value) => emit("setting", [name, value]),
-      onNeed: (step) => void this.load(this.props.source.steps[step]),
-      onTiles: (keys, steps) => this.tiles.request(keys, steps),
+      source: { load: this.load, hasSteps: true },
     };
   }
 
   async show(): Promise<void> {
     const { source, playing } = this.props;
     this.started = performance.now();
-    this.tiles.request([], []); // what is on its way is of the scene before
     this.viewer?.setHeader(source.header);
-    await this.load(source.surface);
+    for (const part of await this.load(null, [])) if (!this.isDisposed) this.viewer?.setPart(part);
     if (playing) this.viewer?.play();
-  }
-
-  private async load(address: string): Promise<void> {
-    const parts = await this.parts(address);
-    if (!this.isDisposed) for (const part of parts) this.viewer?.setPart(part);
-  }
-
-  private async parts(address: string, signal?: AbortSignal): Promise<NamedPart[]> {
-    const answer = await fetch(address, { signal });
-    if (!answer.ok) throw new Error(`${address}: ${answer.status}`);
-    return this.client?.partsOfFile(await answer.arrayBuffer()) ?? [];
   }
 
   /** Tell how long the full picture took. */

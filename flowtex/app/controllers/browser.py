@@ -1,8 +1,8 @@
 """Drawing in the browser instead of on the server, with the client of the notebook widget.
 
-The page asks for two kinds of files of parts: the surface of a scene, and the flow at one of its
-times; :mod:`flowtex.rendering.webgl.protocol` says what is in them. Camera, time and settings
-travel as state, both ways.
+The page asks for files of parts: of the whole surface, and of tiles, at some times;
+:mod:`flowtex.web.source` says what is in them. Camera, time and settings travel as state, both
+ways.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import logging
 from typing import Any
 
 from flowtex._util.colours import rgb
+from flowtex._util.progress import Stopped
 from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.server.files import Content, Give
 from flowtex.app.server.validation import number
@@ -19,9 +20,9 @@ from flowtex.camera import Camera
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.settings import TABLE
-from flowtex.tiles import TileKey, TileLoader
+from flowtex.tiles import TileKey
 from flowtex.web.assets import asset
-from flowtex.web.tiles import packed_tile, tile_loader
+from flowtex.web.source import TileSource
 from flowtex.web.view import colours_of
 
 __all__ = ["RENDERERS", "BrowserRendering"]
@@ -30,8 +31,8 @@ _log = logging.getLogger(__name__)
 
 #: Where the picture is drawn.
 RENDERERS = ("server", "browser")
-#: Seconds between looks at whether a tile is there that a page waits for.
-TILE_WAIT_S = 0.05
+#: What a page calls the whole surface in place of a tile.
+WHOLE = "whole"
 
 
 class BrowserRendering(Controller):
@@ -39,9 +40,8 @@ class BrowserRendering(Controller):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self._scene: ClientData | None = None
-        self._loader: TileLoader | None = None
-        self._told: set[TileKey] = set()
+        self._source: TileSource | None = None
+        self._told: set[TileKey | None] = set()
         #: Numbers of the scene, and of the files in which it is handed over.
         self._generation = self._published = 0
         self._routes = context.routes
@@ -65,7 +65,7 @@ class BrowserRendering(Controller):
     @property
     def active(self) -> bool:
         """Whether the browser draws."""
-        return self._scene is not None
+        return self._source is not None
 
     def take_renderer(self) -> None:
         """Draw where the page asks for it; the camera stays the same."""
@@ -142,35 +142,27 @@ class BrowserRendering(Controller):
         """Hand a scene over in place of an earlier one, or that one in other colours."""
         self._withdraw()
         self._appearance = self._present_appearance()
-        old, scene = self._scene, self._data()
-        if old is not None and old.textures is scene.textures:
-            scene = old.recoloured(scene.colours)
+        source, scene = self._source, self._data()
+        if source is not None and source.scene.textures is scene.textures:
+            source.scene = source.scene.recoloured(scene.colours)
         else:
             self._generation += 1
-            self._close_loader()
-            self._loader = None if scene.pyramid is None else tile_loader(scene, scene.pyramid)
-        self._scene = scene
+            self._close_source()
+            source = self._source = TileSource(scene)
         self._camera = self.viewport.camera
         self.stream.paused = True
-        header = scene.header(
+        header = source.scene.header(
             self.settings, camera=self._camera.to_dict(), time=self.viewport.handle.time
         )
         self._published += 1
-        surface = self._publish("surface", lambda: parts_file(scene.surface()))
-        steps = [
-            self._publish(f"step-{step}", lambda step=step: parts_file(scene.step(step)))
-            for step in range(scene.steps)
-        ]
-        tiles = self._routes.give_each(
-            f"tile-{self._published}", lambda name: self._tile(scene, name)
+        parts = self._routes.give_each(
+            f"parts-{self._published}", lambda name: self._parts(source, name)
         )
         self.state.send(
             client_source={
                 "client": self._client,
                 "header": {**header, "generation": self._generation},
-                "surface": surface,
-                "steps": steps,
-                "tiles": tiles,
+                "parts": parts,
             },
             client_settings=dict(self.settings),
             client_camera=self._camera.to_dict(),
@@ -181,61 +173,51 @@ class BrowserRendering(Controller):
 
     def _end(self) -> None:
         self._withdraw()
-        self._close_loader()
-        self._scene = None
+        self._close_source()
         self.stream.paused = False
         self.state.set(client_source=None)
         self.stream.changed()
 
-    def _publish(self, name: str, make: Any) -> str:
-        async def content() -> Content:
-            # Packing takes a while, and the loop has other pages to serve.
-            body = await asyncio.get_running_loop().run_in_executor(None, make)
-            return body, "application/octet-stream", None
-
-        return self._routes.give(f"{name}-{self._published}", content)
-
-    def _tile(self, scene: ClientData, name: str) -> Give:
-        """Return how the tile of a name, its key and time steps, becomes a file."""
-        level, row, column, *steps = (int(number) for number in name.split("."))
-        key, loader = TileKey(level, row, column), self._loader
-        sources = [scene.source(step) for step in steps]
-        if loader is None or not all(0 <= step < scene.steps for step in steps):
+    def _parts(self, source: TileSource, name: str) -> Give:
+        """Return how the parts become a file of a tile, or of the whole, and of its time steps."""
+        place, *numbers = name.split(".")
+        steps = [int(number) for number in numbers]
+        key = None
+        if place != WHOLE:
+            level, row, column = map(int, place.split(","))
+            key = TileKey(level, row, column)
+        if not all(0 <= step < source.scene.steps for step in steps):
             raise LookupError(name)
 
         async def content() -> Content:
-            while (tile := loader.get(key, sources)) is None:
-                if loader is not self._loader:
-                    return parts_file({}), "application/octet-stream", None
-                # Asked for again, as tiles are given up that nobody asks for, and after a failure.
-                loader.request([key], sources)
-                if (error := loader.errors.get(key)) is not None:
-                    self._tell(key, error)
-                    raise FileNotFoundError(name)
-                await asyncio.sleep(TILE_WAIT_S)
-            run = asyncio.get_running_loop().run_in_executor
-            body = await run(None, lambda: parts_file(packed_tile(scene, tile, steps)))
+            try:
+                parts = await asyncio.wrap_future(source.ask(key, steps))
+            except Stopped:  # of a scene that is not shown any more
+                parts = {}
+            except Exception as error:
+                self._tell(key, error)
+                raise FileNotFoundError(name) from error
+            # Packing takes a while, and the loop has other pages to serve.
+            body = await asyncio.get_running_loop().run_in_executor(None, parts_file, parts)
             return body, "application/octet-stream", None
 
         return content
 
-    def _tell(self, key: TileKey, error: Exception) -> None:
-        """Log, once each, what tiles could not be made; coarser ones are in their place."""
+    def _tell(self, key: TileKey | None, error: Exception) -> None:
+        """Log, once each, what could not be made; coarser tiles are in the place of others."""
         if key not in self._told:
             self._told.add(key)
-            _log.warning("tile %s could not be made: %s", tuple(key), error)
+            what = "the surface" if key is None else f"tile {tuple(key)}"
+            _log.warning("%s could not be made: %s", what, error)
 
-    def _close_loader(self) -> None:
+    def _close_source(self) -> None:
         self._told.clear()
-        if self._loader is not None:
-            self._loader.close()
-        self._loader = None
+        if self._source is not None:
+            self._source.close()
+        self._source = None
 
     def _withdraw(self) -> None:
-        if self._scene is not None:
-            names = ("tile", "surface", *(f"step-{step}" for step in range(self._scene.steps)))
-            for name in names:
-                self._routes.withdraw(f"{name}-{self._published}")
+        self._routes.withdraw(f"parts-{self._published}")
 
     def _data(self) -> ClientData:
         scene = self.area.scene
@@ -246,5 +228,4 @@ class BrowserRendering(Controller):
     def close(self) -> None:
         """End what goes on."""
         self._withdraw()
-        self._close_loader()
-        self._scene = None
+        self._close_source()

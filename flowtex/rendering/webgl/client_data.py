@@ -320,16 +320,13 @@ class ClientData:
 
     def tile(self, textures: TextureSet, values: Callable[[str], Floats]) -> ClientData:
         """Return what is handed over of a tile; ``values`` gives those of a scalar at its nodes."""
-        return ClientData(textures, self.tile_colours(values), self.chosen, traces=self.traces)
-
-    def tile_colours(self, values: Callable[[str], Floats]) -> Colours:
-        """Return the colours of a tile; ``values`` gives those of a scalar at its nodes."""
         colours = self.colours
-        return replace(
+        colours = replace(
             colours,
             values=None if colours.name is None else values(colours.name),
             others=tuple((n, values(colours.choices[n]["name"])) for n, _ in colours.others),
         )
+        return ClientData(textures, colours, self.chosen, traces=self.traces)
 
     @property
     def tile_header(self) -> Header:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats32, Halves
+from flowtex._util.array_types import AnyArray, Halves
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.textures import TextureSet
 
@@ -50,14 +50,13 @@ class Packing:
         """Return a step; what is not yet traced is traced."""
         return self._steps.get(step, lambda: self._packed(step))
 
-    def take(self, step: int, layers: Floats32) -> None:
-        """Pack layers that somebody else has made."""
-        self._steps.put(step, self._halved(layers))
+    @property
+    def nbytes(self) -> int:
+        """Size of the steps that are cached."""
+        return self._steps.nbytes
 
     def _packed(self, step: int) -> PackedStep:
-        return self._halved(self._textures.layers(step))
-
-    def _halved(self, layers: Floats32) -> PackedStep:
+        layers = self._textures.layers(step)
         return PackedStep(half(layers[..., : self.channels]), half(layers[self.extra, :, :, 3]))
 
 

@@ -40,20 +40,22 @@ def test_a_tile_is_made_when_it_is_asked_for(
     app.controllers.browser.take_renderer()
     source: Any = app.state.get("client_source")
     assert source["header"]["pyramid"]["shapes"] == [[200, 300], [101, 151], [51, 76]]
-    stem = source["tiles"].rsplit("/", 1)[1]
+    stem = source["parts"].rsplit("/", 1)[1]
 
     async def ask(name: str) -> dict[str, list[int]]:
         return parts_of(await app.controllers.browser._routes.answer(stem + name))
 
-    found = asyncio.run(ask("0.0.1.0"))
+    found = asyncio.run(ask("0,0,1.0"))
     assert found["tile/0/0/1/scalars/0"] == [200, 44]
     assert {"header", "padded", "unit", "flow/0"} <= {name.split("/", 4)[4] for name in found}
-    for name in ("", "0.0", "0.0.1.7", "0.0.x.0"):
+    assert {"mesh", "places", "padded"} <= asyncio.run(ask("whole")).keys()
+    assert asyncio.run(ask("whole.0")).keys() == {"flow/0", "scalars/0"}
+    for name in ("", "0,0.0", "0,0,1.7", "0,0,x.0", "whole.7", "part"):
         with pytest.raises(web.HTTPNotFound):
             asyncio.run(ask(name))
     for _ in range(2):  # told once
         with pytest.raises(web.HTTPNotFound):
-            asyncio.run(ask("0.5.5.0"))
+            asyncio.run(ask("0,5,5.0"))
     (record,) = caplog.records
     assert "there is no tile (0, 5, 5)" in record.getMessage()
     with monkeypatch.context() as patch:
@@ -67,7 +69,7 @@ def test_a_tile_is_made_when_it_is_asked_for(
     assert "tile/0/0/0/scalars/0" in asyncio.run(ask("0.0.0.0"))
     app.controllers.browser.leave()
     with pytest.raises(web.HTTPNotFound):
-        asyncio.run(ask("0.0.1.0"))
+        asyncio.run(ask("0,0,1.0"))
     app.close()
 
 
@@ -82,8 +84,8 @@ def test_tiles_in_other_colours_are_not_traced_again(monkeypatch: pytest.MonkeyP
     routes = app.controllers.browser._routes
 
     def ask() -> dict[str, list[int]]:
-        stem = source()["tiles"].rsplit("/", 1)[1]
-        return parts_of(asyncio.run(routes.answer(stem + "0.0.1.0")))
+        stem = source()["parts"].rsplit("/", 1)[1]
+        return parts_of(asyncio.run(routes.answer(stem + "0,0,1.0")))
 
     def source() -> Any:
         return app.state.get("client_source")
@@ -93,7 +95,7 @@ def test_tiles_in_other_colours_are_not_traced_again(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(flowtex.textures.TextureSet, "layers", None)
     app.area.scalars = "p"
     app.controllers.browser.follow()
-    assert source()["tiles"] != first["tiles"]
+    assert source()["parts"] != first["parts"]
     assert source()["header"]["generation"] == first["header"]["generation"]
     assert source()["header"]["scalars"]["name"] == "p"
     assert "tile/0/0/1/scalars/0/1" in ask()

@@ -3,39 +3,30 @@
 r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape";function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){document.
 fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
 next=null,call(value),later(run,wait)};return value=>{next={value},running||run()}}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}function placeIn(element,event){let box=element.getBoundingClientRect();return{x:2*(event.clientX-box.left)/Math.max(box.
-width,1)-1,y:1-2*(event.clientY-box.top)/Math.max(box.height,1)}}var nameOf=key=>key.join("/");var TileQueue=class{load;give;most;fail;running=new Map;wanted=[];constructor(load,give,most=1,fail=(_,error)=>{throw error}){
-this.load=load,this.give=give,this.most=most,this.fail=fail}request(keys2,steps){this.want(keys2.map(key=>[key,steps]))}want(jobs){
-this.wanted=[...jobs];let names=new Set(jobs.map(([key,steps])=>`${nameOf(key)} ${steps}`));for(let[name,controller]of this.
-running)names.has(name)||controller.abort();this.next()}next(){for(;this.wanted.length&&this.running.size<this.most;){let[
-key,steps]=this.wanted[0];this.wanted.shift();let name=`${nameOf(key)} ${steps}`;this.running.has(name)||this.run(name,key,
-steps)}}async run(name,key,steps){let controller=new AbortController;this.running.set(name,controller);try{let parts=await this.
-load(key,steps,controller.signal);controller.signal.aborted||parts.forEach(this.give)}catch(error){controller.signal.aborted||
-this.fail(key,error,steps)}finally{this.running.delete(name),this.next()}}};var vue=()=>window.Vue;var MESSAGE_MS=100,MOST_TILES=3,PROPS=["source","settings","camera","time","playing"],isEqual=(a,b)=>JSON.stringify(a)===
-JSON.stringify(b),slowly=call=>throttled(setTimeout,MESSAGE_MS,call),BrowserView=class{props;emit;client=null;viewer=null;lastCamera=null;lastTime=NaN;isDisposed=!1;started=0;tiles=new TileQueue(
-(key,steps,signal)=>this.parts(`${this.props.source.tiles}${[...key,...steps].join(".")}`,signal),part=>this.viewer?.setPart(
-part),MOST_TILES,(key,_,steps)=>this.viewer?.lack("A part of the surface is shown coarse.",nameOf(key),steps));watcher=new MutationObserver(
-()=>this.look());constructor(props,emit){this.props=props,this.emit=emit}async begin(element){let address=new URL(this.props.
-source.client,document.baseURI).href;if(this.client=await import(address),this.isDisposed)return;let viewer=new this.client.
-Viewer(element,this.options());this.viewer=viewer,viewer.root.style.height="100%",this.watcher.observe(viewer.root,{attributeFilter:[
-"data-sharp"]}),await this.show()}options(){let{emit}=this,sendCamera=slowly(camera=>emit("update:camera",camera)),sendTime=slowly(
-time=>emit("update:time",time));return{rebuild:!0,controls:!1,bare:!0,onCamera:camera=>sendCamera(this.lastCamera=camera),
-onTime:time=>sendTime(this.lastTime=time),onPlaying:playing=>emit("update:playing",playing),onPoint:({index,position})=>emit(
-"point",this.viewer?.header?.geometry.triangles?position:[...index]),onSetting:(name,value)=>emit("setting",[name,value]),
-onNeed:step=>{this.load(this.props.source.steps[step])},onTiles:(keys2,steps)=>this.tiles.request(keys2,steps)}}async show(){
-let{source,playing}=this.props;this.started=performance.now(),this.tiles.request([],[]),this.viewer?.setHeader(source.header),
-await this.load(source.surface),playing&&this.viewer?.play()}async load(address){let parts=await this.parts(address);if(!this.
-isDisposed)for(let part of parts)this.viewer?.setPart(part)}async parts(address,signal){let answer=await fetch(address,{
-signal});if(!answer.ok)throw new Error(`${address}: ${answer.status}`);return this.client?.partsOfFile(await answer.arrayBuffer())??
-[]}look(){let now=performance.now();this.viewer?.sharp?this.emit("sharp",now-this.started):this.started=now}take(name){let{
-viewer,lastCamera,lastTime}=this,{settings,camera,time,playing}=this.props;if(!viewer)return;({source:()=>{this.show()},
-settings:()=>viewer.setSettings(settings),camera:()=>camera&&!isEqual(camera,lastCamera)&&viewer.setCamera(camera),time:()=>time!==
-lastTime&&!viewer.playing&&viewer.setTime(time),playing:()=>playing?viewer.play():viewer.pause()})[name]()}dispose(){this.
-isDisposed=!0,this.watcher.disconnect(),this.viewer?.dispose()}},browser={name:"flowtex-client",props:PROPS,emits:["upda\
-te:camera","update:time","update:playing","setting","sharp","point","hover"],setup(props,{emit}){let{h,ref,watch,onMounted,
-onBeforeUnmount}=vue(),place=ref(null),view=new BrowserView(props,emit);onMounted(()=>place.value&&void view.begin(place.
-value)),onBeforeUnmount(()=>view.dispose());let follow=name=>watch(()=>props[name],()=>view.take(name));PROPS.forEach(follow);
-let sendHover=slowly(at=>emit("hover",at)),onPointermove=event=>{if(!place.value)return;let{x,y}=placeIn(place.value,event);
-sendHover(event.buttons?null:[x,y])},onPointerleave=()=>sendHover(null);return()=>h("div",{ref:place,onPointermove,onPointerleave})}};var PANELS=".flowtex-title, .flowtex-buttons, .flowtex-panel, .flowtex-corner, .flowtex-player",CORNER_PX=200,GAP_PX=4;function coverOf(panel,whole){
+width,1)-1,y:1-2*(event.clientY-box.top)/Math.max(box.height,1)}}function loadFiles(address,partsOfFile){return async(key,steps,signal)=>{let name=address()+[String(key??"whole"),...steps].
+join("."),answer=await fetch(name,{signal});if(!answer.ok)throw new Error(`${name}: ${answer.status}`);return partsOfFile(
+await answer.arrayBuffer())}}var vue=()=>window.Vue;var MESSAGE_MS=100,PROPS=["source","settings","camera","time","playing"],isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
+b),slowly=call=>throttled(setTimeout,MESSAGE_MS,call),BrowserView=class{props;emit;client=null;viewer=null;lastCamera=null;lastTime=NaN;isDisposed=!1;started=0;load=loadFiles(
+()=>this.props.source.parts,file=>this.client?.partsOfFile(file)??[]);watcher=new MutationObserver(()=>this.look());constructor(props,emit){
+this.props=props,this.emit=emit}async begin(element){let address=new URL(this.props.source.client,document.baseURI).href;
+if(this.client=await import(address),this.isDisposed)return;let viewer=new this.client.Viewer(element,this.options());this.
+viewer=viewer,viewer.root.style.height="100%",this.watcher.observe(viewer.root,{attributeFilter:["data-sharp"]}),await this.
+show()}options(){let{emit}=this,sendCamera=slowly(camera=>emit("update:camera",camera)),sendTime=slowly(time=>emit("upda\
+te:time",time));return{rebuild:!0,controls:!1,bare:!0,onCamera:camera=>sendCamera(this.lastCamera=camera),onTime:time=>sendTime(
+this.lastTime=time),onPlaying:playing=>emit("update:playing",playing),onPoint:({index,position})=>emit("point",this.viewer?.
+header?.geometry.triangles?position:[...index]),onSetting:(name,value)=>emit("setting",[name,value]),source:{load:this.load,
+hasSteps:!0}}}async show(){let{source,playing}=this.props;this.started=performance.now(),this.viewer?.setHeader(source.header);
+for(let part of await this.load(null,[]))this.isDisposed||this.viewer?.setPart(part);playing&&this.viewer?.play()}look(){
+let now=performance.now();this.viewer?.sharp?this.emit("sharp",now-this.started):this.started=now}take(name){let{viewer,
+lastCamera,lastTime}=this,{settings,camera,time,playing}=this.props;if(!viewer)return;({source:()=>{this.show()},settings:()=>viewer.
+setSettings(settings),camera:()=>camera&&!isEqual(camera,lastCamera)&&viewer.setCamera(camera),time:()=>time!==lastTime&&
+!viewer.playing&&viewer.setTime(time),playing:()=>playing?viewer.play():viewer.pause()})[name]()}dispose(){this.isDisposed=
+!0,this.watcher.disconnect(),this.viewer?.dispose()}},browser={name:"flowtex-client",props:PROPS,emits:["update:camera",
+"update:time","update:playing","setting","sharp","point","hover"],setup(props,{emit}){let{h,ref,watch,onMounted,onBeforeUnmount}=vue(),
+place=ref(null),view=new BrowserView(props,emit);onMounted(()=>place.value&&void view.begin(place.value)),onBeforeUnmount(
+()=>view.dispose());let follow=name=>watch(()=>props[name],()=>view.take(name));PROPS.forEach(follow);let sendHover=slowly(
+at=>emit("hover",at)),onPointermove=event=>{if(!place.value)return;let{x,y}=placeIn(place.value,event);sendHover(event.buttons?
+null:[x,y])},onPointerleave=()=>sendHover(null);return()=>h("div",{ref:place,onPointermove,onPointerleave})}};var PANELS=".flowtex-title, .flowtex-buttons, .flowtex-panel, .flowtex-corner, .flowtex-player",CORNER_PX=200,GAP_PX=4;function coverOf(panel,whole){
 let{left,top,right,bottom,width}=panel.getBoundingClientRect();if(!width)return null;let end=panel.matches(".flowtex-cor\
 ner")?Math.min(right,left+CORNER_PX):right,foot=panel.matches(".flowtex-panel")?whole.bottom:bottom,share=(edge,start,size)=>Number(
 clamp((edge-start)/size,0,1).toFixed(4));return[share(left-GAP_PX,whole.left,whole.width),share(top-GAP_PX,whole.top,whole.

@@ -1,7 +1,7 @@
-// Tiles and time steps of a page from the store that they lie in: flowtex/pyramid/layout.py tells what is
+// A source of parts that reads them from the store that they lie in: flowtex/pyramid/layout.py tells what is
 // where, and flowtex/pyramid/client_parts.py what the surface of a tile is.
 
-import { fromHalf } from "./half.ts";
+import { fromHalf } from "../half.ts";
 import {
   infosOfFile,
   partsOfFile,
@@ -13,9 +13,10 @@ import {
   type StoreHeader,
   type TileHeader,
   type TraceHeader,
-} from "./protocol.ts";
+} from "../protocol.ts";
+import type { LoadTile, Source } from "./source.ts";
 import { Store, StoreError, storeError, type StoreFault } from "./store.ts";
-import { nameOf, type TileKey } from "./tilechoice.ts";
+import { nameOf, type TileKey } from "../tilechoice.ts";
 
 /** Greatest numbers of layers and of lags, of nodes along a side of a tile, and of bytes of a file. */
 const MOST_LAYERS = 64;
@@ -25,10 +26,7 @@ const MOST_BYTES = 2 ** 28;
 /** Parts that a tile may need beside its flow. */
 const TRACED_FROM = ["padded", "unit", "open", "nearest", "normal", "rays"];
 
-/** What is said of what could not be had, and why. */
-const COARSE = "A part of the surface is shown coarse:";
-const ABSENT_STEP = "A time step cannot be shown:";
-const NO_STORE = "The surface is shown coarse:";
+/** Why something could not be had. */
 const REASONS: Record<Exclude<StoreFault, "other">, string> = {
   missing: "it is not in the store, or the store is not open to everyone.",
   broken: "what the store has of it is broken.",
@@ -39,7 +37,7 @@ const REASONS: Record<Exclude<StoreFault, "other">, string> = {
 /** What of a store has to be that of the page. */
 const IDENTITY = ["format", "fingerprint", "parameter", "lines"] as const;
 /** Tells whether a part is there, of a tile or of the whole. */
-export type Has = (part: string) => boolean;
+type Has = (part: string) => boolean;
 
 /** Flows that are on their way, by their steps. */
 type Flows = Map<number, Promise<NamedPart[]>>;
@@ -178,7 +176,17 @@ function speedOf(flow: NamedPart, { geometry, slices }: Place, typical: number):
   return { name: "", data, shape: [rows, columns], digest: `${flow.digest} speed` };
 }
 
-export class Stream {
+/** An error with its reason in words for everybody, once. */
+function explained(error: unknown): StoreError {
+  const known = storeError(error);
+  if (known.fault === "other" || known.detail !== known.message) return known;
+  return new StoreError(known.fault, REASONS[known.fault], known.message);
+}
+
+export class Stream implements Source {
+  readonly hasSteps = true;
+  readonly atOnce = 6;
+  readonly memory = 180e6;
   private readonly header: Header;
   private readonly told: StoreHeader;
   private readonly url: URL;
@@ -198,13 +206,10 @@ export class Stream {
 
   /** Make sure that the store is that of the page. */
   open(): Promise<void> {
-    if (this.opening) return this.opening;
-    this.opening = this.compare().catch((error) => {
-      const { fault, message } = storeError(error);
-      if (fault === "other") throw error;
-      if (fault === "unreachable") this.opening = null; // for another try
-      const text = `${fault === "missing" ? NO_STORE : COARSE} ${REASONS[fault]}`;
-      throw new StoreError(fault, text, message);
+    this.opening ??= this.compare().catch((error) => {
+      const fault = explained(error);
+      if (fault.fault === "unreachable") this.opening = null; // for another try
+      throw fault;
     });
     return this.opening;
   }
@@ -225,19 +230,20 @@ export class Stream {
     throw new StoreError("other", text);
   }
 
-  /** Parts of a tile that are not there yet, for some time steps and the present colours. */
-  async tile(key: TileKey, steps: number[], signal: AbortSignal, has: Has): Promise<NamedPart[]> {
+  /** Parts of a tile, or of the whole, that are not there yet, for some time steps and the present colours. */
+  readonly load: LoadTile = async (tile, steps, signal, has) => {
+    const key: TileKey = tile ?? [this.told.depth, 0, 0];
     const name = nameOf(key);
-    return this.loaded(COARSE, signal, async (whole) => {
+    return this.loaded(signal, async (whole) => {
       const late = steps.filter((step) => !has(`slices/${step}`) && !has(`flow/${step}`));
-      const known = has("header") && !late.length ? this.headers.get(name) : undefined;
-      const surface: Surface | Promise<Surface> = known === undefined ? this.surface(key, whole) : { header: known, parts: [] };
+      const known = tile ? (has("header") && !late.length ? this.headers.get(name) : undefined) : this.header;
+      const surface = known === undefined ? this.surface(key, whole) : { header: known, parts: [] };
       // On their way before it is known what they belong to.
       const coming: Flows = new Map(late.map((step) => [step, this.flow(key, step, whole)]));
       const flows = [...coming.values()];
       const rest = async () => {
         const { header, parts } = await surface;
-        this.headers.set(name, header);
+        if (tile) this.headers.set(name, header);
         if (!header) return parts;
         const [values, ...slices] = await Promise.all([
           this.values(key, header, steps, has, whole, coming),
@@ -248,45 +254,23 @@ export class Stream {
         return [...parts, ...slices.flat(), ...values];
       };
       const [parts] = await Promise.all([rest(), ...flows]);
-      return parts.map((part) => ({ ...part, name: `tile/${name}/${part.name}` }));
+      return tile ? parts.map((part) => ({ ...part, name: `tile/${name}/${part.name}` })) : parts;
     });
-  }
-
-  /** Parts of the whole surface at a time step, of which some are lacking. */
-  async root(step: number, signal: AbortSignal, lacking: () => string[]): Promise<NamedPart[]> {
-    const { header } = this;
-    const key: TileKey = [this.told.depth, 0, 0];
-    return this.loaded(ABSENT_STEP, signal, async (whole) => {
-      const parts: NamedPart[] = [];
-      const coming: Flows = new Map();
-      if (lacking().some((name) => /^(flow|slices|extra)\//.test(name))) {
-        coming.set(step, this.flow(key, step, whole));
-        parts.push(...((await coming.get(step)) ?? []));
-        checkParts(parts, header, header.mesh.tileCells);
-      }
-      const has = (part: string) => !lacking().includes(part);
-      return [...parts, ...(await this.values(key, header, [step], has, whole, coming))];
-    });
-  }
+  };
 
   /** Call with a signal that ends all of it where a part fails. */
-  private async loaded<T>(what: string, signal: AbortSignal, load: (whole: AbortSignal) => Promise<T>) {
+  private async loaded<T>(signal: AbortSignal, load: (whole: AbortSignal) => Promise<T>): Promise<T> {
     const controller = new AbortController();
-    let stop = (): void => undefined;
-    const stopped = new Promise<never>((_, reject) => {
-      stop = () => reject(signal.reason);
-      signal.addEventListener("abort", stop, { once: true });
-    });
+    signal.addEventListener("abort", () => controller.abort(), { once: true });
     try {
-      // What is for all who ask goes on though one of them has gone.
-      return await Promise.race([this.open().then(() => load(controller.signal)), stopped]);
+      await this.open();
+      signal.throwIfAborted();
+      return await load(controller.signal);
     } catch (error) {
       signal.throwIfAborted();
-      const { fault, message } = storeError(error);
-      throw fault === "other" ? error : new StoreError(fault, `${what} ${REASONS[fault]}`, message);
+      throw explained(error);
     } finally {
       controller.abort();
-      signal.removeEventListener("abort", stop);
     }
   }
 

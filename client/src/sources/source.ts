@@ -1,0 +1,183 @@
+// How parts travel to a view: whoever has them is its Source, and gives those of a tile, or of the whole
+// surface, at time steps. A view asks for what it shows by its Requests, the most needed first.
+//
+//   messages.ts   a kernel answers         embedded.ts   text in an exported page
+//   files.ts      a server makes them      stream.ts     objects of a Zarr store
+//
+// flowtex/web/source.py is the other side of the first three.
+
+import type { NamedPart } from "../protocol.ts";
+import type { StoreError } from "./store.ts";
+import { nameOf, type TileKey } from "../tilechoice.ts";
+
+/** Gives the parts of a tile at time steps, or those of the whole; what is there already may be left out. */
+export type LoadTile = (
+  key: TileKey | null,
+  steps: number[],
+  signal: AbortSignal,
+  has: (part: string) => boolean,
+) => Promise<NamedPart[]>;
+
+export interface Source {
+  load: LoadTile;
+  /** Whether time steps of the whole can be had again, and tiles for as long as anybody asks. */
+  readonly hasSteps?: boolean;
+  /** Tiles that are loaded at once. */
+  readonly atOnce?: number;
+  /** Memory in bytes that its parts may take, here and on the graphics card. */
+  readonly memory?: number;
+  /** Fails where nothing can be had. */
+  open?(): Promise<void>;
+}
+
+/** Who is given parts, or told why there are none. */
+export interface Taker {
+  readonly parts: ReadonlyMap<string, unknown>;
+  readonly tiles: { has(name: string, part: string): boolean } | null;
+  setPart(part: NamedPart): void;
+  lack(reason: string, tile?: string, steps?: number[]): void;
+}
+
+type Job = readonly [key: TileKey | null, steps: number[]];
+
+/** Milliseconds after which what could not be had may be asked for again. */
+const FAILED_MS = 10000;
+/** Milliseconds by which a timer may be early. */
+const SPARE_MS = 20;
+/** Jobs that run at once where a source does not say, and time steps that wait though others are needed now. */
+const AT_ONCE = 4;
+const SPARE_STEPS = 4;
+const ALL_COARSE = "The surface is shown coarse";
+const COARSE = "A part of the surface is shown coarse";
+const ABSENT_STEP = "A time step cannot be shown";
+
+/** What could not be had of late: a network may be there again. */
+export class Failures {
+  private readonly times = new Map<string, number>();
+  private readonly now: () => number;
+
+  constructor(now: () => number = () => performance.now()) {
+    this.now = now;
+  }
+
+  add(name: string): void {
+    this.times.set(name, this.now());
+  }
+
+  has(name: string): boolean {
+    return this.now() - (this.times.get(name) ?? -Infinity) < FAILED_MS;
+  }
+}
+
+/** Jobs of a source, some of which run at a time. */
+class Queue {
+  readonly source: Source;
+  readonly taker: Taker;
+  private readonly running = new Map<string, AbortController>();
+  /** Those that wait or run, and those that could not be had, which are tried again. */
+  jobs: Job[] = [];
+  private failed = new Failures();
+
+  constructor(source: Source, taker: Taker) {
+    this.source = source;
+    this.taker = taker;
+  }
+
+  /** Load in this order, and nothing that was asked for before and is not among it. */
+  want(jobs: Job[]): void {
+    this.jobs = jobs;
+    const names = new Set(jobs.map(String));
+    for (const [name, controller] of this.running) {
+      if (names.has(name)) continue;
+      this.running.delete(name);
+      controller.abort();
+    }
+    this.next();
+  }
+
+  /** Give up all, and forget what could not be had. */
+  stop(): void {
+    this.want([]);
+    this.failed = new Failures();
+  }
+
+  private next(): void {
+    for (const job of this.jobs) {
+      if (this.running.size >= (this.source.atOnce ?? AT_ONCE)) return;
+      if (!this.running.has(String(job)) && !this.failed.has(String(job))) void this.run(job);
+    }
+  }
+
+  private async run(job: Job): Promise<void> {
+    const { source, taker } = this;
+    const [key, steps] = job;
+    const controller = new AbortController();
+    const { signal } = controller;
+    const has = (part: string) =>
+      key ? (taker.tiles?.has(nameOf(key), part) ?? false) : taker.parts.has(part);
+    this.running.set(String(job), controller);
+    try {
+      const parts = await source.load(key, steps, signal, has);
+      if (!signal.aborted) for (const part of parts) taker.setPart(part);
+    } catch (error) {
+      if (!signal.aborted) this.fail(job, error);
+    }
+    if (signal.aborted) return;
+    this.running.delete(String(job));
+    if (!this.failed.has(String(job))) this.jobs = this.jobs.filter((other) => String(other) !== String(job));
+    this.next();
+  }
+
+  private fail(job: Job, error: unknown): void {
+    const [key, steps] = job;
+    this.failed.add(String(job));
+    setTimeout(() => this.next(), FAILED_MS + SPARE_MS);
+    // A coarser tile takes the place of another, but where nobody answers.
+    const isAway = (error as Partial<StoreError>).fault === "unreachable";
+    const name = key && !isAway ? nameOf(key) : undefined;
+    this.taker.lack(wordsOf(key ? COARSE : ABSENT_STEP, error), name, steps);
+  }
+}
+
+/** What is said of a fault; what is no sentence of its own follows on what cannot be shown for it. */
+function wordsOf(what: string, error: unknown): string {
+  const { fault, message = String(error), detail = "" } = error as Partial<StoreError>;
+  console.warn(message, detail);
+  return fault === "other" ? message : `${what}: ${message}`;
+}
+
+/** What a view asks of its source. */
+export class Requests {
+  private readonly tiles: Queue;
+  private readonly wholes: Queue;
+
+  constructor(source: Source, taker: Taker) {
+    this.tiles = new Queue(source, taker);
+    this.wholes = new Queue(source, taker);
+  }
+
+  /** Tell what is wrong with the source before anybody looks closer. */
+  open(): void {
+    const { source, taker } = this.tiles;
+    source.open?.().catch((error) => taker.lack(wordsOf(ALL_COARSE, error)));
+  }
+
+  /** Tiles are lacking, in the order of need; no others that were asked for before are needed. */
+  wantTiles(keys: TileKey[], steps: number[]): void {
+    this.tiles.want(keys.map((key) => [key, steps]));
+  }
+
+  /** Time steps of the whole are lacking; a few that were asked for before may be needed again. */
+  wantSteps(steps: number[]): void {
+    const before = this.wholes.jobs.flatMap(([, some]) => some);
+    if (steps.every((step) => before.includes(step))) return;
+    const wanted = [...new Set([...steps, ...before])].slice(0, steps.length + SPARE_STEPS);
+    this.wholes.want(wanted.map((step) => [null, [step]]));
+  }
+
+  /** Give up what is on its way: it is of a scene, or in colours, that are not shown any more. */
+  stop(): void {
+    this.tiles.stop();
+    this.wholes.stop();
+  }
+}
