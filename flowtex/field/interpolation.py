@@ -71,18 +71,27 @@ def steps_around(times: Floats, time: float) -> tuple[int, int, float]:
     return int(step), int(step) + 1, float(share)
 
 
-def cell_of(index: Floats, count: int, *, periodic: bool) -> tuple[Indices, Floats, Floats, Floats]:
+def cell_of(
+    index: Floats, count: int, *, periodic: bool, start: Indices | int = 0
+) -> tuple[Indices, Floats, Floats, Floats]:
     """Find the cells of positions (N,), given in cells, along an axis of ``count`` nodes.
 
-    Returns (N,) each: number of the cell; fraction of it that lies before the position; distance
-    beyond the nearer end, signed, where the axis is not periodic; whole periods, where it is.
+    They are counted from the nodes ``start``, so that their digits are not lost. Returns (N,) each:
+    number of the cell; fraction of it that lies before the position; distance beyond the nearer
+    end, signed, where the axis is not periodic; whole periods, where it is.
     """
-    cells = count - 1
-    turns = np.floor(index / cells) if periodic else np.zeros_like(index)
-    folded = index - turns * cells if periodic else np.clip(index, 0, cells)
-    cell = np.minimum(folded.astype(np.intp), cells - 1)
-    beyond = np.zeros_like(index) if periodic else index - folded
-    return cell, folded - cell, beyond, turns
+    whole, cells = np.floor(index), count - 1
+    cell, share = whole.astype(np.intp) + start, index - whole
+    if periodic:
+        turns = cell // cells
+        return cell - turns * cells, share, np.zeros_like(share), turns.astype(share.dtype)
+    none = np.zeros_like(share)
+    if not cell.size or (cell.min() >= 0 and cell.max() < cells):
+        return cell, share, none, none
+    inside = np.clip(cell, 0, cells - 1)
+    share += (cell - inside).astype(share.dtype)
+    within = np.clip(share, 0, 1)
+    return inside, within, share - within, none
 
 
 def cubic_weights(t: Floats) -> tuple[Floats, Floats, Floats, Floats]:

@@ -11,6 +11,7 @@ itself, the far side of a pole, a quadratic extrapolation where the axis ends.
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -198,49 +199,90 @@ class Surface:
 class CubicMap:
     """Positions of a surface relative to ``origin`` (3,), along the rows of ``frame`` (C, 3).
 
-    Made for millions of look-ups: each coordinate is an array of its own.
+    Made for millions of look-ups: each coordinate is an array of its own. Catmull-Rom's cubic
+    between two nodes is the line between them, and -s (1 - s) / 2 times the line between their
+    second differences; of both axes together, these four are bilinear between the nodes. A second
+    difference that is too small to count need not be looked up.
     """
 
-    def __init__(self, surface: Surface, frame: Floats, origin: Floats) -> None:
+    def __init__(
+        self, surface: Surface, frame: Floats, origin: Floats, dtype: type = np.float64
+    ) -> None:
         self._shape, self._periodic, self._poles = surface.shape, surface.periodic, surface.poles
         local = np.moveaxis(surface.tangents @ frame.T, -1, 0)
         #: Tangents by component, (C, 2, J * I).
-        self.tangents = np.ascontiguousarray(local).reshape(len(frame), 2, -1)
-        padded = (surface.padded - origin) @ frame.T
-        self._padded = np.ascontiguousarray(padded.reshape(-1, len(frame)).T)
-        self._offset = surface.offset @ frame.T
+        self.tangents = np.ascontiguousarray(local, dtype).reshape(len(frame), 2, -1)
+        self._offset = (surface.offset @ frame.T).astype(dtype)
+        nodes = np.moveaxis((surface.padded - origin) @ frame.T, -1, 0)
+        by_i = np.diff(nodes, 2, axis=2)
+        parts = (nodes[:, 1:-1, 1:-1], by_i[:, 1:-1], np.diff(nodes, 2, axis=1)[:, :, 1:-1])
+        #: Nodes, and their second differences by i, by j, and by both, (C, J * I) each.
+        self._parts = [
+            np.ascontiguousarray(part, dtype).reshape(len(frame), -1)
+            for part in (*parts, np.diff(by_i, 2, axis=1))
+        ]
+        #: What the second differences count at most, (C,) each.
+        self._most = [
+            np.abs(part).max(axis=1, initial=0) * most
+            for part, most in zip(self._parts[1:], (1 / 8, 1 / 8, 1 / 64), strict=True)
+        ]
 
-    def at(self, i: Floats, j: Floats) -> Floats:
-        """Positions (C, N) of (N,) each in index space; see :meth:`Surface.at`."""
+    @property
+    def nodes(self) -> Floats:
+        """Positions of the nodes, (C, J * I)."""
+        return self._parts[0]
+
+    def at(
+        self, i: Floats, j: Floats, start: tuple[Any, Any] = (0, 0), error: float = 0.0
+    ) -> Floats:
+        """Positions (C, N) of (N,) each in index space, counted in cells from the nodes ``start``.
+
+        An error is allowed in each coordinate of what is left out; :meth:`Surface.at` has the rest.
+        """
         rows, columns = self._shape
         closed_j, closed_i = self._periodic
         if self._poles is not None:
-            i, j = self._poles.fold(np.stack([i, j]))
-        i0, si, beyond_i, turns_i = cell_of(i, columns, periodic=closed_i)
-        j0, sj, beyond_j, turns_j = cell_of(j, rows, periodic=closed_j)
-        result = self._cubic(j0 * (columns + 2) + i0, si, sj)
-        if beyond_i.any() or beyond_j.any():
-            near_i = np.clip(np.rint(i), 0, columns - 1).astype(np.intp)
-            near_j = np.clip(np.rint(j), 0, rows - 1).astype(np.intp)
-            tangents = self.tangents[..., near_j * columns + near_i]
-            result += beyond_i * tangents[:, 0] + beyond_j * tangents[:, 1]
-        if closed_i or closed_j:
-            result += turns_i * self._offset[1][:, None] + turns_j * self._offset[0][:, None]
+            position = np.stack([i + start[0], j + start[1]])
+            folded = self._poles.fold(position)
+            if folded is not position:
+                i, j = (folded - np.stack(np.broadcast_arrays(*start, i)[:2])).astype(i.dtype)
+        i0, s, beyond_i, turns_i = cell_of(i, columns, periodic=closed_i, start=start[0])
+        j0, t, beyond_j, turns_j = cell_of(j, rows, periodic=closed_j, start=start[1])
+        result = self._cubic(j0 * columns + i0, s, t, error)
+        outside = np.flatnonzero((beyond_i != 0) | (beyond_j != 0))
+        if len(outside):
+            node_i, node_j = (
+                cell[outside] + np.rint(share[outside]).astype(np.intp)
+                for cell, share in ((i0, s), (j0, t))
+            )
+            by_i, by_j = np.moveaxis(self.tangents[..., node_j * columns + node_i], 1, 0)
+            result[:, outside] += beyond_i[outside] * by_i + beyond_j[outside] * by_j
+        for turns, offset in ((turns_j, self._offset[0]), (turns_i, self._offset[1])):
+            if offset.any():
+                result += turns * offset[:, None]
         return result
 
-    def _cubic(self, corner: Indices, si: Floats, sj: Floats) -> Floats:
-        """Interpolate between 16 nodes each, given the first of them and fractions of the cell."""
-        width = self._shape[1] + 2
-        result = np.zeros((len(self._padded), len(corner)))
-        wi, wj = cubic_weights(si), cubic_weights(sj)
-        for b in range(4):
-            at = [corner + (b * width + a) for a in range(4)]
-            for out, nodes in zip(result, self._padded, strict=True):
-                row = wi[0] * nodes.take(at[0], mode="clip")
-                for a in range(1, 4):
-                    row += wi[a] * nodes.take(at[a], mode="clip")
-                row *= wj[b]
-                out += row
+    def _cubic(self, at: Indices, s: Floats, t: Floats, error: float) -> Floats:
+        """Interpolate between 16 nodes each, given the lower corners and fractions of the cells."""
+        a, b = 0.5 * s * (s - 1), 0.5 * t * (t - 1)
+        shares = (a, b, a * b)
+        result = np.empty((len(self.nodes), len(at)), s.dtype)
+        for c, out in enumerate(result):
+            bends = [
+                (part[c], share)
+                for part, share, most in zip(self._parts[1:], shares, self._most, strict=True)
+                if most[c] > error
+            ]
+            corners = []
+            for first in (0, 1, self._shape[1], self._shape[1] + 1):
+                value = self.nodes[c, first:].take(at, mode="clip")
+                for part, share in bends:
+                    value += share * part[first:].take(at, mode="clip")
+                corners.append(value)
+            low, right, high, across = corners
+            low += s * (right - low)
+            high += s * (across - high)
+            np.add(low, t * (high - low), out=out)
         return result
 
 

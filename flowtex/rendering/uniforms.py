@@ -24,6 +24,7 @@ __all__ = [
     "is_moving",
     "is_near",
     "is_sparse",
+    "needed_lags",
     "uniforms",
     "variants",
 ]
@@ -37,6 +38,9 @@ WAVE_PIXELS = 96.0
 #: Step of the coarse part of the clock, in base periods, and its end: times a power of two it
 #: stays exact.
 CLOCK_STEP, MOST_TURNS = 2.0**-12, 2.0**12
+
+#: How much more lag a path may take that is slower somewhere than where it begins.
+SLOWER = 1.5
 
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
@@ -66,6 +70,8 @@ class ViewState:
         density has grains of twice as many pixels, and shows the same.
     pixel
         Length that a pixel drawn covers at the focus; 0 stands for as near as can be.
+    lags
+        Number of lags of the slices that are drawn with, the shortest; ``None`` for all.
     """
 
     focus: Floats = field(default_factory=lambda: np.zeros(3))
@@ -76,6 +82,7 @@ class ViewState:
     clock: float = 0.0
     density: float = 1.0
     pixel: float = 0.0
+    lags: int | None = None
 
 
 def variants(
@@ -157,18 +164,19 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     moving, sparse = is_moving(textures, settings), is_sparse(textures, settings)
     eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
     eye -= view.eye[3] * view.anchor
+    lags = textures.lags[: view.lags]
     values: dict[str, Any] = {
         "u_eye": (*(float(c) for c in eye), float(view.eye[3])),
         "u_between": float(view.between),
         "u_slicesSize": (float(geometry.size[1]), float(geometry.size[0])),
         "u_deepest": float(geometry.levels),
-        "u_lags": [float(lag) for lag in textures.lags],
-        "u_lagCount": len(textures.lags),
-        "u_rateLayer": textures.count - 1,
+        "u_lags": [float(lag) for lag in lags],
+        "u_lagCount": len(lags),
+        "u_rateLayer": textures.count_of(view.lags) - 1,
         "u_cell": textures.cell,
         "u_sides": sides,
         "u_unit": textures.unit,
-        "u_samples": 2 * settings.samples - 1 if moving else settings.samples,
+        "u_samples": _samples(textures, settings),
         "u_spacing": settings.spacing,
         "u_grain": settings.grain * view.density,
         "u_kernel": KERNELS.index(kernel),
@@ -217,11 +225,40 @@ def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
         away, focus = view.eye[:3] - textures.geometry.center, view.eye[:3] - view.focus
         gap = max(float(np.linalg.norm(away)) - 0.5 * textures.geometry.extent, 0.0)
         near *= gap / float(np.linalg.norm(focus))
-    grain = near * settings.grain * view.density
-    if not settings.lod:
-        grain = textures.geometry.extent / settings.resolution
-    side = settings.samples // 2 * settings.spacing * grain
+    side = settings.samples // 2 * _distance(textures, settings, view, near)
     return side < FAR_CELLS * textures.critical_cell
+
+
+def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:
+    """Return how many lags of the slices the paths of a view need; ``None`` where that is not known.
+
+    It is for paths by length on a plane that is seen along parallel rays: a pixel has one size there.
+    """
+    store, geometry = textures.store, textures.geometry
+    known = store.steps == 1 and store.parameter == "arclength" and textures.paper is None
+    if not known or not geometry.planar or view.eye[3]:
+        return None
+    facing = abs(geometry.frame[2] @ view.eye[:3]) / np.linalg.norm(view.eye[:3])
+    pixel = view.pixel / max(float(facing), np.finfo(np.float32).tiny)
+    sides, samples = _direction(textures, settings)[0], _samples(textures, settings)
+    count = samples // 2 if sides == 2 else samples - 1
+    longest = SLOWER * count * _distance(textures, settings, view, pixel)
+    return int(np.searchsorted(store.lags[:-1], longest / textures.least_unit)) + 1
+
+
+def _samples(textures: TextureSet, settings: Settings) -> int:
+    """Return the number of samples along a path."""
+    return 2 * settings.samples - 1 if is_moving(textures, settings) else settings.samples
+
+
+def _distance(textures: TextureSet, settings: Settings, view: ViewState, pixel: float) -> float:
+    """Length between two samples where a pixel covers so much."""
+    grain, fixed = pixel * settings.grain * view.density, textures.geometry.extent
+    if not settings.lod:
+        grain = fixed / settings.resolution
+    elif settings.fixed_grain:
+        grain = max(grain, fixed / settings.resolution)
+    return grain * settings.spacing
 
 
 def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str]:

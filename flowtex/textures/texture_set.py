@@ -51,6 +51,8 @@ __all__ = ["AGREED", "MOST_LAGS", "TextureSet", "check_noise"]
 MOST_LAGS = 32
 #: Greatest number in half precision, in which texels are stored.
 HALF_MAX = 65504.0
+#: Share of a slope that may be left out of it: half of what rounding it takes.
+SLOPE_ERROR = 2.0**-12
 #: Nodes agree on the direction where their mean velocity is so long, over the mean of the lengths.
 AGREED = 0.99
 
@@ -155,12 +157,21 @@ class TextureSet:
     @property
     def count(self) -> int:
         """Number of layers."""
-        return 1 + self.sides * len(self.store.lags) + self.in_cells
+        return self.count_of(None)
+
+    def count_of(self, lags: int | None) -> int:
+        """Return the number of layers of so many lags."""
+        return 1 + self.sides * len(self.store.lags[:lags]) + self.in_cells
 
     @property
     def in_cells(self) -> bool:
         """Whether there is the last layer, of the velocity in cells."""
         return self.store.steps == 1 and self.paper is None and not self.geometry.field.sign_free
+
+    @cached_property
+    def least_unit(self) -> float:
+        """Shortest unit of lag of a node."""
+        return float(np.min(self.store.unit[self.geometry.field.valid]))
 
     @cached_property
     def cell(self) -> float:
@@ -197,18 +208,22 @@ class TextureSet:
         for name in ("_displacements", "_length"):
             self.__dict__.pop(name, None)
 
-    def layers(self, step: int = 0) -> Floats32:
-        """Texels of the slice texture for one destination time, (layers, H, W, 4)."""
-        whole = self.store.at(step)
+    def layers(self, step: int = 0, lags: int | None = None) -> Floats32:
+        """Texels of the slice texture for one destination time, (layers, H, W, 4).
+
+        They are those of so many lags, the shortest, and of all by default.
+        """
+        whole = self.store.at(step, lags)
         slices, tangent = whole.part(*self.geometry.texels), self._tangent(whole)
-        result = np.empty((self.count, *self.geometry.size, 4), np.float32)
+        count = self.count_of(lags)
+        result = np.empty((count, *self.geometry.size, 4), np.float32)
 
         def make(layer: int) -> None:
             nodal = self._nodal(slices, tangent, layer)
             self.geometry.write_texels(np.clip(nodal, -HALF_MAX, HALF_MAX, nodal), result[layer])
 
         with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
-            list(pool.map(make, range(self.count)))
+            list(pool.map(make, range(count)))
         return result
 
     def _nodal(self, slices: TraceSlices, tangent: AnyArray, layer: int) -> Floats32:
@@ -218,7 +233,7 @@ class TextureSet:
             result[..., :3] = tangent
             result[..., 3] = slices.unit * self.pace / self.unit
             return result
-        if self.in_cells and layer == self.count - 1:
+        if self.in_cells and layer == self.count_of(len(slices.lags)) - 1:
             result[..., :2] = slices.rate[0] * (self.cell / self.unit)
             # Tangents by arc length have no speed of their own.
             timed = self.store.parameter == "time"
@@ -233,14 +248,20 @@ class TextureSet:
             moved = self.paper.at(slices.nodes + displacement[0, m]) - self.paper.coordinate
             result[..., :2] = moved * scale
         else:
-            by_length = scale / self._length[..., 0]
-            for channel, moved in enumerate(self._displacements(displacement[0, m])):
-                np.multiply(moved, by_length, out=result[..., channel], casting="same_kind")
+            by_length = np.float32(scale) / self._length[..., 0]
+            error = SLOPE_ERROR * float(slices.lags[m]) * self.least_unit * self.pace
+            for channel, moved in enumerate(self._displacements(displacement[0, m], error)):
+                np.multiply(moved, by_length, out=result[..., channel])
         if m == 0:
-            result[..., 3] = _usable_reach(reach[0], slices)
+            result[..., 3] = self._usable_reach(reach[0], slices)
         if layer == 2:
             result[..., 3] = self._speed(slices)
         return result
+
+    def _usable_reach(self, reach: AnyArray, slices: TraceSlices) -> AnyArray:
+        """Reach to draw with: where nothing moves, the neighbours alone decide."""
+        still = ~np.abs(slices.rate[0]).any(axis=-1)
+        return np.where(still, np.inf, reach).clip(max=2 * float(self.store.lags[-1]))
 
     def _speed(self, slices: TraceSlices) -> AnyArray:
         """Speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
@@ -265,18 +286,19 @@ class TextureSet:
         return np.asarray(along[texels] @ self.geometry.frame.T) / self._length
 
     @cached_property
-    def _displacements(self) -> Callable[[AnyArray], Floats]:
+    def _displacements(self) -> Callable[[AnyArray, float], AnyArray]:
         """Takes displacements to the surface's frame; a flat one has no third component."""
         geometry = self.geometry
         frame = geometry.frame[:2] if geometry.planar else geometry.frame
         if isinstance(geometry, SurfaceGeometry):
             return NodeDisplacements(geometry.field.surface, frame, geometry.texels)
-        return lambda displacement: np.moveaxis(displacement @ frame.T, -1, 0)
+        return lambda displacement, error: np.moveaxis(displacement @ frame.T, -1, 0)
 
     @cached_property
-    def _length(self) -> Floats:
+    def _length(self) -> Floats32:
         """Nominal length of one unit of lag at each node, (J, I, 1)."""
-        return (self.store.unit * self.pace)[self.geometry.texels][..., None]
+        length = (self.store.unit * self.pace)[self.geometry.texels]
+        return length[..., None].astype(np.float32)
 
 
 def check_noise(field: FlowField, noise: str) -> None:
@@ -302,9 +324,3 @@ def _cells(surface: Surface) -> tuple[list[Any], Floats]:
     j, i = (np.linalg.norm(np.diff(p, axis=k), axis=-1) for k in (0, 1))
     longest = np.hypot(np.maximum(j[:, :-1], j[:, 1:]), np.maximum(i[:-1], i[1:]))
     return [(j, i) for j in parts for i in parts], longest
-
-
-def _usable_reach(reach: AnyArray, slices: TraceSlices) -> AnyArray:
-    """Reach to draw with: where nothing moves, the neighbours alone decide."""
-    still = ~np.abs(slices.rate[0]).any(axis=-1)
-    return np.where(still, np.inf, reach).clip(max=2 * float(slices.lags[-1]))

@@ -123,6 +123,15 @@ class TraceSlices:
         }
         return replace(self, **parts)
 
+    def up_to(self, lags: int) -> TraceSlices:
+        """Return the slices of so many lags, the shortest, as if no more had been traced."""
+        parts: dict[str, Any] = {}
+        for moved, reach in (("displacement", "reach"), ("forward", "forward_reach")):
+            if (far := getattr(self, reach)) is not None:
+                parts[moved] = getattr(self, moved)[:, :lags]
+                parts[reach] = np.where(far > self.lags[lags - 1], np.float32(np.inf), far)
+        return replace(self, lags=self.lags[:lags], **parts)
+
     def part(self, rows: slice, columns: slice | Indices) -> TraceSlices:
         """Return the slices of some rows and columns of entries."""
         parts: dict[str, Any] = {

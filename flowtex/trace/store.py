@@ -8,12 +8,11 @@ quicker.
 from __future__ import annotations
 
 import threading
-from functools import partial
 from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bools
+from flowtex._util.array_types import Bools, Floats
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -96,29 +95,35 @@ class SliceStore:
         """Whether paths lead forward too."""
         return self._whole is None or self._whole.forward is not None
 
-    def at(self, step: int) -> TraceSlices:
-        """Slices of one destination time, T = 1."""
+    def at(self, step: int, lags: int | None = None) -> TraceSlices:
+        """Slices of one destination time, T = 1, at so many lags; at all by default."""
+        wanted = len(self.lags[:lags])
         with self._lock:
-            return self._cache.get(step, partial(self._trace, step))
+            kept = self._cache.peek(step)
+            if kept is None or len(kept.lags) < wanted:
+                kept = self._trace(step, wanted)
+                self._cache.put(step, kept)
+        return kept if len(kept.lags) == wanted else kept.up_to(wanted)
 
     def forget(self) -> None:
         """Drop the slices that can be traced again."""
         self._cache.clear()
 
-    def _trace(self, step: int) -> TraceSlices:
+    def _trace(self, step: int, lags: int) -> TraceSlices:
         if self._whole is not None:
             return self._whole.at_step(step)
         if self.streamlines:
             compose = self._compose and not self.field.sign_free
-            moment = self.field.at_step(step)
-            return self._trace_with(moment, parameter=self.parameter, compose=compose)
+            moment, some = self.field.at_step(step), self.lags[:lags]
+            return self._trace_with(moment, some, parameter=self.parameter, compose=compose)
         if isinstance(self.field.velocity, LazySteps):
             # Only what paths to this time can meet is read.
             reach = float(self.lags[-1] * self.unit.max())
             near = np.flatnonzero(np.abs(self.field.times - self.field.times[step]) <= reach)
             first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, self.steps)
             some = _held(first, last, step, HELD_BYTES // (STEP_BYTES * self.unit.size))
-            return self._trace_with(self.field.at_steps(some), steps=[some.index(step)])
+            part = self.field.at_steps(some)
+            return self._trace_with(part, self.lags, steps=[some.index(step)])
         size = self.steps * len(self.lags) * self.unit.size * 4 * np.float32().nbytes
         if (
             self._compose
@@ -126,19 +131,15 @@ class SliceStore:
             and landings(self.field, self.lags, self.unit) is not None
         ):
             # Composed, all steps together take about as long as four that are integrated.
-            self._whole = self._trace_with(self.field, compose=True)
+            self._whole = self._trace_with(self.field, self.lags, compose=True)
             return self._whole.at_step(step)
-        return self._trace_with(self.field, steps=[step])
+        return self._trace_with(self.field, self.lags, steps=[step])
 
-    def _trace_with(self, field: FlowField, **options: Any) -> TraceSlices:
+    def _trace_with(self, field: FlowField, lags: Floats, **options: Any) -> TraceSlices:
         # A part of a surface is one of many, whose bars would tell nothing.
         alone = self._nodes is None
-        parts: dict[str, Any] = {
-            "nodes": self._nodes,
-            "longest": self.long_enough,
-            "progress": alone,
-        }
-        return trace(field, lags=self.lags, unit=self.unit, **parts, **options)
+        parts: dict[str, Any] = {"nodes": self._nodes, "longest": self.long_enough, "progress": alone}
+        return trace(field, lags=lags, unit=self.unit, **parts, **options)
 
 
 def _held(first: int, last: int, step: int, most: int) -> list[int]:
@@ -155,5 +156,5 @@ def shared_store(field: FlowField, parameter: str, lines: str = "pathlines") -> 
     """Return the store of a field, one for all that show the field at the same time."""
     # A store keeps its field alive, so the number of the field is its own while the store lives.
     lines = chosen_lines(field, lines)
-    make = partial(SliceStore, field, parameter=parameter, lines=lines)
-    return _stores.get((id(field), parameter, lines), make)
+    key = (id(field), parameter, lines)
+    return _stores.get(key, lambda: SliceStore(field, parameter=parameter, lines=lines))

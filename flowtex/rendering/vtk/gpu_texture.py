@@ -8,6 +8,7 @@ let go with the window at the latest.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from vtkmodules.util.vtkConstants import VTK_FLOAT
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObject
 
@@ -17,6 +18,8 @@ __all__ = ["GPUTexture"]
 
 #: OpenGL's numbers of internal formats, in half precision, by channels.
 FORMATS = {1: 0x822D, 2: 0x822F, 4: 0x881A}
+#: OpenGL's number of numbers in half precision.
+HALF_FLOAT = 0x140B
 
 
 class GPUTexture:
@@ -36,7 +39,7 @@ class GPUTexture:
     ) -> None:
         # Drivers may cut digits off instead of rounding, which moves a critical point.
         with np.errstate(over="ignore"):
-            self._texels: Floats32 | None = texels.astype(np.float16).astype(np.float32)
+            self._texels: NDArray[np.float16] | None = texels.astype(np.float16)
         self._levels = levels
         self._repeat = repeat
         self._object: vtkTextureObject | None = None
@@ -80,5 +83,7 @@ class GPUTexture:
         # Left as it is, VTK's greatest level is 0, and there is no other level.
         target.SetMaxLevel(whole if self._levels is None else self._levels)
         target.SetInternalFormat(FORMATS[channels])
+        # VTK has no name for half precision, and takes what was set for that of its own names.
+        target.SetDataType(HALF_FLOAT)
         target.Create2DArrayFromRaw(width, height, channels, VTK_FLOAT, layers, texels)
         return target

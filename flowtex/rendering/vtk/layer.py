@@ -34,6 +34,7 @@ from flowtex.rendering.uniforms import (
     is_moving,
     is_near,
     is_sparse,
+    needed_lags,
     uniforms,
     variants,
 )
@@ -135,6 +136,7 @@ class FlowLayer:
         self._prefetch.close()
         self._prefetch = LayerPrefetch(textures)
         self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
+        self.view.lags = None
         self._retire(*(["u_noiseImage"] if same else self._gpu))
         self._map_attributes()
         self._write_text()
@@ -253,8 +255,10 @@ class FlowLayer:
 
     def _slices(self, number: int) -> GPUTexture:
         """Slices of the first or the second of the two steps."""
-        take = self._take or self._prefetch.take
-        layers = take(self._steps[number])
+        if self.view.lags is None:
+            layers = (self._take or self._prefetch.take)(self._steps[number])
+        else:
+            layers = self._textures.layers(self._steps[number], self.view.lags)
         return GPUTexture(layers, levels=self._textures.geometry.levels)
 
     def look(self) -> None:
@@ -275,8 +279,18 @@ class FlowLayer:
         scale = float(np.cbrt(abs(np.linalg.det(placed[:3, :3]))))
         self._height = _window_height(camera) / scale
         self.view.pixel = self._height / renderer.GetSize()[1]
+        self._choose_lags()
         self._write_text()
         self._move_anchor(self._height)
+
+    def _choose_lags(self) -> None:
+        """Draw with as many lags as the first view needs, and with all once another needs more."""
+        needed = None if self._take else needed_lags(self._textures, self._settings, self.view)
+        if "u_slices" not in self._gpu:
+            self.view.lags = needed
+        elif self.view.lags is not None and (needed is None or needed > self.view.lags):
+            self.view.lags = None
+            self._retire("u_slices")
 
     def _move_anchor(self, seen: float) -> None:
         """Count positions from near the focus once their digits do not do from elsewhere."""
