@@ -190,18 +190,16 @@ class Poles:
     def mirrored(self, position: AnyArray) -> Bools:
         """Where (2, N) index space is that of the far side, and runs towards a pole, not away."""
         outside = self._outside(position)
-        if outside.any() and self.first is not None and self.last is not None:
-            outside &= np.floor(position[self.component] / (self.lines - 1)) % 2 != 0
+        if self.both and outside.any():
+            some = np.flatnonzero(outside)
+            outside[some] = np.floor(position[self.component][some] / (self.lines - 1)) % 2 != 0
         return outside
 
     def _outside(self, position: AnyArray) -> Bools:
         across = position[self.component]
-        outside = np.zeros(across.shape, bool)
-        if self.first is not None:
-            outside |= across < 0
-        if self.last is not None:
-            outside |= across > self.lines - 1
-        return outside
+        if self.both:
+            return np.asarray((across < 0) | (across > self.lines - 1))
+        return np.asarray(across < 0 if self.first is not None else across > self.lines - 1)
 
 
 def find_poles(

@@ -170,7 +170,8 @@ class _SliceLookup:
         #: What units are counted in here, so that single precision holds them: a power of two.
         self.scale = float(2.0 ** np.rint(np.log2(np.median(unit))))
         self.unit = (unit.ravel() / self.scale).astype(np.float32)
-        self._even = bool(np.ptp(self.unit) <= LAG_ROUNDING * self.unit[0])
+        #: Whether all nodes have one unit.
+        self.even = bool(np.ptp(self.unit) <= LAG_ROUNDING * self.unit[0])
         self.unsteady = not field.steady
         self.slices = slices.reshape(2, len(self.knots), -1)
         self.reach = reach.reshape(-1)
@@ -208,19 +209,13 @@ class _SliceLookup:
         self._endless = bool(np.isinf(self.reach).all())
 
     def continued(
-        self, position: Floats32, corners: Corners, left: Floats32, step: Indices, most: Any
+        self, position: Floats32, corners: Corners, left: Floats32, step: Indices | int, most: Any
     ) -> _Piece:
         """Continue paths from positions (2, n), in these cells, by up to ``left`` of lag."""
         base = self._base(step)
-        unit = self.unit[:1] if self._even else self.grid.blend(self.unit, corners)
+        unit = self.unit[:1] if self.even else self.grid.blend(self.unit, corners)
         longest = self._longest[corners.at + base] if most is None else most
         lag: AnyArray = np.minimum(left / unit, longest)
-        if self.grid.poles is not None and not self.unsteady:
-            # Past a pole an index turns so quickly that nothing can be interpolated between lags.
-            whole = self.knots[
-                np.searchsorted(self.knots, lag * (1 + LAG_ROUNDING), side="right") - 1
-            ]
-            lag = np.where(whole > self._first, np.minimum(whole, lag), lag)
         if lag.min() == lag.max():
             # Even cells, smooth slices: one slice for all.
             lag = lag[:1]
@@ -229,6 +224,12 @@ class _SliceLookup:
             lag = self.knots[m]
         else:
             m = np.maximum(np.searchsorted(self.knots, lag * (1 - LAG_ROUNDING)), 1)
+            if self.grid.poles is not None:
+                # Past a pole an index turns so quickly that nothing can be interpolated between
+                # lags.
+                before = self.knots[m - 1]
+                within = (lag < self.knots[m] * (1 - LAG_ROUNDING)) & (before > self._first)
+                lag, m = np.where(within, before, lag), m - within
         moved = self._displaced(corners, base, m, lag)
         self._mirror(moved, position)
         ends = None
@@ -249,7 +250,7 @@ class _SliceLookup:
         """Displacements (2, n) of paths from positions (2, n) at any lags up to the last slice."""
         corners = self.grid.corners(position)
         base = self._base(step)
-        units: Any = lag / (self.unit[:1] if self._even else self.grid.blend(self.unit, corners))
+        units: Any = lag / (self.unit[:1] if self.even else self.grid.blend(self.unit, corners))
         m = np.clip(np.searchsorted(self.knots, units), 1, len(self.knots) - 1)
         moved = self._displaced(corners, base, m, units)
         self._mirror(moved, position)
@@ -335,7 +336,7 @@ class _Doubling:
         position = self._where(some)
         corners = lookup.grid.corners(position)
         if self._integrate is not None:
-            stuck = lookup.is_stuck(corners, self._step[some])
+            stuck = lookup.is_stuck(corners, self._at(some))
             if stuck.any():
                 self._stuck.append(_numbers(some, np.flatnonzero(stuck)))
                 free = np.flatnonzero(~stuck)
@@ -344,8 +345,8 @@ class _Doubling:
         left = self._left[some]
         if not len(left):
             return np.empty(0, np.intp)
-        piece = lookup.continued(position, corners, left, self._step[some], longest)
-        whole = self._whole[self._node(some)]
+        piece = lookup.continued(position, corners, left, self._at(some), longest)
+        whole = self._whole[:1] if lookup.even else self._whole[self._node(some)]
         self._suspect(some, position, piece)
         for row, part in zip(self._moved, piece.moved, strict=True):
             row[some] += part
@@ -360,6 +361,10 @@ class _Doubling:
         if not self._lookup.unsteady:
             return some
         return np.asarray(np.arange(len(self._left))[some] % self._lookup.grid.size)
+
+    def _at(self, some: Some) -> Indices | int:
+        """Time steps at which some paths are."""
+        return self._step[some] if self._lookup.unsteady else 0
 
     def _where(self, some: Some) -> Floats32:
         """Where some paths have come, (2, n)."""
@@ -395,9 +400,9 @@ class _Doubling:
         if piece.ends is not None:
             rest = piece.ends
             ending |= rest < piece.covered
-        ending &= np.isinf(lookup.reach[some])
         if ending.any():
             ended = np.flatnonzero(ending)
+            ended = ended[np.isinf(lookup.reach[_numbers(some, ended)])]
             which = _numbers(some, ended)
             rest = np.broadcast_to(rest, ending.shape)[ended]
             self._suspects.append(

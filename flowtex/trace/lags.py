@@ -100,7 +100,7 @@ def drawn_lags(
     if cell is not None:
         even = cell * 2.0 ** np.rint(np.log2(even / cell))
     alike = LEAST_CELL * even <= known.min() and known.max() <= MOST_CELL * even
-    if not alike or field.surface.poles is not None or field.triangles is not None:
+    if not alike or field.triangles is not None:
         return lags, unit
     if longest is not None:
         last = longest / even

@@ -111,9 +111,9 @@ class NodeGrid:
 
         The set of each particle begins at index ``base``.
         """
-        at = corners.at + base if np.ndim(base) or base else corners.at
-        low = _between(data, at, corners.s)
-        high = _between(data, at + self.columns, corners.s)
+        at, first = (corners.at + base, 0) if np.ndim(base) else (corners.at, int(base))
+        low = _between(data[first:], at, corners.s)
+        high = _between(data[first + self.columns :], at, corners.s)
         high -= low
         high *= corners.t
         high += low
@@ -155,7 +155,7 @@ def _between(data: AnyArray, at: Indices, s: AnyArray) -> AnyArray:
     """Interpolate between each node and the next one along i."""
     # The indices are in range by construction; "clip" only spares NumPy's own check.
     low = data.take(at, mode="clip")
-    high = data.take(at + 1, mode="clip")
+    high = data[1:].take(at, mode="clip")
     high -= low
     high *= s
     high += low
