@@ -137,6 +137,11 @@ class ByteCache(Generic[K, S]):
             while len(self._values) > self.min_count and not self._fits():
                 self._values.popitem(last=False)
 
+    def values(self) -> list[S]:
+        """Return all values, the one used last at the end."""
+        with self._lock:
+            return list(self._values.values())
+
     def clear(self) -> None:
         """Drop all values."""
         with self._lock:

@@ -13,7 +13,7 @@ from flowtex.offscreen.plotter import OffscreenPlotter
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.scene import Scene
 from flowtex.tiles import Pyramid, has_pyramid
-from flowtex.trace import SliceStore
+from flowtex.trace import SliceStore, TraceSlices
 
 __all__ = ["render"]
 
@@ -110,14 +110,19 @@ class _Drawn(NamedTuple):
         return self.field.valid.size * len(self.field.times) * NODE_BYTES + self.store.nbytes
 
 
-_drawn: ByteCache[int, _Drawn] = ByteCache(KEPT_BYTES, min_count=0)
+_drawn: ByteCache[int, _Drawn | TraceSlices] = ByteCache(KEPT_BYTES, min_count=0)
 
 
 def _keep(scene: Scene) -> None:
     """Keep the field of a scene and its traces, for a script that draws the same numbers again.
 
-    :func:`flowtex.scene.share_field` finds the field. What was drawn longest ago is dropped first,
-    and a field that reads its steps late, and so holds a file open, is not kept.
+    :func:`flowtex.scene.share_field` finds the field, and a store of the same numbers its slices.
+    What was drawn longest ago is dropped first. Of a field that reads its steps late, and so holds
+    a file open, only the slices are kept.
     """
-    if not has_pyramid(scene.field) and not isinstance(scene.field.velocity, LazySteps):
-        _drawn.put(id(scene.store), _Drawn(scene.field, scene.store, scene.pyramid))
+    field, store = scene.field, scene.store
+    if any(isinstance(steps, LazySteps) for steps in (field.velocity, *field.scalars.values())):
+        for slices in store.traced:
+            _drawn.put(id(slices), slices)
+    elif not has_pyramid(field):
+        _drawn.put(id(store), _Drawn(field, store, scene.pyramid))

@@ -8,12 +8,13 @@ quicker.
 from __future__ import annotations
 
 import threading
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex._util.cache import ByteCache, WeakCache
+from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
@@ -86,6 +87,11 @@ class SliceStore:
         return len(self.field.times)
 
     @property
+    def traced(self) -> list[TraceSlices]:
+        """Slices that it holds, of the steps that were asked for last."""
+        return self._cache.values()
+
+    @property
     def nbytes(self) -> int:
         """Bytes of the slices that it holds."""
         return self._cache.nbytes + (0 if self._whole is None else self._whole.nbytes)
@@ -139,7 +145,15 @@ class SliceStore:
         # A part of a surface is one of many, whose bars would tell nothing.
         alone = self._nodes is None
         parts: dict[str, Any] = {"nodes": self._nodes, "longest": self.long_enough, "progress": alone}
-        return trace(field, lags=lags, unit=self.unit, **parts, **options)
+        follow = partial(trace, field, lags=lags, unit=self.unit, **parts, **options)
+        return _slices.get(self._key(field, lags, options), follow) if alone else follow()
+
+    def _key(self, field: FlowField, lags: Floats, options: dict[str, Any]) -> bytes:
+        """Return a hash of all numbers that slices of a field are made of."""
+        given = (field.points, field.valid, *field.velocity, field.times, lags, self.unit)
+        some = (part for part in (field.has_position, field.triangles) if part is not None)
+        kinds = (field.periodic, field.sign_free, field.has_position is None, self.long_enough)
+        return digest(*given, *some, words=(kinds, *sorted(options.items())))
 
 
 def _held(first: int, last: int, step: int, most: int) -> list[int]:
@@ -150,6 +164,8 @@ def _held(first: int, last: int, step: int, most: int) -> list[int]:
 
 
 _stores: WeakCache[SliceStore] = WeakCache()
+#: Slices in use by the numbers that they are made of: whoever reads these again has the same ones.
+_slices: WeakCache[TraceSlices] = WeakCache()
 
 
 def shared_store(field: FlowField, parameter: str, lines: str = "pathlines") -> SliceStore:
