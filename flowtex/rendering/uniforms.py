@@ -39,8 +39,9 @@ WAVE_PIXELS = 96.0
 #: stays exact.
 CLOCK_STEP, MOST_TURNS = 2.0**-12, 2.0**12
 
-#: How much more lag a path may take that is slower somewhere than where it begins.
-SLOWER = 1.5
+#: How much more lag a path may take than its length: beside critical points, where those of
+#: neighbours part, their mean is slow.
+SLOWER = 4.0
 
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
@@ -230,9 +231,9 @@ def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
 
 
 def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:
-    """Return how many lags of the slices the paths of a view need; ``None`` where that is not known.
+    """Return how many lags of the slices a view needs; ``None`` where that is not known.
 
-    It is for paths by length on a plane that is seen along parallel rays: a pixel has one size there.
+    It is for paths by length on a plane that is seen along parallel rays, as pixels are alike.
     """
     store, geometry = textures.store, textures.geometry
     known = store.steps == 1 and store.parameter == "arclength" and textures.paper is None

@@ -219,9 +219,9 @@ def test_of_a_large_field_the_coarsest_level_is_traced(monkeypatch: pytest.Monke
     field = FlowField.from_arrays((x, y), velocity)
     traced: list[tuple[int, int]] = []
 
-    def counted(store: SliceStore, step: int) -> Any:
+    def counted(store: SliceStore, step: int, lags: int) -> Any:
         traced.append(store.field.shape)
-        return made(store, step)
+        return made(store, step, lags)
 
     made = SliceStore._trace
     monkeypatch.setattr(SliceStore, "_trace", counted)
