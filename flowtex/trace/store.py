@@ -144,7 +144,11 @@ class SliceStore:
     def _trace_with(self, field: FlowField, lags: Floats, **options: Any) -> TraceSlices:
         # A part of a surface is one of many, whose bars would tell nothing.
         alone = self._nodes is None
-        parts: dict[str, Any] = {"nodes": self._nodes, "longest": self.long_enough, "progress": alone}
+        parts: dict[str, Any] = {
+            "nodes": self._nodes,
+            "longest": self.long_enough,
+            "progress": alone,
+        }
         follow = partial(trace, field, lags=lags, unit=self.unit, **parts, **options)
         return _slices.get(self._key(field, lags, options), follow) if alone else follow()
 
