@@ -240,7 +240,7 @@ def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> in
     if not known or not geometry.planar or view.eye[3]:
         return None
     facing = abs(geometry.frame[2] @ view.eye[:3]) / np.linalg.norm(view.eye[:3])
-    pixel = view.pixel / max(float(facing), np.finfo(np.float32).tiny)
+    pixel = view.pixel / max(float(facing), 1e-30)
     sides, samples = _direction(textures, settings)[0], _samples(textures, settings)
     count = samples // 2 if sides == 2 else samples - 1
     longest = SLOWER * count * _distance(textures, settings, view, pixel)

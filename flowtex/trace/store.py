@@ -120,8 +120,8 @@ class SliceStore:
             return self._whole.at_step(step)
         if self.streamlines:
             compose = self._compose and not self.field.sign_free
-            moment, some = self.field.at_step(step), self.lags[:lags]
-            return self._trace_with(moment, some, parameter=self.parameter, compose=compose)
+            moment, shortest = self.field.at_step(step), self.lags[:lags]
+            return self._trace_with(moment, shortest, parameter=self.parameter, compose=compose)
         if isinstance(self.field.velocity, LazySteps):
             # Only what paths to this time can meet is read.
             reach = float(self.lags[-1] * self.unit.max())
