@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.blocks import bounds, row_blocks
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.poles import Pole, Poles, find_poles
@@ -212,12 +212,12 @@ class CubicMap:
         local = np.moveaxis(surface.tangents @ frame.T, -1, 0)
         #: Tangents by component, (C, 2, J * I).
         self.tangents = np.ascontiguousarray(local, dtype).reshape(len(frame), 2, -1)
-        self._offset = (surface.offset @ frame.T).astype(dtype)
+        self._offset: AnyArray = (surface.offset @ frame.T).astype(dtype)
         nodes = np.moveaxis((surface.padded - origin) @ frame.T, -1, 0)
         by_i = np.diff(nodes, 2, axis=2)
         parts = (nodes[:, 1:-1, 1:-1], by_i[:, 1:-1], np.diff(nodes, 2, axis=1)[:, :, 1:-1])
         #: Nodes, and their second differences by i, by j, and by both, (C, J * I) each.
-        self._parts = [
+        self._parts: list[AnyArray] = [
             np.ascontiguousarray(part, dtype).reshape(len(frame), -1)
             for part in (*parts, np.diff(by_i, 2, axis=1))
         ]
@@ -228,13 +228,13 @@ class CubicMap:
         ]
 
     @property
-    def nodes(self) -> Floats:
+    def nodes(self) -> AnyArray:
         """Positions of the nodes, (C, J * I)."""
         return self._parts[0]
 
     def at(
-        self, i: Floats, j: Floats, start: tuple[Any, Any] = (0, 0), error: float = 0.0
-    ) -> Floats:
+        self, i: AnyArray, j: AnyArray, start: tuple[Any, Any] = (0, 0), error: float = 0.0
+    ) -> AnyArray:
         """Positions (C, N) of (N,) each in index space, counted in cells from the nodes ``start``.
 
         An error is allowed in each coordinate of what is left out; :meth:`Surface.at` has the rest.
@@ -262,7 +262,7 @@ class CubicMap:
                 result += turns * offset[:, None]
         return result
 
-    def _cubic(self, at: Indices, s: Floats, t: Floats, error: float) -> Floats:
+    def _cubic(self, at: Indices, s: AnyArray, t: AnyArray, error: float) -> AnyArray:
         """Interpolate between 16 nodes each, given the lower corners and fractions of the cells."""
         a, b = 0.5 * s * (s - 1), 0.5 * t * (t - 1)
         shares = (a, b, a * b)
