@@ -211,7 +211,7 @@ class CubicMap:
         self._shape, self._periodic, self._poles = surface.shape, surface.periodic, surface.poles
         local = np.moveaxis(surface.tangents @ frame.T, -1, 0)
         #: Tangents by component, (C, 2, J * I).
-        self.tangents = np.ascontiguousarray(local, dtype).reshape(len(frame), 2, -1)
+        self.tangents: AnyArray = np.ascontiguousarray(local, dtype).reshape(len(frame), 2, -1)
         self._offset: AnyArray = (surface.offset @ frame.T).astype(dtype)
         nodes = np.moveaxis((surface.padded - origin) @ frame.T, -1, 0)
         by_i = np.diff(nodes, 2, axis=2)
