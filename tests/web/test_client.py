@@ -412,7 +412,7 @@ def test_axes_tell_coordinates_or_a_length_beside_the_picture(client: ClientPage
         for kind in ("below", "aside"):
             ticks = np.asarray(page.evaluate(TICKS, kind))
             assert len(ticks) >= 2
-            np.testing.assert_allclose(*ticks.T, atol=0.6)
+            np.testing.assert_allclose(ticks[:, 0], ticks[:, 1], atol=0.6)
     number(client, "(viewers[0].camera.rotate(0.4, 0.2), viewers[0].change())")
     assert page.evaluate(TICKS, "below") == page.evaluate(TICKS, "aside") == []
     page.locator("[data-name=settings]").click()
