@@ -402,6 +402,7 @@ export class Tracing {
       u_nodes: [columns, rows],
       u_closed: [Number(trace.closed[1]), Number(trace.closed[0])],
       u_first: [trace.first[1], trace.first[0]],
+      u_texels: [width, height],
       u_offsetJ: trace.offset.slice(0, 3),
       u_offsetI: trace.offset.slice(3, 6),
       u_timed: trace.timed?.speed ?? 0,

@@ -1245,14 +1245,14 @@ this.texture(columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+2,rows+2
 columns,rows,gl.RGBA32F,this.wholeSpeed(step))],pool=[0,1,2,3,4].map(()=>this.target(columns,rows)),{lags,sides,count:count2}=slices,
 uniforms2={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_flowNext:6,u_rays:7,...poles.uniforms,
 u_longest:trace.longest??ENDLESS,u_nodes:[columns,rows],u_closed:[Number(trace.closed[1]),Number(trace.closed[0])],u_first:[
-trace.first[1],trace.first[0]],u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.offset.slice(3,6),u_timed:trace.timed?.
-speed??0,u_rest:trace.rest,u_pace:trace.pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(geometry.
-planar),u_mostReach:2*lags[lags.length-1]},draw=([w,h],textures,pass,values)=>{gl.viewport(0,0,w,h);for(let ability of[gl.
-SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);textures.forEach((texture,n)=>{gl.activeTexture(gl.
-TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(null),graphics.programs.use(pass,{...uniforms2,...values}),
-gl.drawArrays(gl.TRIANGLES,0,3)},layers=this.layerTarget(result2,size),layer=(n,pass,textures,values)=>{draw(layers.begin(
-n),[own,...constant,...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=programsOf(graphics,header,
-trace);layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});for(let side=0;side<
+trace.first[1],trace.first[0]],u_texels:[width,height],u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.offset.slice(3,
+6),u_timed:trace.timed?.speed??0,u_rest:trace.rest,u_pace:trace.pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(
+geometry.planar),u_mostReach:2*lags[lags.length-1]},draw=([w,h],textures,pass,values)=>{gl.viewport(0,0,w,h);for(let ability of[
+gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);textures.forEach((texture,n)=>{gl.activeTexture(
+gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(null),graphics.programs.use(pass,{...uniforms2,
+...values}),gl.drawArrays(gl.TRIANGLES,0,3)},layers=this.layerTarget(result2,size),layer=(n,pass,textures,values)=>{draw(
+layers.begin(n),[own,...constant,...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=programsOf(graphics,
+header,trace);layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});for(let side=0;side<
 sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];for(let[m,lag]of lags.
 entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:null,at=now;for(let stretch of stretches(
 header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(n)),parts=composer?[[from,lag]]:this.partsOf(

@@ -13,6 +13,8 @@ uniform float u_lagEarlier;
 uniform float u_from;
 uniform float u_to;
 uniform float u_side;
+uniform vec2 u_first;  // node that the first texel of the slices would hold
+uniform vec2 u_texels; // columns and rows of texels
 out uvec4 flowtexOut;
 
 FlowtexPath flowtexPathOf(ivec2 node, bool earlier)
@@ -20,6 +22,15 @@ FlowtexPath flowtexPathOf(ivec2 node, bool earlier)
   uvec4 bits = earlier ? texelFetch(u_earlier, node, 0) : texelFetch(u_before, node, 0);
   float reach = uintBitsToFloat(bits.z);
   return FlowtexPath(uintBitsToFloat(bits.xy), abs(reach), unpackHalf2x16(bits.w), reach < 0.0);
+}
+
+// Whether a path is drawn, or else followed for others that are put together of it.
+bool flowtexIsDrawn(vec2 node)
+{
+  vec2 cells = u_nodes - 1.0;
+  vec2 texel = node - u_first;
+  texel -= u_closed * cells * floor(texel / cells);
+  return all(greaterThanEqual(texel, vec2(0.0))) && all(lessThan(texel, u_texels));
 }
 
 void main()
@@ -30,7 +41,9 @@ void main()
   FlowtexPath path = FlowtexPath(vec2(0.0), FLOWTEX_ENDLESS, vec2(0.0), false);
   if (u_from > 0.0)
     path = flowtexPathOf(node, false);
-  if (flowtexGoesOn(path, start, unit, u_from, u_to))
+  bool isDrawn = flowtexIsDrawn(start);
+  path.polar = path.polar || flowtexPole(start) >= 0;
+  if ((isDrawn || !path.polar) && flowtexGoesOn(path, start, unit, u_from, u_to))
   {
     float lag = u_from;
 #ifdef FLOWTEX_COMPOSED

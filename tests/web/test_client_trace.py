@@ -25,8 +25,9 @@ from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.velocity import can_trace
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
+from flowtex.tiles import TileKey
 from flowtex.trace import SliceStore
-from flowtex.web.export import export
+from flowtex.web.export import export, page_pieces
 from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
@@ -88,9 +89,10 @@ def waves() -> FlowField:
     return FlowField.from_arrays(np.stack([x, y, z], -1), np.stack([u, v, slope], -1))
 
 
-def globe(*axis: float, uneven: float = 0.0, turned: bool = False) -> FlowField:
+def globe(*axis: float, uneven: float = 0.0, turned: bool = False, columns: int = 91) -> FlowField:
     """A globe that turns around an axis, by parallels or, ``turned``, by meridians."""
-    angle, latitude = np.meshgrid(np.linspace(0, 2 * np.pi, 91), np.linspace(90, -90, 46))
+    rows = columns // 2 + 1
+    angle, latitude = np.meshgrid(np.linspace(0, 2 * np.pi, columns), np.linspace(90, -90, rows))
     a, b = angle + uneven * np.sin(angle), np.radians(latitude)
     points = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], -1)
     if turned:
@@ -136,9 +138,18 @@ def uneven() -> FlowField:
     return FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps), times=times)
 
 
+def tilting() -> FlowField:
+    """A globe that turns around an axis that tilts, so that the stream over its poles does."""
+    points = globe(0, 0, 1).points
+    times = np.linspace(0, 0.6, 7)
+    axes = np.stack([np.cos(4 * times), np.sin(4 * times), 0.2 + 0 * times], axis=-1)
+    return FlowField.from_arrays(points, np.cross(axes[:, None, None], points), times=times)
+
+
 VARYING: dict[str, Callable[[], FlowField]] = {
     "swinging": swinging,
     "uneven": uneven,
+    "tilting": tilting,
     "cylinder": lambda: examples.cylinder_field(),
 }
 
@@ -204,7 +215,7 @@ def test_slices_are_those_of_numpy(
     agree(textures, found, wanted)
 
 
-@pytest.mark.parametrize("name", ["swinging", "uneven", "cylinder"])
+@pytest.mark.parametrize("name", VARYING)
 def test_pathlines_are_those_of_numpy(browser: Browser, tmp_path: Path, name: str) -> None:
     field = VARYING[name]()
     export(field, tmp_path / "page.html", samples=9, lines="pathlines")
@@ -241,6 +252,23 @@ def test_another_moment_is_traced_from_what_is_there(client: ClientPage, lines: 
         assert root < 2 * ROOT
         assert share < 2 * SHARE
     assert client.page.evaluate("events") == []
+
+
+def test_tiles_around_a_pole_are_those_of_numpy(
+    browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the ring around it there are all lines where it is near, and a few elsewhere."""
+    for name, number in (("ROOT_NODES", 2000), ("MOST_RING", 400)):
+        monkeypatch.setattr(f"flowtex.tiles.pyramid.{name}", number)
+    field = globe(1.0, 0.4, 0.3, columns=601)
+    view = web_views(field, Options.split(samples=9))[0]
+    assert view.scene.pyramid is not None
+    textures = view.scene.pyramid.textures(TileKey(0, 0, 1))
+    assert textures is not None and textures.grid.field.shape[1] < 601
+    data, path = ClientData(textures, traces=True), tmp_path / "page.html"
+    assert data.traced and len(data.surface()["rays"]) == 1
+    path.write_text("".join(page_pieces([view], [data], picture=b"")), encoding="utf-8")
+    agree(textures, texels(browser, path), textures.layers(0).astype("<f2").astype(float))
 
 
 @pytest.mark.parametrize("height", [1.2, 0.3, 0.05])
