@@ -113,6 +113,8 @@ class Composition:
         good &= bend <= 8 * (ERROR_SHARE * self.lags[j] * haste + ERROR_CELLS * self.mesh.size)
         self._longest[good & (self._longest == j - 1)] = j
 
+    # Threads do not take over what was set where they began.
+    @np.errstate(all="ignore")
     def _follow(self, m: int, search: _Search, nodes: Indices) -> None:
         """Continue the paths of some nodes, piece by piece, to lag m from the one before."""
         triangle, shares = self._triangle[m - 1, nodes], self._shares[:, nodes]
