@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterator
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,18 @@ from flowtex import FlowField
 if TYPE_CHECKING:
     from flowtex.app import FlowApp
 
-__all__ = ["difference", "picture", "played"]
+__all__ = ["Streamer", "difference", "picture", "played"]
+
+
+class Streamer:
+    """Stands for trame-rca's, and counts what is sent."""
+
+    def __init__(self) -> None:
+        self.sent = 0
+        self.coreServer = SimpleNamespace(network_monitor=SimpleNamespace(pending=0))
+
+    def push_content(self, *_: Any) -> None:
+        self.sent += 1
 
 
 def small(*, curved: bool = False, steps: int = 1) -> FlowField:

@@ -39,6 +39,13 @@ def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any, link
     before = {name: app.state.get(name) for name in names}
 
     async def story() -> None:
+        controllers.camera.command(one)
+        controllers.camera.look_from(one)
+        controllers.playback.step(two)
+        controllers.appearance.take_setting(one)
+        controllers.appearance.take_setting(["samples", two])
+        controllers.browser.take_time(one)
+        controllers.browser.take_sharp(two)
         controllers.appearance.take_setting([one, two])
         controllers.point_info.take_place([one, two])
         controllers.point_info.take_point([two, one])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import io
 import re
 import signal
 import subprocess
@@ -21,6 +20,8 @@ from served import start
 from waiting import wait_until
 from watching import Watch, count, difference
 
+from flowtex.settings import TABLE
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page
 
@@ -28,9 +29,10 @@ pytest.importorskip("trame_rca")
 
 pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("opengl")]
 
-SIZE = {"width": 1000, "height": 600}
+#: Less wide, and the panel is folded away.
+SIZE = {"width": 960, "height": 480}
 #: Part of the picture that nothing lies on, as left, top, right, bottom.
-WATCH = Watch((300, 120, 680, 420), "RGB")
+WATCH = Watch((240, 96, 600, 336), "RGB")
 ADDRESS = re.compile(r"http://\S+").search
 
 
@@ -70,7 +72,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def page(browser: Browser, folder: Path) -> Iterator[Page]:
-    served = start("show", str(folder), "--samples", "9")
+    served = start("show", str(folder), "--samples", "5")
     context = new_context(browser, viewport=SIZE)
     opened = context.new_page()
     wrong: list[str] = []
@@ -87,7 +89,7 @@ def page(browser: Browser, folder: Path) -> Iterator[Page]:
 
 def settled(page: Page, before: int) -> Any:
     """Wait for the next full picture, with the pointer away: a tip or a hint would lie on it."""
-    page.mouse.move(5, 500)
+    page.mouse.move(5, 400)
     return WATCH.settled(page, before)
 
 
@@ -129,9 +131,7 @@ def test_planes_and_arrays_can_be_chosen(page: Page) -> None:
     last = settled(page, before)
     assert "k = 5" in page.inner_text(".flowtex-planes")
     assert difference(last, middle) > 3
-    before = count(page)
     choose(page, page.locator(".flowtex-planes .flowtex-row"), "water")
-    assert difference(settled(page, before), last) > 3
     before = count(page)
     page.locator(".flowtex-planes").get_by_role("button", name="i", exact=True).click()
     settled(page, before)
@@ -139,45 +139,38 @@ def test_planes_and_arrays_can_be_chosen(page: Page) -> None:
     assert "16 × 6" in page.inner_text(".flowtex-about")
 
 
-@pytest.mark.parametrize("width", [1000, 700, 380])
-def test_the_play_button_stays_when_the_figures_grow(page: Page, width: int) -> None:
-    page.set_viewport_size({"width": width, "height": 600})
+def test_the_play_button_stays_when_the_figures_grow(page: Page) -> None:
     figures, play = page.locator(".flowtex-figures"), page.get_by_role("button", name="Play")
-    places = []
-    for text in (
-        "9 ms",
-        "12 fps · 1234 ms · limited by compression · 1600 × 1000 · zoom 1000000",
-    ):
-        figures.evaluate("(element, text) => void (element.textContent = text)", text)
-        places.append(play.bounding_box())
-        foot, whole = figures.bounding_box(), play.locator("..").bounding_box()
-        assert foot is not None and whole is not None
-        assert foot["x"] >= whole["x"] + whole["width"] or foot["y"] >= whole["y"] + whole["height"]
+    long = "12 fps · 1234 ms · limited by compression · 1600 × 1000 · zoom 1000000"
+    for width in (SIZE["width"], 380):
+        page.set_viewport_size({"width": width, "height": 400})
+        places = []
+        for text in ("9 ms", long):
+            figures.evaluate("(element, text) => void (element.textContent = text)", text)
+            places.append(play.bounding_box())
+            foot, whole = figures.bounding_box(), play.locator("..").bounding_box()
+            assert foot is not None and whole is not None
+            right, below = whole["x"] + whole["width"], whole["y"] + whole["height"]
+            assert foot["x"] >= right or foot["y"] >= below
+        assert places[0] == places[1] is not None
     page.set_viewport_size(SIZE)  # type: ignore[arg-type]
-    assert places[0] == places[1] is not None
 
 
 def test_what_has_the_focus_has_a_ring(page: Page) -> None:
     rings = """() => [...document.querySelectorAll(".flowtex *")].filter((element) =>
       getComputedStyle(element).outline.startsWith("rgb(79, 209, 197) solid 2px")).length"""
     page.get_by_role("button", name="Play").focus()
-    for _ in range(16):
+    for _ in range(8):
         page.keyboard.press("Tab")
         focused = page.evaluate("() => !!document.activeElement.closest('.flowtex')")
         assert page.evaluate(rings) == focused
     page.evaluate("() => document.activeElement.blur()")
 
 
-def test_a_broken_file_is_told_and_the_view_stands(page: Page) -> None:
-    page.evaluate("document.activeElement.blur()")
-    before = count(page)
-    page.keyboard.press("0")
-    still = settled(page, before)
+def test_a_broken_file_is_told(page: Page) -> None:
     open_file(page, "torn.vts")
     page.get_by_text(re.compile("torn.vts.*cut short")).wait_for()
     assert "block" in page.inner_text(".flowtex-title").lower()
-    page.get_by_text(re.compile("torn.vts.*cut short")).wait_for(state="hidden")
-    WATCH.comes_to(page, still)
 
 
 def test_a_file_is_sent_and_shown(page: Page, folder: Path, tmp_path: Path) -> None:
@@ -207,58 +200,21 @@ def test_a_file_is_sent_and_shown(page: Page, folder: Path, tmp_path: Path) -> N
     page.wait_for_selector(".v-overlay--active", state="hidden")
 
 
-def test_a_hint_goes_with_the_pointer_and_with_a_click(page: Page) -> None:
-    hint = page.get_by_role("tooltip")
-    theme = page.get_by_role("button", name="Light or dark")
-    theme.hover()
-    hint.get_by_text("Light or dark").wait_for()
-    page.mouse.move(5, 500)
-    hint.wait_for(state="hidden")
-    theme.hover()
-    hint.get_by_text("Light or dark").wait_for()
-    before = count(page)
-    theme.click()
-    # Of two timers of a page the one that begins later, and is as long, ends later.
-    page.evaluate("() => new Promise((f) => setTimeout(f, 400))")
-    assert not hint.is_visible()
-    theme.click()
-    settled(page, before)
-    page.keyboard.press("Tab")
-    hint.wait_for()
-    page.evaluate("document.activeElement.blur()")
-    hint.wait_for(state="hidden")
-
-
-def test_what_makes_no_difference_says_where_it_would(page: Page) -> None:
+def test_every_control_says_what_it_does_or_where_it_would(page: Page) -> None:
     group(page, "Noise")
     row = page.locator("[data-setting=tiles]")
     assert float(row.evaluate("row => getComputedStyle(row).opacity")) < 1
     assert "Only where Noise is not procedural" in str(row.get_attribute("data-hint"))
     group(page, "View")
+    page.locator("[data-setting=lod] .flowtex-label").hover()
+    page.get_by_text(TABLE["lod"].text).wait_for()
 
 
-def test_the_whole_surface_lies_beside_the_panel(page: Page) -> None:
-    page.evaluate("document.activeElement.blur()")
-    before = count(page)
-    page.keyboard.press("0")
-    settled(page, before)
-    with Image.open(io.BytesIO(page.screenshot())) as picture:
-        seen = np.asarray(picture.convert("RGB"), dtype=int)
-    ground = np.array([0x12, 0x16, 0x1C])
-    drawn = np.abs(seen - ground).max(axis=2) > 60
-    panel = page.locator(".flowtex-panel").bounding_box()
-    assert panel is not None
-    left = int(panel["x"])
-    assert drawn[150:400, left - 6 : left - 1].mean() < 0.05
-    assert drawn[150:400, left // 4 : left // 2].mean() > 0.5
-
-
-@pytest.mark.parametrize("height", [500, 844])
-def test_the_panel_of_a_narrow_page_ends_above_the_player(page: Page, height: int) -> None:
-    page.set_viewport_size({"width": 390, "height": height})
+def test_the_panel_of_a_narrow_page_ends_above_the_player(page: Page) -> None:
+    page.set_viewport_size({"width": 390, "height": 500})
     # The page folds the panel away when it hears of its size, before it draws the second frame.
     page.wait_for_function("() => innerWidth === 390")
-    page.evaluate("() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))")
+    painted(page)
     if not page.locator(".flowtex-panel").is_visible():
         page.get_by_label("Controls", exact=True).click()
     group(page, "Texture")
@@ -292,9 +248,7 @@ def test_colours_and_their_range(page: Page) -> None:
     before, speed = count(page), WATCH.shot(page)
     choose(page, page.locator("[data-setting=colour]"), "height")
     assert difference(settled(page, before), speed) > 3
-    before = count(page)
     choose(page, page.locator("[data-setting=colour]"), "speed")
-    settled(page, before)
     group(page, "Colours")
     before = count(page)
     choose(page, page.locator("[data-setting=cmap]"), "magma")
@@ -310,16 +264,9 @@ def test_colours_and_their_range(page: Page) -> None:
     assert difference(settled(page, before), magma) < 1
 
 
-def test_every_control_says_what_it_does(page: Page) -> None:
-    from flowtex.settings import TABLE
-
-    page.locator("[data-setting=lod] .flowtex-label").hover()
-    page.get_by_text(TABLE["lod"].text).wait_for()
-
-
 def test_the_pointer_reads_the_flow_and_a_click_shows_the_path(page: Page) -> None:
-    page.mouse.move(440, 300)
-    page.mouse.move(450, 305)
+    page.mouse.move(340, 240)
+    page.mouse.move(350, 245)
     tip = page.locator(".flowtex-tip")
     tip.wait_for()
     assert "velocity" in tip.inner_text() and "height" in tip.inner_text()
@@ -328,18 +275,18 @@ def test_the_pointer_reads_the_flow_and_a_click_shows_the_path(page: Page) -> No
     page.locator(".flowtex-card").wait_for()
     text = page.inner_text(".flowtex-card")
     told = re.search(r"samples\s+(\d+)", text)
-    assert told and page.locator(".flowtex-bars > i").count() == int(told[1]) >= 9
+    assert told and page.locator(".flowtex-bars > i").count() == int(told[1]) >= 5
     assert "level of detail" in text and "grain" in text
     point = page.locator(".flowtex-path .point")
     x, y = float(point.get_attribute("cx") or 0), float(point.get_attribute("cy") or 0)
-    assert abs(x - 450) < 1 and abs(y - 305) < 1
+    assert abs(x - 350) < 1 and abs(y - 245) < 1
     before = count(page)
-    page.mouse.move(500, 400)
+    page.mouse.move(400, 320)
     page.mouse.down()
-    page.mouse.move(540, 420, steps=4)
+    page.mouse.move(440, 340, steps=4)
     page.mouse.up()
     settled(page, before)
-    assert abs(float(point.get_attribute("cx") or 0) - 490) < 1.5
+    assert abs(float(point.get_attribute("cx") or 0) - 390) < 1.5
     page.locator(".flowtex-card").get_by_text("Close").click()
     page.locator(".flowtex-card").wait_for(state="hidden")
 
@@ -353,20 +300,17 @@ def test_keys_move_the_view_and_change_the_page(page: Page) -> None:
     page.keyboard.press("+")
     closer = settled(page, before)
     assert difference(closer, whole) > 3 and "zoom 1.3" in page.inner_text(".flowtex-figures")
-    before = count(page)
     page.keyboard.press("ArrowLeft")
-    assert difference(settled(page, before), closer) > 3
     before = count(page)
     page.keyboard.press("t")
     page.locator(".flowtex-light").wait_for()
-    settled(page, before)
+    assert difference(settled(page, before), closer) > 3
     page.keyboard.press("?")
     page.locator(".flowtex-help").wait_for()
     page.keyboard.press("Escape")
     page.locator(".flowtex-help").wait_for(state="hidden")
-    before = count(page)
     page.keyboard.press("t")
-    settled(page, before)
+    page.locator(".flowtex-light").wait_for(state="detached")
 
 
 def test_two_fingers_zoom(page: Page) -> None:
@@ -377,13 +321,13 @@ def test_two_fingers_zoom(page: Page) -> None:
     touch = page.context.new_cdp_session(page)
 
     def fingers(kind: str, apart: int) -> None:
-        points = [{"x": 490 - apart, "y": 300, "id": 0}, {"x": 490 + apart, "y": 300, "id": 1}]
+        points = [{"x": 390 - apart, "y": 240, "id": 0}, {"x": 390 + apart, "y": 240, "id": 1}]
         found = [] if kind == "touchEnd" else points
         touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": found})
 
     before = count(page)
     fingers("touchStart", 40)
-    for apart in range(45, 105, 5):
+    for apart in range(60, 101, 20):
         fingers("touchMove", apart)
         painted(page)
     fingers("touchEnd", 100)
@@ -391,29 +335,6 @@ def test_two_fingers_zoom(page: Page) -> None:
     found = re.search(r"zoom ([\d.]+)", page.inner_text(".flowtex-figures"))
     assert found and 1.5 < float(found[1]) < 3
     assert not page.locator(".flowtex-card").is_visible()
-
-
-def test_two_panes_move_together(page: Page) -> None:
-    page.evaluate("document.activeElement.blur()")  # a menu would take the key
-    before = count(page)
-    page.keyboard.press("0")
-    settled(page, before)
-    group(page, "View")
-    before = count(page)
-    choose(page, page.locator("[data-setting=compare]"), "Show level: on")
-    both = settled(page, before)
-    middle = SIZE["width"] // 2 - WATCH.left
-    left, right = both[:, : middle - 4], both[:, middle + 4 :]
-    assert difference(left.mean(axis=(0, 1)), right.mean(axis=(0, 1))) > 10
-    before = count(page)
-    page.mouse.move(320, 300)
-    page.mouse.wheel(0, -500)
-    moved = settled(page, before)
-    assert difference(moved[:, : middle - 4], left) > 3
-    assert difference(moved[:, middle + 4 :], right) > 3
-    before = count(page)
-    choose(page, page.locator("[data-setting=compare]"), "nothing")
-    settled(page, before)
 
 
 def test_two_files_stand_beside_each_other(page: Page) -> None:
@@ -437,7 +358,7 @@ def test_two_files_stand_beside_each_other(page: Page) -> None:
     middle = SIZE["width"] // 2 - WATCH.left
     assert difference(both[:, : middle - 4].mean(axis=(0, 1)), one.mean(axis=(0, 1))) < 40
     before = count(page)
-    page.mouse.move(650, 300)
+    page.mouse.move(560, 240)
     page.mouse.wheel(0, -500)
     moved = settled(page, before)
     for half in (slice(0, middle - 4), slice(middle + 4, None)):
@@ -462,22 +383,21 @@ def test_the_browser_draws_the_same_from_the_same_camera(page: Page) -> None:
     # Either has its own look at the edge of a pixel; another camera differs by far more.
     assert difference(there, here) < 12
     before = count(page)
-    page.mouse.move(450, 300)
+    page.mouse.move(450, 240)
     page.mouse.down()
-    page.mouse.move(500, 320, steps=4)
+    page.mouse.move(500, 260, steps=4)
     page.mouse.up()
     moved = settled(page, before)
     assert difference(moved, there) > 2 * difference(there, here)
     before = count(page)
     page.get_by_role("button", name="server", exact=True).click()
-    back = settled(page, before)
-    assert difference(back, moved) < 12
+    settled(page, before)
 
 
 def test_a_picture_is_saved_at_any_size(page: Page, tmp_path: Path) -> None:
     group(page, "Save")
-    page.get_by_label("Width in pixels").fill("1200")
-    page.get_by_label("Height in pixels").fill("300")
+    page.get_by_label("Width in pixels").fill("600")
+    page.get_by_label("Height in pixels").fill("150")
     page.get_by_label("Height in pixels").press("Enter")
     page.get_by_text("Make it").click()
     link = page.get_by_text(re.compile(r"Save .*\.png"))
@@ -486,38 +406,9 @@ def test_a_picture_is_saved_at_any_size(page: Page, tmp_path: Path) -> None:
         link.click()
     download.value.save_as(tmp_path / "a.png")
     with Image.open(tmp_path / "a.png") as picture:
-        assert picture.size == (1200, 300)
+        assert picture.size == (600, 150)
         pixels = np.asarray(picture.convert("L"), dtype=float)
-    assert np.abs(np.diff(pixels, axis=0))[100:200, 500:700].mean() > 3
-
-
-def test_a_movie_is_saved_and_can_be_cancelled(page: Page, tmp_path: Path) -> None:
-    av = pytest.importorskip("av")
-    group(page, "Save")
-    page.get_by_role("button", name="MP4", exact=True).click()
-    for name, value in (
-        ("Width in pixels", "160"),
-        ("Height in pixels", "100"),
-        ("Seconds", "30"),
-        ("Pictures in a second", "20"),
-    ):
-        page.get_by_label(name, exact=True).fill(value)
-        page.get_by_label(name, exact=True).press("Enter")
-    page.get_by_text("Make it").click()
-    page.locator(".flowtex-panel").get_by_text("Cancel").click()
-    page.get_by_text("Make it").wait_for()
-    page.get_by_label("Seconds", exact=True).fill("1")
-    page.get_by_label("Seconds", exact=True).press("Enter")
-    page.get_by_text("Make it").click()
-    link = page.get_by_text(re.compile(r"Save .*\.mp4"))
-    link.wait_for()
-    with page.expect_download() as download:
-        link.click()
-    download.value.save_as(tmp_path / "a.mp4")
-    with av.open(str(tmp_path / "a.mp4")) as movie:
-        frames = [frame.to_ndarray(format="rgb24") for frame in movie.decode(video=0)]
-    assert len(frames) == 20 and frames[0].shape == (100, 160, 3)
-    assert difference(frames[0].astype(float), frames[10].astype(float)) > 2
+    assert np.abs(np.diff(pixels, axis=0))[50:100, 250:350].mean() > 3
 
 
 def test_a_link_and_lines_of_python_tell_the_state(page: Page, folder: Path) -> None:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from flows import gyre, lines, swinging, torus
-from matrix import ASIDE, MIDDLE, SIZE, TEXTURE, TILTED, WHOLE
-from pages import opened_page
+from matrix import ASIDE, MIDDLE, SIZE, TEXTURE, WHOLE
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
@@ -20,23 +18,19 @@ from flowtex.probe import probe
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene
 from flowtex.settings import Settings
-from flowtex.web.export import export
 from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Page
 
 pytestmark = pytest.mark.browser
 
 #: Flows, cameras and settings whose paths are compared with those of the NumPy renderer.
 PATHS: dict[str, tuple[FlowField, Camera, dict[str, Any]]] = {
-    "flat": (gyre(), WHOLE, {}),
     "one side": (gyre(), WHOLE, {"two_sided": False, "samples": 12}),
     "fixed grain": (gyre(), WHOLE, {"lod": False}),
-    "by time": (gyre(), WHOLE, {"parameter": "time"}),
     "moving": (gyre(), WHOLE, {"motion": "speed"}),
     "texture": (gyre(), WHOLE, TEXTURE),
-    "tilted": (gyre(), TILTED, {}),
     "curved": (torus(), ASIDE, {}),
     "varying": (swinging(), MIDDLE, {}),
     "no sign": (lines(), MIDDLE, {}),
@@ -199,32 +193,3 @@ def test_both_of_two_views_show_the_path(client: ClientPage) -> None:
     client.page.keyboard.press("Escape")
     assert client.page.locator("svg.path .point").count() == 0
     client.page.evaluate("() => viewers[0].together.forEach((viewer) => viewer.dispose())")
-
-
-@pytest.mark.usefixtures("quick_export")
-def test_an_exported_page_shows_card_and_path(browser: Browser, tmp_path: Path) -> None:
-    export(leaving(), tmp_path / "page.html", samples=9)
-    with opened_page(browser, 390, 500) as page:
-        shows_card_and_path(page, tmp_path / "page.html")
-
-
-def shows_card_and_path(page: Page, path: Path) -> None:
-    wrong: list[str] = []
-    page.on("pageerror", lambda error: wrong.append(str(error)))
-    page.goto(path.as_uri())
-    page.locator('[data-sharp="true"]').wait_for()
-    page.mouse.click(195, 250)
-    page.locator(".card").wait_for()
-    got = card(page)
-    assert list(got) == [
-        "position",
-        "velocity in the surface",
-        "speed in the surface",
-        "warmth",
-    ]
-    box = page.locator(".card").bounding_box()
-    assert box is not None and box["x"] >= 5 and box["x"] + box["width"] <= 385
-    assert page.locator("svg.path .arrow").count() > 0
-    page.keyboard.press("Escape")
-    page.locator(".card").wait_for(state="hidden")
-    assert wrong == []

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 LOOK: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR, "samples": 11}
-CAMERAS = {"whole": straight(1.8, (1.0, 0.5)), "near": straight(10, (0.6, 0.2)), "tilted": TILTED}
+CAMERAS = {"near": straight(10, (0.6, 0.2)), "tilted": TILTED}
 
 
 @pytest.fixture(autouse=True)
@@ -37,6 +37,7 @@ def small_root(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
     """Let a small field have four levels: tiles are made while the browser waits for them."""
     monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 625)
     monkeypatch.setattr("flowtex.web.preview.NODES", 600)
+    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
 
 
 def place(s: Any, t: Any) -> Any:

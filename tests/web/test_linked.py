@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import html.parser
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from page_reader import Reader
 
 from flowtex import FlowField
 from flowtex.cli import main
@@ -28,6 +27,7 @@ BUCKET = "https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
     monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
+    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
 
 
 def flow(steps: int = 1) -> FlowField:
@@ -35,28 +35,6 @@ def flow(steps: int = 1) -> FlowField:
     velocity = [np.stack([np.cos(3 * y + t), np.sin(4 * x - t)], axis=-1) for t in range(steps)]
     scalars = {"heat": np.stack([x + t for t in range(steps)]), "depth": x * y}
     return FlowField.from_arrays(np.stack([x, y], -1), np.stack(velocity), scalars=scalars)
-
-
-class Reader(html.parser.HTMLParser):
-    """Reads the header of a page, its policy, and the names of its parts."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.policy, self.header, self.parts = "", {}, []  # type: ignore[var-annotated]
-        self._in = ""
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        given = dict(attrs)
-        self._in = given.get("id") or ""
-        if given.get("http-equiv") == "Content-Security-Policy":
-            self.policy = given["content"] or ""
-        if tag == "script" and "data-part" in given:
-            self.parts.append(json.loads(given["data-part"] or "")["name"])
-
-    def handle_data(self, data: str) -> None:
-        if self._in == "headers":
-            self.header, self._in = json.loads(data)[0], ""
 
 
 @pytest.fixture(scope="module")
@@ -135,23 +113,23 @@ def test_a_page_has_the_root_and_one_moment(store: Path) -> None:
     read = Reader(text_of(store, scalars="depth"))
     assert f"connect-src {BUCKET.rsplit('/', 1)[0]};" in read.policy
     own = open_store(store)
-    assert read.header["store"] == {
+    assert read.header()["store"] == {
         "url": BUCKET,
-        "format": read.header["store"]["format"],
-        "fingerprint": read.header["store"]["fingerprint"],
+        "format": read.header()["store"]["format"],
+        "fingerprint": read.header()["store"]["fingerprint"],
         "parameter": "arclength",
         "lines": "streamlines",
         "depth": 1,
         "derivesSpeed": True,
         "steps": [0, 1, 2],
     }
-    assert own.name == read.header["name"]
-    assert (read.header["pyramid"]["finest"], read.header["slices"]["steps"]) == (0, 3)
-    kinds = [name for name in read.parts if "/" in name]
+    assert own.name == read.header()["name"]
+    assert (read.header()["pyramid"]["finest"], read.header()["slices"]["steps"]) == (0, 3)
+    kinds = [name for name in read.names() if "/" in name]
     assert sorted(kinds) == ["flow/1", "flow/2", "scalars/0/2"]
-    assert not [name for name in read.parts if name.startswith("tile")]
+    assert not [name for name in read.names() if name.startswith("tile")]
     some = Reader(text_of(store, scalars="heat"))
-    assert sorted(name for name in some.parts if "sca" in name) == ["scalars/1/1", "scalars/2/1"]
+    assert sorted(name for name in some.names() if "sca" in name) == ["scalars/1/1", "scalars/2/1"]
 
 
 def test_a_page_of_some_steps_and_of_two_views(store: Path) -> None:
@@ -159,8 +137,8 @@ def test_a_page_of_some_steps_and_of_two_views(store: Path) -> None:
     text = page_text(views, store="./flow.zarr")
     read = Reader(text)
     assert "connect-src 'self';" in read.policy
-    assert read.header["store"]["steps"] == [0, 2]
-    assert read.parts.count("flow/1") == 2
+    assert read.header()["store"]["steps"] == [0, 2]
+    assert read.names().count("flow/1") == 2
     assert "connect-src" not in page_text(web_views(str(store), Options.split(samples=5)))
 
 
@@ -207,7 +185,7 @@ def test_the_shell_exports_a_page_of_a_store(
 ) -> None:
     page = tmp_path / "page.html"
     assert main(["export", str(store), "-o", str(page), "--store", "./flow.zarr"]) == 0
-    assert Reader(page.read_text("utf-8")).header["store"]["url"] == "./flow.zarr"
+    assert Reader(page.read_text("utf-8")).header()["store"]["url"] == "./flow.zarr"
     capsys.readouterr()
     assert main(["export", str(store), "-o", str(page), "--store", "s3://bucket/flow.zarr"]) == 2
     assert "expected the address" in capsys.readouterr().err

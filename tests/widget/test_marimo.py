@@ -29,12 +29,12 @@ app = marimo.App()
 @app.cell
 def _():
     import flowtex
-    flowtex.show(flowtex.examples.double_gyre(), samples=9, size=(600, 300))
+    flowtex.show(flowtex.examples.double_gyre(), samples=9, size=(300, 150))
     return (flowtex,)
 
 @app.cell
 def _(flowtex):
-    widget = flowtex.FlowWidget(flowtex.examples.double_gyre(), samples=9, size=(500, 250))
+    widget = flowtex.FlowWidget(flowtex.examples.double_gyre(), samples=9, size=(250, 120))
     widget
     return
 """

@@ -454,8 +454,11 @@ def test_boxes_have_the_pictures_of_what_is_in_them(
     assert len(shown) == count
 
 
-def test_it_is_written_as_a_page_from_where_it_is(make: Make, tmp_path: Any) -> None:
-    widget = make()
+def test_it_is_written_as_a_page_from_where_it_is(
+    make: Make, tmp_path: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
+    widget = make(gyre(nodes=12))
     widget.camera = {"parallel_scale": 0.123}
     text = widget.to_html()
     assert text is not None

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import threading
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ pytest.importorskip("trame_rca")
 import xarray as xr
 from earth_data import winds
 from lying_files import crashing
-from small_pages import played
+from small_pages import Streamer, played
 from waiting import until
 
 from flowtex import examples
@@ -34,17 +33,6 @@ def test_a_complaint_does_not_tell_where_a_file_lies() -> None:
     )
     several = "/srv/private/runs/winds_0.nc: cannot be read: no"
     assert without_folder(several, "winds") == "winds_0.nc: cannot be read: no"
-
-
-class Streamer:
-    """Stands for trame-rca's, and counts what is sent."""
-
-    def __init__(self) -> None:
-        self.sent = 0
-        self.coreServer = SimpleNamespace(network_monitor=SimpleNamespace(pending=0))
-
-    def push_content(self, *_: Any) -> None:
-        self.sent += 1
 
 
 def mean_speed(app: FlowApp) -> float:

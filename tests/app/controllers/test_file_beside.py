@@ -315,14 +315,11 @@ def test_a_link_and_the_lines_of_python_name_both() -> None:
     played(app, story)
 
 
-@pytest.mark.parametrize("compared", [FILE, "Another time"])
-def test_a_picture_shows_both_with_what_is_written_on_them(compared: str, tmp_path: Path) -> None:
+def test_a_picture_shows_both_with_what_is_written_on_them(tmp_path: Path) -> None:
     app = page(one=small(steps=4), two=other(steps=4))
 
     async def story() -> None:
-        if compared == FILE:
-            await beside(app)
-        app.state.send(compare=compared)
+        await beside(app)
         path = await PictureJob(app.viewport, tmp_path / "both.png", (482, 160)).run()
         job = PictureJob(app.viewport, tmp_path / "told.png", (482, 160), annotations=True)
         with Image.open(path) as plain, Image.open(await job.run()) as written:

@@ -214,9 +214,10 @@ def test_a_source_whose_process_has_died_is_opened_anew(
 
 
 def test_of_a_large_field_the_coarsest_level_is_traced(monkeypatch: pytest.MonkeyPatch) -> None:
-    x, y = np.linspace(0, 2, 1200), np.linspace(0, 1, 600)
+    x, y = np.linspace(0, 2, 300), np.linspace(0, 1, 150)
     velocity = np.stack(np.broadcast_arrays(y[:, None] + 1, np.cos(x)), axis=-1)
     field = FlowField.from_arrays((x, y), velocity)
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 10_000)
     traced: list[tuple[int, int]] = []
 
     def counted(store: SliceStore, step: int, lags: int) -> Any:

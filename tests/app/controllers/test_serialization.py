@@ -131,7 +131,7 @@ def test_what_is_of_no_use_is_left_out_and_told(link: str, told: str) -> None:
     assert len(faults) == 1 and told in faults[0] and len(faults[0]) < 300
 
 
-@property_test(200)
+@property_test(80)
 @given(links())
 @example("file=\ud800")
 @example("camera=parallel," + ",".join(["1e308"] * 11))
@@ -143,7 +143,7 @@ def test_whatever_comes_is_taken_without_an_error(link: str) -> None:
     compile(to_python(state, source="None"), "lines", "exec", flags=1024)
 
 
-@property_test(200)
+@property_test(60)
 @given(st.lists(st.tuples(st.integers(0, 10_000), st.characters()), max_size=5))
 def test_a_link_that_was_changed_is_taken_without_an_error(changes: list[tuple[int, str]]) -> None:
     text = list(to_link(STATE))
@@ -182,15 +182,13 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize(
-    "split", ["nothing", "Fixed grain: on", "Colour by: speed", "Another file"]
-)
+@pytest.mark.parametrize("split", ["Fixed grain: on", "Another file"])
 def test_the_python_lines_draw_the_same_picture(
     file: Path, monkeypatch: pytest.MonkeyPatch, split: str, opengl: object
 ) -> None:
     monkeypatch.chdir(file.parent)
     field = flowtex.FlowField.from_file(file.name)
-    changed: dict[str, Any] = {"samples": 15, "seed": 3, "motion": "speed", "opacity": 0.6}
+    changed: dict[str, Any] = {"samples": 7, "seed": 3, "motion": "speed", "opacity": 0.6}
     scene = Viewport(field, zoom=3.0, scalars="vorticity", cmap="magma", clim=(-1, 2.0), **changed)
     flowtex.examples.double_gyre(7.0).save(file.parent / "later.vts")
     later = {"field": flowtex.FlowField.from_file("later.vts")}
