@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ def flow(x: Any, y: Any) -> tuple[Any, Any]:
     return -np.sin(2 * np.pi * x) * np.cos(np.pi * y), 2 * np.cos(2 * np.pi * x) * np.sin(np.pi * y)
 
 
+@cache
 def field(nodes: int = 2500) -> FlowField:
     """Two vortices in the unit square, on triangles that face either way."""
     rng = np.random.default_rng(2)
@@ -36,7 +38,7 @@ def field(nodes: int = 2500) -> FlowField:
     return FlowField.from_triangles(points, triangles, velocity, scalars={"x": points[:, 0]})
 
 
-@pytest.mark.parametrize("zoom", [1, 4, 16, 64])
+@pytest.mark.parametrize("zoom", [1, 16])
 def test_streaks_follow_the_flow_at_every_zoom(opengl: Any, zoom: float) -> None:
     focus = (0.5, 0.5) if zoom == 1 else (0.4, 0.3)
     scale = 0.54 / zoom
