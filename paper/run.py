@@ -17,6 +17,7 @@ from flowtex._version import __version__
 from paper.bench import Bench
 from paper.findings import Claim, Finding, Panel, Report, Section
 from paper.page import write_page
+from paper.sections.level_of_detail import VORTEX_STEP
 from paper.views import grey, view_of
 
 __all__ = ["SectionError", "reproduce", "sections"]
@@ -141,7 +142,8 @@ def _title_picture(bench: Bench) -> Panel:
     import matplotlib as mpl
 
     size = bench.pick((1240, 420), (400, 136))
-    view = view_of(bench, bench.vortex, size, zoom=size[0] / size[1] / 0.92, step=TITLE_STEP)
+    step = bench.pick(TITLE_STEP, VORTEX_STEP)  # which has been traced
+    view = view_of(bench, bench.vortex, size, zoom=size[0] / size[1] / 0.92, step=step)
     share = np.clip(view.speed / np.quantile(view.speed, 0.98), 0, 1)
     low, high = TITLE_PART
     colour = mpl.colormaps[TITLE_COLOURS](low + (high - low) * share)[..., :3]

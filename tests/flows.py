@@ -14,6 +14,7 @@ __all__ = [
     "gyre",
     "holed",
     "lines",
+    "ring",
     "rippled",
     "scattered_gyre",
     "scattered_holed",
@@ -120,3 +121,12 @@ def rippled() -> FlowField:
     axial = x**4 - 6 * x * x * y * y + y**4 - 0.35
     velocity = np.cross(points, np.column_stack([slope, axial]))
     return FlowField.from_triangles(points, triangles, velocity)
+
+
+def ring() -> FlowField:
+    """Curved, closed around, on a cone."""
+    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 81), np.linspace(0, 1, 40))
+    radius = 1 + 0.4 * height
+    points = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1)
+    around = np.stack([-np.sin(turn), np.cos(turn), 0.3 * np.sin(5 * turn)], axis=-1)
+    return FlowField.from_arrays(points, around)

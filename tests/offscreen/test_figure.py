@@ -39,14 +39,13 @@ def edge_of(line: Any, low: float, high: float, crossing: int = 0) -> float:
     return float(low + (n + 0.5 + share) * (high - low) / len(values))
 
 
-@pytest.mark.parametrize("axes", [(0, 1), (0, 2), (1, 2)])
 @pytest.mark.parametrize(
-    "options",
+    ("axes", "options"),
     [
-        {"margin": 0, "size": (400, 200)},
-        {"size": (333, 251)},
-        {"zoom": 5.0, "focus": None, "size": (300, 300)},
-        {"margin": 0.2, "size": (200, 400)},
+        ((0, 1), {"margin": 0, "size": (400, 200)}),
+        ((0, 2), {"size": (333, 251)}),
+        ((1, 2), {"zoom": 5.0, "focus": None, "size": (300, 300)}),
+        ((0, 1), {"margin": 0.2, "size": (200, 400)}),
     ],
 )
 def test_an_extent_puts_an_edge_where_it_is(axes: tuple[int, int], options: dict[str, Any]) -> None:

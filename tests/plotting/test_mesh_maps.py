@@ -30,7 +30,7 @@ def bay() -> Globe:
     return Globe(lon, lat, np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)]))
 
 
-@pytest.mark.parametrize("view", [{"globe": True}, {}, {"projection": "robinson"}])
+@pytest.mark.parametrize("view", [{"globe": True}, {"projection": "robinson"}])
 def test_a_mesh_has_the_colours_of_the_same_flow_on_a_grid(view: dict[str, Any]) -> None:
     options: dict[str, Any] = {"size": (240, 200), "lighting": False, "clim": (0.0, 10.0)}
     options |= {"cmap": "gray", "coastlines": False, "graticule": False, "show_scalar_bar": False}

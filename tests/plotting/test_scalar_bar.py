@@ -39,8 +39,11 @@ def pixels(size: tuple[int, int], names: tuple[str, ...], **options: Any) -> Any
     return shot.astype(int), boxes
 
 
-@pytest.mark.parametrize("size", SIZES)
-@pytest.mark.parametrize("names", [("speed",), (LONG,), ("speed", LONG), ("speed", "height")])
+@pytest.mark.parametrize(
+    ("size", "names"),
+    [(SIZES[0], names) for names in (("speed",), ("speed", LONG), ("speed", "height"))]
+    + [(SIZES[-1], (LONG,))],
+)
 def test_bars_are_inside_and_apart(size: tuple[int, int], names: tuple[str, ...]) -> None:
     shot, boxes = pixels(size, names)
     ink = (np.abs(shot - shot[0, -1]) > 8).any(axis=-1)

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from flows import ring
 from store_contents import contents
 
 import flowtex
@@ -75,19 +76,10 @@ def late() -> FlowField:
     return replace(field, velocity=lazy)
 
 
-def ring() -> FlowField:
-    """Curved, closed around, on a cone."""
-    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 81), np.linspace(0, 1, 40))
-    radius = 1 + 0.4 * height
-    points = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1)
-    around = np.stack([-np.sin(turn), np.cos(turn), 0.3 * np.sin(5 * turn)], axis=-1)
-    return FlowField.from_arrays(points, around)
-
-
 def globe() -> FlowField:
     """Around both poles, where some nodes have no position."""
     lon, lat = np.meshgrid(
-        np.radians(np.linspace(0, 360, 91)), np.radians(np.linspace(-90, 90, 46))
+        np.radians(np.linspace(0, 360, 67)), np.radians(np.linspace(-90, 90, 34))
     )
     points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
     velocity = np.cross([0.3, 0.1, 1.0], points)

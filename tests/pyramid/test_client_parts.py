@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from flows import ring
 from packed import parts_of
 
 from flowtex import FlowField
@@ -43,15 +44,6 @@ def flat() -> FlowField:
         valid=valid,
         scalars=scalars,
     )
-
-
-def ring() -> FlowField:
-    """Curved, closed around, on a cone."""
-    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 81), np.linspace(0, 1, 40))
-    radius = 1 + 0.4 * height
-    points = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1)
-    around = np.stack([-np.sin(turn), np.cos(turn), 0.3 * np.sin(5 * turn)], axis=-1)
-    return FlowField.from_arrays(points, around)
 
 
 def opened(group: Any, name: str, *at: int) -> dict[str, AnyArray]:

@@ -169,7 +169,7 @@ def garble(text: Any, share: float, value: Any) -> None:
         inside[name] = value
 
 
-@property_test(12)
+@property_test(8)
 @given(harm())
 def test_harm_is_told_or_does_no_harm(whole: Path, truth: Drawn, harmed: Any) -> None:
     place = whole.parent / "harmed.zarr"
@@ -194,7 +194,7 @@ def test_shards_in_each_others_place_are_noticed(whole: Path, truth: Drawn, arra
 
 
 @pytest.mark.parametrize("seal", [False, True])
-@property_test(25)
+@property_test(15)
 @given(share=st.floats(0, 1, exclude_max=True), value=JSON)
 def test_what_is_told_of_a_pyramid_is_checked(
     whole: Path, seal: bool, share: float, value: Any
@@ -227,7 +227,7 @@ def server(whole: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RangeServer
         yield server
 
 
-@property_test(8)
+@property_test(6)
 @given(answers=st.lists(st.sampled_from([200, 403, 404, 500, "cut"]), min_size=1, max_size=9))
 def test_a_server_with_faults_is_told_or_does_no_harm(
     whole: Path, truth: Drawn, answers: list[Any]

@@ -66,14 +66,17 @@ def write(place: Path, told: Any, *, reverse: bool = False, **options: Any) -> N
         zarr.consolidate_metadata(place)
 
 
-@pytest.fixture(scope="module", params=list(TOLD))
-def store(request: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = tmp_path_factory.mktemp("others") / "flow.zarr"
-    write(place, TOLD[request.param], reverse=request.param == "ndpyramid")
-    return place
+@pytest.fixture(scope="module")
+def stores(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    places = {name: tmp_path_factory.mktemp(name) / "flow.zarr" for name in TOLD}
+    for name, place in places.items():
+        write(place, TOLD[name], reverse=name == "ndpyramid")
+    return places
 
 
-def test_levels_lie_where_those_of_the_field_lie(store: Path) -> None:
+@pytest.mark.parametrize("name", TOLD)
+def test_levels_lie_where_those_of_the_field_lie(stores: dict[str, Path], name: str) -> None:
+    store = stores[name]
     assert has_parts(store) and not is_store(store)
     field, whole = open_store(store), FlowField.from_xarray(dataset())
     stored, own = (shared_pyramid(one, "arclength", "streamlines") for one in (field, whole))
@@ -104,8 +107,12 @@ def test_missing_values_are_left_out_at_all_levels(tmp_path: Path) -> None:
 
 
 def test_pictures_pages_and_the_shell(
-    opengl: Any, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    opengl: Any,
+    stores: dict[str, Path],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
+    store = stores["ndpyramid"]
     view: dict[str, Any] = {"size": (200, 120), "samples": 9, "zoom": 6}
     with range_server(store.parent) as server:
         url = server.address + store.name

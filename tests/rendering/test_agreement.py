@@ -11,7 +11,9 @@ from webgl_page import ClientPage, packed, state
 
 from flowtex._util.array_types import Bytes
 from flowtex.plotting.vtk_camera import apply_camera
+from flowtex.rendering.cpu import render
 from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.scene import Scene
 
 #: Whether Chromium draws with the WebGL that it brings, which filters with fewer digits.
 OWN = """(({ gl }) => gl.getExtension('WEBGL_debug_renderer_info') !== null
@@ -64,6 +66,15 @@ def drawn_by_webgl(client: ClientPage, name: str) -> Bytes:
 @pytest.mark.parametrize("name", VIEWS)
 def test_vtk_agrees_with_numpy(plotter: Any, name: str) -> None:
     agree(drawn_by_vtk(plotter, VIEWS[name]), name, FINER)
+
+
+@pytest.mark.parametrize("name", ["spacing", "grain", "contrast"])
+def test_two_hundredths_more_would_be_noticed(name: str) -> None:
+    view, (shown, ours) = VIEWS["many samples"], judged("many samples")
+    settings = shown.settings.copy()
+    setattr(settings, name, getattr(settings, name) * 1.02)
+    other = render(Scene(view.field(), settings).textures, settings, view.camera, SIZE)
+    assert difference(other.rgb(COLOUR, background=GROUND), ours)[0] > ROOT
 
 
 @pytest.mark.browser

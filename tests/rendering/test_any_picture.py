@@ -20,7 +20,7 @@ from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 
-SIZE = (24, 16)
+SIZE = (15, 10)
 #: Greatest number in half precision.
 HALF_MAX = 65504
 
@@ -65,22 +65,17 @@ def check_client(scene: Scene) -> None:
     assert len(levels.triangles(levels.levels(None, 0.1 * field.surface.extent, 100)))
 
 
-@property_test(50)
+@property_test(30)
 @given(field_arguments(), setting_values())
-def test_any_field_is_drawn_with_numpy(arguments: dict[str, Any], values: dict[str, Any]) -> None:
+def test_any_field_is_drawn_with_numpy_and_goes_to_a_browser(
+    arguments: dict[str, Any], values: dict[str, Any]
+) -> None:
     field = field_of(arguments)
     if field is None:
         return
-    check_picture(Scene(field, Settings(**values)))
-
-
-@property_test(25)
-@given(field_arguments(), setting_values())
-def test_any_field_goes_to_a_browser(arguments: dict[str, Any], values: dict[str, Any]) -> None:
-    field = field_of(arguments)
-    if field is None:
-        return
-    check_client(Scene(field, Settings(**values)))
+    scene = Scene(field, Settings(**values))
+    check_picture(scene)
+    check_client(scene)
 
 
 # A surface a million times as wide as high is thinner than a pixel.
@@ -110,6 +105,14 @@ def test_nodes_that_have_collapsed_inside_of_a_surface_have_a_normal() -> None:
     check_picture(Scene(field_from(points)))
 
 
+def test_four_nodes_are_drawn_by_time_also_at_rest() -> None:
+    corners = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0]), axis=-1)
+    with pytest.warns(UserWarning, match="velocity is zero"):
+        rest = FlowField.from_arrays(corners, np.zeros((2, 2, 2)))
+    for field in (rest, FlowField.from_arrays(corners, np.ones((2, 2, 2)))):
+        check_picture(Scene(field, Settings(parameter="time")))
+
+
 def test_a_ring_of_two_lines_has_noise_coordinates() -> None:
     x, y = np.meshgrid([0.0, 1.0, 0.0], np.arange(4.0))
     points = np.stack([x, y], axis=-1)
@@ -125,13 +128,13 @@ def test_a_moment_far_from_the_first_has_a_clock() -> None:
     assert max(values["u_clock"]) <= 4096
 
 
-@pytest.mark.parametrize("size", [1e-200, 1e50, 1e99, 1e300])
+@pytest.mark.parametrize("size", [1e-200, 1e300])
 def test_scalars_of_any_size_are_coloured(size: float) -> None:
     points = np.stack(np.meshgrid(np.arange(4.0), np.arange(4.0)), axis=-1)
     check_client(Scene(field_from(points, scalars={"s": size * (points[..., 0] - 1.5)})))
 
 
-@pytest.mark.parametrize("size", [1e-12, 1e-6, 1e6, 1e12])
+@pytest.mark.parametrize("size", [1e-12, 1e12])
 def test_a_picture_does_not_depend_on_the_unit_of_length(size: float) -> None:
     points = np.stack(np.meshgrid(np.linspace(0, 1, 8), np.linspace(0, 1, 8)), axis=-1)
     size = 2.0 ** np.rint(np.log2(size))

@@ -8,7 +8,6 @@ import matplotlib
 import numpy as np
 import pytest
 
-import flowtex
 from flowtex._util.array_types import Floats
 from flowtex._util.colours import colour_shares, colour_table, is_diverging
 from flowtex.rendering.cpu.shade import mean_colours, shade
@@ -67,20 +66,6 @@ def test_a_legend_has_the_mean_colours_of_shaded_noise(
     even = (values - values.mean()) / values.std()
     means = [255 * shade(colour, even, settings).mean(axis=0) for colour in table[:, :3] / 255]
     np.testing.assert_allclose(mean_colours(table, settings)[:, :3], means, atol=4)
-
-
-def test_a_legend_has_the_mean_colours_of_a_picture(opengl: None) -> None:
-    table = colour_table("viridis")[[0, 80, 160, 250]]
-    for colour, mean in zip(table, mean_colours(table, Settings()), strict=True):
-        picture = flowtex.render(
-            flowtex.examples.double_gyre_field(),
-            color=tuple(colour[:3] / 255),
-            scalars=False,
-            lighting=False,
-            size=(300, 200),
-            zoom=3,
-        )
-        np.testing.assert_allclose(picture.mean(axis=(0, 1)), mean[:3], atol=8)
 
 
 def test_an_image_keeps_the_colours_of_the_map() -> None:

@@ -38,7 +38,7 @@ def area(points: Floats, triangles: Indices) -> float:
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_neighbours_of_any_levels_join_without_cracks(shape: tuple[int, int], seed: int) -> None:
     points, rng = grid(shape), np.random.default_rng(seed)
     mesh = MeshLevels(points, whole(shape))
@@ -53,15 +53,12 @@ def test_neighbours_of_any_levels_join_without_cracks(shape: tuple[int, int], se
         assert count == (1 if outside else 2)
 
 
-def test_the_finest_level_is_every_cell() -> None:
+def test_the_finest_level_is_every_cell_and_a_flat_grid_two_triangles_a_tile() -> None:
     shape = (70, 90)
     mesh = MeshLevels(grid(shape), whole(shape))
     triangles = mesh.triangles(np.zeros(mesh.error.shape[1:], dtype=int))
     assert len(triangles) == 2 * 69 * 89
     assert len(np.unique(triangles)) == 70 * 90
-
-
-def test_a_flat_uniform_grid_is_two_triangles_a_tile() -> None:
     shape = (4 * BLOCK_CELLS + 1, 2 * BLOCK_CELLS + 1)
     mesh = MeshLevels(grid(shape), whole(shape))
     assert len(mesh.triangles(mesh.levels(None, 130.0, 600))) == 16
@@ -138,7 +135,7 @@ def test_a_seam_has_the_same_nodes_on_both_sides() -> None:
     assert nodes[0] == nodes[1]
 
 
-@pytest.mark.parametrize("size", [1e-300, 1e-12, 1e12, 1e150])
+@pytest.mark.parametrize("size", [1e-300, 1e150])
 def test_any_size_of_a_surface_has_levels(size: float) -> None:
     shape = (70, 90)
     mesh = MeshLevels(size * grid(shape, height=1.0), whole(shape))
@@ -189,7 +186,7 @@ def _mixed(pyramid: Pyramid, rng: np.random.Generator) -> list[tuple[Region, Mes
     return parts
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(5))
 def test_tiles_of_different_levels_join_without_cracks(seed: int, monkeypatch: Any) -> None:
     monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 5000)
     rng = np.random.default_rng(seed)

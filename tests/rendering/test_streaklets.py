@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -17,9 +18,14 @@ from flowtex.rendering.uniforms import is_sparse
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 
-SIZE = (240, 160)
+SIZE = (180, 120)
 #: Pixels over which a still is judged around each of its pixels.
 WINDOW = 29
+
+
+@cache
+def still(make: Callable[[], FlowField], zoom: float) -> Picture:
+    return picture(make().at_step(0), zoom)
 
 
 def picture(field: FlowField, zoom: float) -> Picture:
@@ -59,8 +65,7 @@ def velocity_of(field: FlowField, drawn: Picture) -> Floats:
 
 @pytest.mark.parametrize(("make", "zoom"), [(gyre, 1), (gyre, 1024), (swinging, 32)])
 def test_a_still_tells_which_way_the_flow_goes(make: Callable[[], FlowField], zoom: float) -> None:
-    field = make().at_step(0)
-    drawn = picture(field, zoom)
+    field, drawn = make().at_step(0), still(make, zoom)
     velocity = velocity_of(field, drawn)
     assert sense(drawn, velocity) > 0.95
     if zoom == 32:
@@ -70,7 +75,7 @@ def test_a_still_tells_which_way_the_flow_goes(make: Callable[[], FlowField], zo
 
 def test_streaklets_are_sparse_and_bright() -> None:
     dense = Scene(gyre(), Settings())
-    drawn = picture(gyre(), 1)
+    drawn = still(gyre, 1)
     value = drawn.value[drawn.covered]
     assert value.mean() == pytest.approx(0.0, abs=0.2)
     assert value.std() == pytest.approx(1.0, abs=0.2)

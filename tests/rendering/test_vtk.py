@@ -1,21 +1,21 @@
-"""The picture that VTK draws, judged by what it shows."""
+"""What VTK draws, judged by what it shows; test_agreement.py judges it by the pictures of NumPy."""
 
 from __future__ import annotations
 
 import gc
 import weakref
+from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 import pyvista as pv
-from measures import carried, fineness, grain, streaks
+from measures import carried, streaks
 from plain_pyvista import off_colours
 
 import flowtex
-from flowtex._util.array_types import Bools
 from flowtex.plotting.vtk_camera import look
-from flowtex.settings import TABLE
 
 SIZE = (400, 300)
 
@@ -28,70 +28,10 @@ def gyre(x: Any, y: Any) -> tuple[Any, Any]:
     )
 
 
-def gyre_field(columns: int = 100, rows: int = 50, *, sheared: bool = False) -> flowtex.FlowField:
-    s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
-    x, y = 2 * s, t
-    if sheared:
-        x, y = 2 * (s + 0.06 * np.sin(2 * np.pi * s)) + 0.12 * np.sin(np.pi * t), t**1.3
+@cache
+def gyre_field(columns: int = 100, rows: int = 50) -> flowtex.FlowField:
+    x, y = np.meshgrid(np.linspace(0, 2, columns), np.linspace(0, 1, rows))
     return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(gyre(x, y), -1))
-
-
-def pixels(field: flowtex.FlowField, zoom: float, focus: tuple[float, float]) -> tuple[Any, Any]:
-    """Coordinates of the middle of every pixel of a straight view."""
-    width, height = SIZE
-    extent = np.ptp(field.points[field.valid][:, :2], axis=0)
-    scale = max(extent[1], extent[0] * height / width) / 0.92 / zoom / height
-    x = focus[0] + (np.arange(width) + 0.5 - width / 2) * scale
-    y = focus[1] - (np.arange(height) + 0.5 - height / 2) * scale
-    return np.meshgrid(x, y)
-
-
-def inside(x: Any, y: Any) -> Bools:
-    margin = np.zeros(x.shape, dtype=bool)
-    margin[12:-12, 12:-12] = True
-    step = abs(x[0, 1] - x[0, 0])
-    margin &= (x > 14 * step) & (x < 2 - 14 * step) & (y > 14 * step) & (y < 1 - 14 * step)
-    return np.asarray(margin & (np.hypot(*gyre(x, y)) > 0.02))
-
-
-@pytest.mark.parametrize("sheared", [False, True])
-@pytest.mark.parametrize("zoom", [1, 4, 16, 64])
-def test_streaks_follow_the_flow_at_every_zoom(opengl: Any, zoom: float, sheared: bool) -> None:
-    field, focus = gyre_field(sheared=sheared), (0.63, 0.37)
-    picture = flowtex.render(field, size=SIZE, zoom=zoom, focus=focus, scalars=False)
-    if zoom == 1:
-        focus = tuple(field.surface.center[:2])
-        picture = flowtex.render(field, size=SIZE, scalars=False)
-    x, y = pixels(field, zoom, focus)
-    mask = inside(x, y)
-    if sheared:
-        mask &= (x > 0.25) & (x < 1.85)
-    found = streaks(picture, *gyre(x, y), mask)
-    assert found["angle"] <= 2.4
-    assert found["coherence"] >= 0.93
-
-
-def test_the_grain_keeps_its_size_in_pixels_through_a_thousandfold_zoom(opengl: Any) -> None:
-    field, sizes, lengths = gyre_field(), [], []
-    for zoom in (1, 4, 32, 256, 4096):
-        middle = (1.0, 0.5) if zoom == 1 else (0.63, 0.37)
-        picture = flowtex.render(field, size=SIZE, zoom=zoom, focus=middle, scalars=False)
-        x, y = pixels(field, zoom, middle)
-        sizes.append(fineness(picture, inside(x, y)))
-        lengths.append(grain(picture, *gyre(x, y), inside(x, y))["along"])
-    assert max(sizes) / min(sizes) < 1.15
-    assert max(lengths) / min(lengths) < 1.15
-
-
-def test_a_thousandth_of_a_cell_is_as_sharp_as_the_whole(opengl: Any) -> None:
-    field, focus = gyre_field(), (0.63, 0.37)
-    found = {}
-    for zoom in (50, 1e5):
-        picture = flowtex.render(field, size=SIZE, zoom=zoom, focus=focus, scalars=False)
-        x, y = pixels(field, zoom, focus)
-        found[zoom] = streaks(picture, *gyre(x, y), inside(x, y))
-        assert found[zoom]["coherence"] > 0.95
-        assert found[zoom]["angle"] < 2.2
 
 
 def test_the_way_to_a_view_does_not_show_in_it(plotter: Any) -> None:
@@ -106,12 +46,6 @@ def test_the_way_to_a_view_does_not_show_in_it(plotter: Any) -> None:
     assert np.abs(pictures[0] - pictures[2]).mean() > 10
 
 
-def test_white_stays_white_without_strength(opengl: Any) -> None:
-    options: dict[str, Any] = {"scalars": False, "color": "white", "background": "black"}
-    picture = flowtex.render(gyre_field(), size=(100, 60), strength=0.0, **options)
-    assert picture[30, 50].tolist() == [255, 255, 255]
-
-
 def test_two_views_beside_each_other_share_the_camera(opengl: Any) -> None:
     field = gyre_field()
     options: dict[str, Any] = {"scalars": False, "zoom": 8, "focus": (0.63, 0.37)}
@@ -122,36 +56,6 @@ def test_two_views_beside_each_other_share_the_camera(opengl: Any) -> None:
     assert np.abs(both[below, :300].astype(float) - one[below]).mean() < 1
     assert np.abs(both[below, 300:].astype(float) - other[below]).mean() < 1
     assert np.abs(one[below].astype(float) - other[below]).mean() > 10
-
-
-def test_the_level_of_detail_can_be_seen(opengl: Any) -> None:
-    options: dict[str, Any] = {"size": (100, 60), "scalars": False, "show_level": True}
-    near, far = (
-        flowtex.render(gyre_field(), zoom=zoom, **options).mean(axis=(0, 1)) for zoom in (4, 16)
-    )
-    assert np.abs(near - far).max() > 20
-
-
-def test_without_level_of_detail_the_grain_is_fixed_on_the_surface(opengl: Any) -> None:
-    field, focus = gyre_field(), (0.63, 0.37)
-    options: dict[str, Any] = {"size": SIZE, "focus": focus, "scalars": False}
-    options |= {"lod": False, "resolution": 256}
-    near = flowtex.render(field, zoom=32, **options)
-    far = flowtex.render(field, zoom=4, **options)
-    mask = inside(*pixels(field, 32, focus))
-    assert fineness(far, mask) > 2.5 * fineness(near, mask)
-
-
-def test_the_texture_sticks_to_the_surface(opengl: Any) -> None:
-    field = gyre_field()
-    x, _ = pixels(field, 8, (0.63, 0.37))
-    step = x[0, 1] - x[0, 0]
-    options: dict[str, Any] = {"size": SIZE, "zoom": 8, "scalars": False}
-    first = flowtex.render(field, focus=(0.63, 0.37), **options)
-    second = flowtex.render(field, focus=(0.63 - 3 * step, 0.37), **options)
-    shift = np.full(x.shape, 3.0)
-    assert carried(first, second, shift, 0 * shift, 20) > 0.95
-    assert carried(first, second, 0 * shift, 0 * shift, 20) < 0.6
 
 
 def test_far_from_the_origin_the_picture_is_as_sharp(opengl: Any) -> None:
@@ -173,7 +77,7 @@ def ring(turned: int = 0) -> flowtex.FlowField:
 
 
 @pytest.mark.parametrize("noise", ["procedural", "texture"])
-@pytest.mark.parametrize("zoom", [0.25, 1, 6])
+@pytest.mark.parametrize("zoom", [0.25, 6])
 def test_a_seam_is_not_seen(opengl: Any, zoom: float, noise: str) -> None:
     # The same flow on the same ring, joined at another column: if the seam left a trace, the
     # two pictures would differ there. The noise texture lies on the columns, so only the
@@ -214,21 +118,20 @@ def test_blanked_cells_are_not_drawn(opengl: Any) -> None:
     picture = flowtex.render(field, size=(200, 200), background="red", scalars=False)
     assert (picture[95:105, 95:105] == [255, 0, 0]).all()
     assert not (picture[30:60, 60:140] == [255, 0, 0]).all(axis=-1).any()
+    # White stays white without strength.
+    options: dict[str, Any] = {"color": "white", "background": "black", "strength": 0.0}
+    picture = flowtex.render(field, size=(200, 200), scalars=False, **options)
+    assert picture[45, 100].tolist() == [255, 255, 255]
 
 
-@pytest.mark.parametrize("kernel", TABLE["kernel"].choices)
-@pytest.mark.parametrize("noise", ["procedural", "texture", "spots"])
-@pytest.mark.parametrize("curved", [False, True])
-@pytest.mark.parametrize("steps", [1, 3])
-def test_every_variant_compiles_and_streaks(
-    opengl: Any, steps: int, curved: bool, noise: str, kernel: str
-) -> None:
+@pytest.mark.parametrize(
+    ("noise", "kernel"), [("procedural", "hann"), ("texture", "box"), ("spots", "ramp")]
+)
+def test_all_variants_together_compile_and_streak(opengl: Any, noise: str, kernel: str) -> None:
     y, x = np.mgrid[0:1:21j, 0:1:31j]
-    z = 0.2 * np.sin(3 * x) if curved else 0 * x
-    tangent = np.stack([np.ones_like(x), 0 * x, 0.6 * np.cos(3 * x) if curved else 0 * x], -1)
-    field = flowtex.FlowField.from_arrays(
-        np.stack([x, y, z], -1), np.stack([tangent] * steps), times=np.arange(steps)
-    )
+    tangent = np.stack([np.ones_like(x), 0 * x, 0.6 * np.cos(3 * x)], -1)
+    points = np.stack([x, y, 0.2 * np.sin(3 * x)], -1)
+    field = flowtex.FlowField.from_arrays(points, np.stack([tangent] * 3), times=np.arange(3))
     picture = flowtex.render(
         field,
         size=(200, 200),
@@ -238,41 +141,31 @@ def test_every_variant_compiles_and_streaks(
         resolution=256,
         camera=[(0.5, 0.5, 3), (0.5, 0.5, 0), (0, 1, 0)],
     )
-    middle = picture[80:120, 80:120]
     ones = np.ones((40, 40))
-    found = streaks(middle, ones, 0 * ones, ones.astype(bool))
+    found = streaks(picture[80:120, 80:120], ones, 0 * ones, ones.astype(bool))
     assert found["angle"] < 12
     assert found["coherence"] > 0.6
 
 
-def test_settings_change_the_picture_live_without_a_new_shader(plotter: Any) -> None:
+def test_what_changes_the_shader_or_a_value_comes_back(plotter: Any) -> None:
     handle = plotter.flowtex.add(gyre_field(), scalars=False)
     first = plotter.screenshot(return_img=True)
-    handle.settings.lod = False
-    second = plotter.screenshot(return_img=True)
-    handle.settings.lod = True
-    third = plotter.screenshot(return_img=True)
-    assert np.abs(first.astype(float) - second).mean() > 5
-    np.testing.assert_array_equal(first, third)
-
-
-def test_motion_is_another_shader_and_comes_back(plotter: Any) -> None:
-    handle = plotter.flowtex.add(gyre_field(), scalars=False)
-    first = plotter.screenshot(return_img=True)
-    handle.settings.motion = "speed"
-    handle.clock = 0.0
-    second = plotter.screenshot(return_img=True)
-    handle.clock = 1.0
-    third = plotter.screenshot(return_img=True)
-    handle.settings.motion = "off"
-    fourth = plotter.screenshot(return_img=True)
-    assert np.abs(first.astype(float) - second).mean() > 5
-    assert np.abs(second.astype(float) - third).mean() > 5
-    np.testing.assert_array_equal(first, fourth)
+    for name, value in (("lod", False), ("noise", "texture"), ("motion", "speed")):
+        was = getattr(handle.settings, name)
+        setattr(handle.settings, name, value)
+        handle.clock = 0.0
+        pictures = [first, plotter.screenshot(return_img=True)]
+        if name == "motion":
+            handle.clock = 1.0
+            pictures.append(plotter.screenshot(return_img=True))
+        setattr(handle.settings, name, was)
+        for before, after in pairwise(pictures):
+            assert np.abs(before.astype(float) - after).mean() > 5
+        np.testing.assert_array_equal(first, plotter.screenshot(return_img=True))
 
 
 def test_a_frame_has_as_many_triangles_as_the_view_needs(plotter: Any) -> None:
-    y, x = np.mgrid[0:2:257j, 0:4:513j]
+    y, x = np.mgrid[0:2:129j, 0:4:257j]
     points, velocity = np.stack([x, y], axis=-1), np.stack([1 + 0 * x, 0.2 * np.sin(y)], axis=-1)
     field = flowtex.FlowField.from_arrays(points, velocity)
     handle = plotter.flowtex.add(field, scalars=False)
@@ -282,27 +175,16 @@ def test_a_frame_has_as_many_triangles_as_the_view_needs(plotter: Any) -> None:
         plotter.screenshot(return_img=True)
         return int(handle.actor.mapper.dataset.n_cells)
 
-    assert cells() == 2 * 4 * 8
+    assert cells() == 2 * 2 * 4
     plain = np.asarray(plotter.screenshot(return_img=True), dtype=float)
     handle.actor.prop.style = "Wireframe"
-    assert cells() == 2 * 256 * 512  # who looks at the mesh sees all of it
+    assert cells() == 2 * 128 * 256  # who looks at the mesh sees all of it
     handle.actor.prop.style = "Surface"
-    assert cells() == 2 * 4 * 8
+    assert cells() == 2 * 2 * 4
     handle._surface._base.mesh_levels.error[1:] = np.inf
-    assert cells() == 2 * 256 * 512
+    assert cells() == 2 * 128 * 256
     every = np.asarray(plotter.screenshot(return_img=True), dtype=float)
     assert np.abs(every - plain).max() <= 2
-
-
-def test_another_noise_is_another_shader_and_comes_back(plotter: Any) -> None:
-    handle = plotter.flowtex.add(gyre_field(), scalars=False)
-    first = plotter.screenshot(return_img=True)
-    handle.settings.noise = "texture"
-    second = plotter.screenshot(return_img=True)
-    handle.settings.noise = "procedural"
-    third = plotter.screenshot(return_img=True)
-    assert np.abs(first.astype(float) - second).mean() > 5
-    np.testing.assert_array_equal(first, third)
 
 
 def test_scalars_keep_their_colours_and_their_bar(plotter: Any) -> None:
@@ -424,9 +306,8 @@ def test_time_moves_the_picture_and_the_colours(plotter: Any) -> None:
     assert late["angle"] < 5
 
 
-@pytest.mark.parametrize("motion", ["uniform", "speed"])
-def test_a_period_closes_into_a_loop(plotter: Any, motion: str) -> None:
-    handle = plotter.flowtex.add(gyre_field(), scalars=False, motion=motion, period=2.0)
+def test_a_period_closes_into_a_loop(plotter: Any) -> None:
+    handle = plotter.flowtex.add(gyre_field(), scalars=False, motion="speed", period=2.0)
     frames = []
     for clock in (0.0, 0.5, 2.0, 6.5):
         handle.clock = clock
@@ -441,8 +322,7 @@ def uniform_field() -> flowtex.FlowField:
     return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack([2 + y, 0 * y], -1))
 
 
-@pytest.mark.parametrize("units", ["pixels", "units"])
-@pytest.mark.parametrize("motion", ["uniform", "speed"])
+@pytest.mark.parametrize(("motion", "units"), [("uniform", "units"), ("speed", "pixels")])
 def test_streaming_carries_the_picture_at_the_speed_asked_for(
     plotter: Any, motion: str, units: str
 ) -> None:

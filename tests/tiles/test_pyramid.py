@@ -7,22 +7,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from small_tiles import shrink
+from small_tiles import TILE_CELLS
 
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.textures import SurfaceGeometry, TextureSet
-from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey, block_places
+from flowtex.tiles import Pyramid, TileKey, block_places
 from flowtex.tiles.pyramid import MOST_RING, _ring
 from flowtex.tiles.region import is_cut, tile_of
 from flowtex.trace import SliceStore, trace
 
-TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
-
 
 @pytest.fixture(autouse=True)
-def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 3000)
+def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 190)
 
 
 def grid(rows: int, columns: int) -> tuple[Floats, Floats]:
@@ -30,7 +28,7 @@ def grid(rows: int, columns: int) -> tuple[Floats, Floats]:
     return x, y
 
 
-def waves(rows: int = 290, columns: int = 330, **options: Any) -> FlowField:
+def waves(rows: int = 74, columns: int = 84, **options: Any) -> FlowField:
     x, y = grid(rows, columns)
     velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
     return FlowField.from_arrays(np.stack([x, y], axis=-1), velocity, periodic="", **options)
@@ -67,14 +65,14 @@ def nodal(tile: TextureSet, step: int = 0) -> Floats:
 
 
 def test_a_small_field_is_its_root() -> None:
-    field = waves(40, 50)
+    field = waves(10, 13)
     pyramid = Pyramid(field)
     assert pyramid.depth == 0
     assert pyramid.children(None) == []
     np.testing.assert_array_equal(pyramid.root.velocity, field.velocity)
 
 
-@pytest.mark.parametrize("shape", [(290, 330), (257, 513), (258, 600)])
+@pytest.mark.parametrize("shape", [(74, 84), (65, 129), (66, 150)])
 def test_the_tiles_of_each_level_cover_its_cells_once(shape: tuple[int, int]) -> None:
     pyramid = Pyramid(waves(*shape))
     keys = pyramid.children(None)
@@ -93,15 +91,15 @@ def test_the_tiles_of_each_level_cover_its_cells_once(shape: tuple[int, int]) ->
 def test_nodes_of_a_level_are_nodes_of_the_field() -> None:
     field = waves()
     root = Pyramid(field).root
-    assert root.valid.size <= 3000
+    assert root.valid.size <= 190
     assert {*map(tuple, root.points.reshape(-1, 3))} <= {*map(tuple, field.points.reshape(-1, 3))}
     np.testing.assert_array_equal(root.points[-1, -1], field.points[-1, -1])
     assert root.shape == Pyramid(field).shape(Pyramid(field).depth)
 
 
 def test_an_even_flow_stays_even_beside_land() -> None:
-    x, y = grid(290, 330)
-    land = np.hypot(x - 1, y - 1) < 0.4
+    x, y = grid(74, 84)
+    land = np.hypot(x - 0.3, y - 0.3) < 0.1
     velocity = np.where(land[..., None], np.nan, np.stack([1 + 0 * x, 2 + 0 * x], axis=-1))
     root = Pyramid(FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)).root
     np.testing.assert_allclose(root.velocity[0][root.valid] - [1, 2, 0], 0, atol=1e-12)
@@ -110,7 +108,7 @@ def test_an_even_flow_stays_even_beside_land() -> None:
 
 @pytest.mark.parametrize("key", [TileKey(0, 0, 0), TileKey(0, 1, 1)])
 def test_slopes_of_a_tile_are_those_of_the_field(key: TileKey) -> None:
-    field = waves(330, 400)
+    field = waves(84, 100)
     tile = Pyramid(field).textures(key)
     assert tile is not None
     mine = nodal(tile)
@@ -129,7 +127,7 @@ def test_slopes_go_on_across_the_seam_of_a_ring() -> None:
     velocity = np.stack([-np.sin(a) + 0.2 * np.cos(a), np.cos(a) + 0.2 * np.sin(a)], axis=-1)
     field = FlowField.from_arrays(points, velocity)
     assert field.periodic == (False, True)
-    tiles = [Pyramid(field).textures(TileKey(0, 0, at)) for at in (0, 1)]
+    tiles = [Pyramid(field).textures(TileKey(0, 0, at)) for at in (0, 4)]
     assert tiles[0] is not None
     assert tiles[1] is not None
     off = np.abs(nodal(tiles[0])[:, :, 0] - nodal(tiles[1])[:, :, -1])[..., :3].max(axis=(1, 2))
@@ -138,7 +136,7 @@ def test_slopes_go_on_across_the_seam_of_a_ring() -> None:
 
 
 def test_a_field_that_varies_is_followed_in_time() -> None:
-    x, y = grid(290, 330)
+    x, y = grid(74, 84)
     steps = [
         np.stack([np.cos(3 * y + t), np.sin(4 * x - t) + 0.2], axis=-1) for t in (0.0, 0.5, 1.0)
     ]
@@ -153,8 +151,8 @@ def test_a_field_that_varies_is_followed_in_time() -> None:
 
 
 def test_a_tile_of_land_is_none() -> None:
-    x, y = grid(290, 600)
-    velocity = np.where((x < 3.2)[..., None], np.nan, np.ones((290, 600, 2)))
+    x, y = grid(74, 150)
+    velocity = np.where((x < 0.8)[..., None], np.nan, np.ones((74, 150, 2)))
     pyramid = Pyramid(FlowField.from_arrays(np.stack([x, y], axis=-1), velocity))
     assert pyramid.textures(TileKey(0, 0, 0)) is None
     assert pyramid.textures(TileKey(0, 0, 1)) is not None
@@ -166,20 +164,9 @@ def test_a_tile_that_does_not_exist_is_refused(key: tuple[int, int, int]) -> Non
         Pyramid(waves()).textures(TileKey(*key))
 
 
-def test_paths_that_a_halo_cuts_are_noticed() -> None:
-    x, y = grid(290, 900)
-    fast = 1 + 20 * np.exp(-(((y - 1) / 0.1) ** 2))
-    field = FlowField.from_arrays(
-        np.stack([x, y], axis=-1), np.stack([fast, 0 * x], axis=-1), periodic=""
-    )
-    pyramid = Pyramid(field, "time")
-    tiles = [pyramid.textures(TileKey(0, 0, 1), spare) for spare in (1, 8)]
-    assert [tile is not None and is_cut(tile, 0) for tile in tiles] == [True, False]
-
-
 @pytest.mark.parametrize("level", [0, 1, 2])
 def test_places_of_blocks_are_known_from_the_root(level: int) -> None:
-    field = waves(300, 500)
+    field = waves(75, 125)
     pyramid = Pyramid(field)
     lines = [
         np.minimum(np.arange(n) << level, full - 1)
@@ -193,10 +180,10 @@ def test_places_of_blocks_are_known_from_the_root(level: int) -> None:
     np.testing.assert_allclose(guess[..., 4], exact[..., 4], rtol=0.1)
 
 
-@pytest.mark.parametrize("speed", [1e-40, 1e-6, 1e40])
-def test_a_tile_does_not_depend_on_the_unit_of_time(speed: float) -> None:
-    x, y = grid(290, 900)
-    fast = 1 + 20 * np.exp(-(((y - 1) / 0.1) ** 2))
+@pytest.mark.parametrize("speed", [1e-40, 1e40])
+def test_paths_that_a_halo_cuts_are_noticed_in_any_unit_of_time(speed: float) -> None:
+    x, y = grid(74, 225)
+    fast = 1 + 30 * np.exp(-(((y - 0.3) / 0.035) ** 2))
     points, velocity = np.stack([x, y], axis=-1), np.stack([fast, 0 * x], axis=-1)
     cut, layers = [], []
     for s in (1.0, speed):
@@ -237,7 +224,6 @@ def test_a_ring_around_a_pole_is_complete_where_it_is_near() -> None:
 
 
 def test_paths_over_a_pole_need_not_all_of_a_long_ring(monkeypatch: pytest.MonkeyPatch) -> None:
-    shrink(monkeypatch.setattr)
     monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1000)
     lon, lat = np.meshgrid(np.linspace(0, 2 * np.pi, 501), np.linspace(-0.5, 0.5, 130) * np.pi)
     points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
@@ -257,9 +243,9 @@ def test_paths_over_a_pole_need_not_all_of_a_long_ring(monkeypatch: pytest.Monke
 def test_windows_have_no_more_nodes_than_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     pyramid = Pyramid(waves())
     wide = pyramid.region(TileKey(0, 0, 0), spare=4)
-    monkeypatch.setattr("flowtex.tiles.pyramid.MOST_WINDOW", 80_000)
+    monkeypatch.setattr("flowtex.tiles.pyramid.MOST_WINDOW", 5_000)
     region = pyramid.region(TileKey(0, 0, 0), spare=4)
     assert wide is not None and region is not None
-    assert region.field.valid.size < 80_000 < wide.field.valid.size
+    assert region.field.valid.size < 5_000 < wide.field.valid.size
     assert region.drawn == wide.drawn
     assert pyramid.textures(TileKey(0, 0, 0), spare=4) is not None

@@ -20,7 +20,7 @@ from flowtex.trace import SliceStore, trace
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 600)
+    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 350)
 
 
 def flow_on(points: Floats, triangles: Indices, **options: Any) -> FlowField:
@@ -30,16 +30,16 @@ def flow_on(points: Floats, triangles: Indices, **options: Any) -> FlowField:
     return FlowField.from_triangles(points, triangles, velocity, **options)
 
 
-def plane(rng: np.random.Generator, nodes: int = 6000, **options: Any) -> FlowField:
+def plane(rng: np.random.Generator, nodes: int = 3000, **options: Any) -> FlowField:
     return flow_on(*random_plane(rng, nodes), **options)
 
 
 def graded(rng: np.random.Generator) -> FlowField:
-    return flow_on(*random_plane(rng, 8000, grading=1000.0))
+    return flow_on(*random_plane(rng, 4000, grading=1000.0))
 
 
 def ball() -> FlowField:
-    return flow_on(*sphere(5))
+    return flow_on(*sphere(4))
 
 
 def drawn(pyramid: TrianglePyramid, key: TileKey) -> TriangleGeometry:
@@ -50,10 +50,10 @@ def drawn(pyramid: TrianglePyramid, key: TileKey) -> TriangleGeometry:
 
 
 def test_levels_keep_the_means(rng: np.random.Generator) -> None:
-    points, triangles = random_plane(rng, 6000)
+    points, triangles = random_plane(rng, 3000)
     pressure = points[:, 0] ** 2
     field = flow_on(points, triangles, scalars={"p": pressure})
-    for level in levels_of(field, 600)[1:]:
+    for level in levels_of(field, 200)[1:]:
         inside = level.number >= 0
         assert inside.mean() > 0.99
         count = np.bincount(level.number[inside], minlength=level.field.shape[1])
@@ -66,7 +66,7 @@ def test_levels_keep_the_means(rng: np.random.Generator) -> None:
 @pytest.mark.parametrize("make", [plane, graded])
 def test_a_level_has_the_outline_of_the_field(make: Any, rng: np.random.Generator) -> None:
     field = make(rng)
-    for level in levels_of(field, 600)[1:]:
+    for level in levels_of(field, 200)[1:]:
         p, side = level.field.points[0], level.sides / 2
         corners = p[level.triangles]
         area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] / 2
@@ -80,8 +80,8 @@ def test_a_level_has_the_outline_of_the_field(make: Any, rng: np.random.Generato
 
 
 def test_a_closed_surface_stays_closed() -> None:
-    levels = levels_of(ball(), 600)
-    assert [level.field.shape[1] for level in levels][-1] < 700
+    levels = levels_of(ball(), 200)
+    assert [level.field.shape[1] for level in levels][-1] < 230
     for level in levels[1:]:
         surface = level.field.surface
         assert (surface.neighbours >= 0).mean() > 0.99  # type: ignore[attr-defined]
@@ -94,7 +94,7 @@ def test_a_closed_surface_stays_closed() -> None:
 def test_sides_of_a_thin_sheet_stay_apart(rng: np.random.Generator) -> None:
     points, triangles = cube(40)
     field = flow_on(points * [1.0, 1.0, 1e-3], triangles)
-    level = levels_of(field, 600)[1]
+    level = levels_of(field, 200)[1]
     near = np.abs(level.field.points[0][:, :2]).max(axis=1) < 0.9
     assert (np.abs(level.field.points[0][near, 2]) > 0.9e-3).all()
 
@@ -140,7 +140,7 @@ def test_places_hold_the_triangles_of_their_blocks(rng: np.random.Generator) -> 
 
 
 def test_a_small_field_is_its_root(rng: np.random.Generator) -> None:
-    pyramid = TrianglePyramid(plane(rng, 300))
+    pyramid = TrianglePyramid(plane(rng, 200))
     assert pyramid.depth == 0
     assert pyramid.root is pyramid.field
     assert pyramid.children(None) == []
@@ -191,7 +191,7 @@ def test_steps_that_are_read_late_stay_so(rng: np.random.Generator) -> None:
 
 
 def test_nodes_without_data_are_in_no_mean(rng: np.random.Generator) -> None:
-    points, triangles = random_plane(rng, 6000)
+    points, triangles = random_plane(rng, 3000)
     land = np.hypot(points[:, 0] - 0.5, points[:, 1] - 0.5) < 0.2
     velocity = np.where(land[:, None], np.nan, [1.0, 2.0, 0.0])
     pyramid = TrianglePyramid(FlowField.from_triangles(points, triangles, velocity))
@@ -229,7 +229,7 @@ def test_a_view_is_covered_by_what_is_chosen(rng: np.random.Generator) -> None:
 def test_a_picture_of_tiles_is_that_of_the_whole(
     zoom: float, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    points, triangles = random_plane(rng, 9000)
+    points, triangles = random_plane(rng, 5000)
     options: dict[str, Any] = {"size": (160, 120), "zoom": zoom, "scalars": "speed"}
     tiled = flowtex.render(flow_on(points, triangles), **options).astype(float)
     monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 10**6)
