@@ -57,10 +57,14 @@ def fineness(pixels: Any) -> float:
     return float(np.mean([np.abs(np.diff(pixels, axis=axis)).mean() for axis in (0, 1)]))
 
 
-def zoom(page: Page, notches: int) -> Any:
-    """Show the whole surface, and turn the wheel."""
+def home(page: Page) -> Any:
     before = count(page)
     page.get_by_label("Show the whole surface").click()
+    return WATCH.settled(page, before)
+
+
+def zoom(page: Page, notches: int) -> Any:
+    before = count(page)
     page.mouse.move(420, 160)
     for _ in range(notches):
         page.mouse.wheel(0, -100)
@@ -86,7 +90,7 @@ def test_the_flow_appears_zooms_and_is_dragged(opened: Page) -> None:
 
 
 def test_play_changes_one_picture_after_the_other(opened: Page) -> None:
-    zoom(opened, 0)
+    home(opened)
     # Each new picture of the stream gets an address of its own.
     opened.evaluate(
         """() => {
