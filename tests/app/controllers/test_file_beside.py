@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import threading
+import time
 from datetime import datetime, timedelta
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -282,6 +284,23 @@ def test_tips_and_paths_are_of_the_pane_under_the_pointer() -> None:
         click(180)
         await until(lambda: app.state.get("card"))
         assert app.state.get("over")["shown"] == [0, 1]
+        # It goes with the camera, is read anew with a full picture, and closes where there is none.
+        info: Any = app.controllers.point_info
+        before = app.state.get("over")
+        app.viewport.pan(0.1, 0.0)
+        info.follow(SimpleNamespace(sharp=False))
+        assert app.state.get("over") != before
+        info.follow(SimpleNamespace(sharp=True))
+        info.take_point([3.0, 2.0])
+        await until(lambda: not info.busy)
+        info.show_path((1e9, 1e9))
+        await until(lambda: app.state.get("card") is None)
+        # A move of the pointer soon after another one waits.
+        info._hovered_at = time.monotonic() + PATIENCE_S
+        info.hover((0.5, 0.0))
+        assert info._timer is not None
+        info.hover(None)
+        assert info._timer is None
 
     played(app, story)
 
