@@ -31,7 +31,10 @@ if TYPE_CHECKING:
 __all__ = ["preview_png"]
 
 #: Nodes and samples of a small picture, which no eye can tell from more of them.
-NODES, SAMPLES = 3_000, 9
+NODES, SAMPLES = 3_000, 17
+#: Greatest spacing of samples in grains. Pixels side by side share no sample of a greater one, and
+#: streaks become rows of dots.
+WIDEST_SPACING = 0.7
 #: Pixels of the picture by one that NumPy draws, along each side.
 COARSER = 2
 
@@ -72,9 +75,10 @@ def preview_png(
 def _few_samples(settings: Settings) -> Settings:
     settings = settings.copy()
     few = min(settings.samples, SAMPLES)
-    # The streaks keep their length.
-    spacing = settings.spacing * min(settings.samples / few, 2.0)
-    settings.update(samples=few, spacing=min(spacing, 10.0))
+    # The streaks keep their length as far as they can.
+    spacing = settings.spacing * settings.samples / few
+    widest = max(settings.spacing, WIDEST_SPACING * settings.grain)
+    settings.update(samples=few, spacing=min(spacing, widest))
     return settings
 
 
