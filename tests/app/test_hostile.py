@@ -616,7 +616,7 @@ def test_a_page_that_closes_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatc
 def test_a_flow_may_come_between_any_two_tiles() -> None:
     app = page(field())
     flows = [field(curved=True), field(steps=2), field()]
-    for number, flow in enumerate(flows):
+    for number, flow in enumerate(flows * 2):
         composer = app.stream.painter
         composer.forget()
         for painter in composer.painters:
