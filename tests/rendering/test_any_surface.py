@@ -81,10 +81,12 @@ def test_a_graded_mesh_shows_what_a_grid_of_as_many_nodes_does() -> None:
         far = 14 * pixel
         mask = (px > far) & (px < 1 - far) & (py > far) & (py < 1 - far)
         mask[:14], mask[-14:], mask[:, :14], mask[:, -14:] = False, False, False, False
+        u, v = np.moveaxis(bend(px, py), -1, 0)
         one, other = (
             streaks(
                 flowtex.render(field, size=SIZE, zoom=zoom, focus=focus, scalars=False),
-                *np.moveaxis(bend(px, py), -1, 0),
+                u,
+                v,
                 mask,
             )
             for field in fields
