@@ -57,7 +57,7 @@ all)
     (tests -n auto --maxprocesses 2 -m browser "$@") >"$logs/browser" 2>&1 &
     browser=$!
     aside="$aside $browser"
-    tests -n auto --maxprocesses 4 -m "not browser" "$@" || failed="$failed, tests"
+    tests -n "$(workers "$bin")" -m "not browser" "$@" || failed="$failed, tests"
     ended $browser "tests with a browser" browser
     ;;
 fast) tests -n "$(workers "$bin")" -m "$fast" "$@" || failed="$failed, tests" ;;

@@ -7,7 +7,7 @@
     parts(key, (3, 4))       a tile: its header and surface, and its flow and values at two steps
 
 A widget sends them in messages, the application as files, and an exported page holds them;
-``client/src/source.ts`` is the other side. A store has the same parts in files of its own, which
+``client/src/sources`` is the other side. A store has the same parts in files of its own, which
 :mod:`flowtex.pyramid.client_parts` writes and a browser reads without a server.
 """
 
