@@ -278,7 +278,9 @@ export class Panel {
     const { header, options, root } = this.viewer;
     const isReady = header !== null;
     const follows = Boolean(options.follows);
-    this.bar.hidden = !this.isShown || !isReady;
+    // The bar of a view that follows another takes its room alone, so that both pictures are alike.
+    this.bar.hidden = !(this.isShown || (follows && this.isFramed)) || !isReady;
+    this.bar.style.visibility = follows ? "hidden" : "";
     this.handle.hidden = this.isShown || !isReady || follows;
     this.head.hidden = !(this.isShown || follows) || !isReady;
     this.controls.element.hidden = !this.isShown || !this.isOpen || !isReady;

@@ -912,7 +912,7 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   .legend { min-width: 132px; padding: 4px 8px; }
   .settings { bottom: 80px; max-height: calc(100% - 90px); }
   .head { flex-direction: column; gap: 0; }
-  .head > * { max-width: 100%; overflow: hidden; text-overflow: ellipsis; }
+  .head > * { max-width: 100%; padding-right: 2px; overflow: hidden; text-overflow: ellipsis; }
   :host(.flowtex-framed[data-axes="ticks"]) .stage { margin-left: 50px; margin-right: 8px; }
 }
 @container (max-width: 220px) { .legend { display: none; } }
@@ -972,24 +972,24 @@ shown)}}get isFramed(){let{header,options,root:root2}=this.viewer;return(options
 !options.bare&&header!==null&&root2.clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){this.axesKind=kind,this.arrange()}showAxes(){
 let{header}=this.viewer,usual=header&&hasTicks(header)?"ticks":"none",kind=this.axesKind??usual,shown=this.isFramed?kind:
 "none";this.axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){let{header,options,root:root2}=this.
-viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!this.isShown||!isReady,this.handle.hidden=this.isShown||
-!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
-isOpen||!isReady,root2.classList.toggle("flowtex-open",!this.controls.element.hidden),root2.classList.toggle("flowtex-fr\
-amed",this.isFramed),this.showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1){
-let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?
-"playing":"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?pending&&(doing="Loading tiles"):doing="Trac\
-ing paths";let count2=doing==="Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==
-doing&&(this.doing.textContent=doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.hidden=!(doing||
-count2);let{source,isComing}=viewer.options;!missing.length||source?.hasSteps||isComing?.()||this.lateTimer||(this.lateTimer=
-viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not co\
-mplete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=
-shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.
-add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.
-root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.
-note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true"}fullscreen(){let{root:root2}=this.viewer;toggleFullscreen(
-root2.closest(".flowtex-pair")??root2)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),
-name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.
-later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
+viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!(this.isShown||follows&&this.isFramed)||!isReady,
+this.bar.style.visibility=follows?"hidden":"",this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.
+isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root2.classList.toggle("f\
+lowtex-open",!this.controls.element.hidden),root2.classList.toggle("flowtex-framed",this.isFramed),this.showAxes(),this.
+gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1){let{viewer,busy}=this,{pending=0,
+wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?"playing":"moving"}`:"",doing="";
+missing.length?doing="Loading data":isMade?pending&&(doing="Loading tiles"):doing="Tracing paths";let count2=doing==="Lo\
+ading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==doing&&(this.doing.textContent=
+doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.hidden=!(doing||count2);let{source,isComing}=viewer.
+options;!missing.length||source?.hasSteps||isComing?.()||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.
+lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){
+let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):
+null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.
+hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.
+note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.
+root.dataset.failed="true"}fullscreen(){let{root:root2}=this.viewer;toggleFullscreen(root2.closest(".flowtex-pair")??root2)}async save(){
+let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN,
+" ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
 let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
 (this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
 1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
