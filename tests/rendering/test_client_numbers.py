@@ -98,7 +98,8 @@ def uniforms_of(name: str) -> dict[str, Any]:
     values = uniforms(textures, settings, view)
     return {
         "header": {key: header[key] for key in NEEDED},
-        "view": plain(vars(view)),
+        # A browser traces the lags that it draws with, and has no number of them.
+        "view": plain({name: value for name, value in vars(view).items() if name != "lags"}),
         "noise": noise,
         "moving": values.pop("moving"),
         "near": values.pop("near"),
