@@ -157,15 +157,14 @@ export class Viewer implements User {
     this.tiles?.dispose();
     this.scene?.dispose();
     this.makeScene(header);
-    if (!old || !isSamePlace(old.geometry, header.geometry)) {
-      this.firstCamera = header.camera;
-      this.camera = null;
-    }
+    const isElsewhere = !old || !isSamePlace(old.geometry, header.geometry);
+    if (isElsewhere) [this.firstCamera, this.camera] = [header.camera, null];
     if (old && old.generation !== header.generation) {
       // What is the same at all times is sent again only where it differs.
       for (const name of [...this.parts.keys()]) if (name.includes("/")) this.remove(name);
     }
     this.panel.build();
+    this.resize(); // at once, so that no picture is drawn in the size without the bar
     this.change();
   }
 

@@ -1461,75 +1461,75 @@ this.root.remove()}}setHeader(header){if(header.format!==4){this.panel.fail(`The
 this client reads format ${4}.`,"Use the client of the flowtex that made the scene.");return}this.requests?.stop();let old=this.
 header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));if(this.
 header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.tiles?.dispose(),this.
-scene?.dispose(),this.makeScene(header),(!old||!isSamePlace(old.geometry,header.geometry))&&(this.firstCamera=header.camera,
-this.camera=null),old&&old.generation!==header.generation)for(let name of[...this.parts.keys()])name.includes("/")&&this.
-remove(name);this.panel.build(),this.change()}recolour(colours){if(this.header){Object.assign(this.header,colours);for(let name of[
-"scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){
-if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
-let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){
-this.scene=new Scene(this.graphics,header,this.parts),this.tiles=new Tiles(this,this.scene)}setPart(part){let{name,digest}=part,
-tile=tilePart(name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});if(digest&&this.parts.get(name)?.
-digest===digest)return;let held=this.graphics.hold(part);this.remove(name),this.parts.set(name,held),this.scene?.forget(
-name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),
-this.change()}remove(name){this.graphics.release(this.parts.get(name)),this.parts.delete(name)}trim(){let{header,options}=this,
-{hasSteps=!1,memory=0}=options.source??{};if(!header||!hasSteps)return;let kind=header.slices.trace?"flow":"slices",named=some=>[
-...this.parts.keys()].filter(name=>name.startsWith(some)),needed=this.player.moment.slice(0,2).flatMap(step=>flowsOf(header,
-step));for(let name of named(`${kind}/`).slice(0,-STEPS_HELD2[kind][+(memory>0)])){let step=stepOf(name);if(needed.includes(
-step))continue;for(let held of[kind,"extra"])this.remove(`${held}/${step}`);let values=memory?named("scalars/"):[];for(let other of values)
-isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
-settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
-name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
-this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(
-state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(state);else{if(isEqual(this.camera.state,state))return;
-this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.
-onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,
-aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let{geometry,limits}=header,state=first?widened(
-geometry,limits,first,nodes,aspect):fitted(geometry,limits,nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.
-radius:0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??
-this.ground(x,y),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.
-stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.
-seek(time),this.panel.tick(),this.change()}scrub(share){let{player,options}=this,{first,last}=player.range(this.settings),
-value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.time)):(this.
-setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=clock,this.panel.tick(),this.change()}play(){
-if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.varies&&this.settings.
-motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),this.options.onPlaying?.(
-!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.playing=!1,this.panel.
-update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??this;leader.playing?
-leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isHeld(){return performance.now()<
-this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.panel.showAxes(),this.setSharp(
-!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){let scenes=this.tiles?.
-arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.pending??0),scenes}draw(){this.frame(performance.now(),
-performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),
-sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(
-this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,
-clientHeight].map(n=>Math.max(Math.round(n*ratio),1));width===this.canvas.width&&height===this.canvas.height||(this.renderer.
-resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),
-this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||!header?this.options.smooth??!1:this.program(
-header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,1)}lost(){this.tiles?.
-dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;
-return this.scene?.missing(before,after)??[]}available(until){let{header,scene,player,shown,lacking}=this;if(!header||!scene)
-return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.slices.steps):[],steps=this.
-missing([moment[0],moment[1],...this.next,...ahead]),{source,isComing}=this.options;steps.length&&source?.hasSteps&&!isComing?.()&&
-this.requests?.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until);return this.root.dataset.
-lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,isMade,this.renderer.leavesOut),isMade&&String(moment.slice(
-0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:(lacking.length||this.request(),
-shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),
-this.panel.tell(reason)}missing(steps){return[...new Set(steps.flatMap(step=>this.scene?.lacking(step)??[]))]}frame(now,until){
-if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.
-canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The\
- picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,
-variant=variantOf(header,this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){
-if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??
-[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.
-available(until);this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)
-return;if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}
-if(!program.ready||!this.scene?.earth.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,
-shown,until);this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.
-clear(),this.scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.
-request()}advance(now){let{player,options}=this,isMade=steps=>(this.next=steps,!this.missing(steps).length&&!!this.scene?.
-make(steps,now));this.next=[],!(!player.playing||!player.advance(now,isMade))&&(player.varies?options.onTime?.(player.time):
-options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{header,
-camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
+scene?.dispose(),this.makeScene(header),(!old||!isSamePlace(old.geometry,header.geometry))&&([this.firstCamera,this.camera]=
+[header.camera,null]),old&&old.generation!==header.generation)for(let name of[...this.parts.keys()])name.includes("/")&&
+this.remove(name);this.panel.build(),this.resize(),this.change()}recolour(colours){if(this.header){Object.assign(this.header,
+colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),
+this.change()}}chooseColours(choice){if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.
+together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(
+part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(this.graphics,header,this.parts),this.tiles=new Tiles(
+this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(name);if(tile)return void this.tiles?.setPart(tile[0],
+{...part,name:tile[1]});if(digest&&this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);this.remove(
+name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",
+...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(
+name)),this.parts.delete(name)}trim(){let{header,options}=this,{hasSteps=!1,memory=0}=options.source??{};if(!header||!hasSteps)
+return;let kind=header.slices.trace?"flow":"slices",named=some=>[...this.parts.keys()].filter(name=>name.startsWith(some)),
+needed=this.player.moment.slice(0,2).flatMap(step=>flowsOf(header,step));for(let name of named(`${kind}/`).slice(0,-STEPS_HELD2[kind][+(memory>
+0)])){let step=stepOf(name);if(needed.includes(step))continue;for(let held of[kind,"extra"])this.remove(`${held}/${step}`);
+let values=memory?named("scalars/"):[];for(let other of values)isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){
+Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
+panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
+this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
+camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(
+state);else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.
+holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),
+this.reportCamera())}place(){let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||
+!nodes)return;let{geometry,limits}=header,state=first?widened(geometry,limits,first,nodes,aspect):fitted(geometry,limits,
+nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.radius:0;this.camera=new Camera(state,limits,geometry.planar,
+aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),(!first||!isEqual(first,state))&&this.
+options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,
+1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}scrub(share){
+let{player,options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.
+varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){
+this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();
+this.playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.
+start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.
+follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
+let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.
+now()+STILL_MS}get isHeld(){return performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),
+this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),
+this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.
+pending??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.
+sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.
+lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),
+{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));
+width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=
+this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.
+options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.
+canvas.height/Math.max(this.stage.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),
+this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){
+let{header,scene,player,shown,lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?
+[1,2].map(n=>(moment[1]+n)%header.slices.steps):[],steps=this.missing([moment[0],moment[1],...this.next,...ahead]),{source,
+isComing}=this.options;steps.length&&source?.hasSteps&&!isComing?.()&&this.requests?.wantSteps(steps);let isMade=!lacking.
+length&&scene.make(moment.slice(0,2),until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.
+wait(lacking,isMade,this.renderer.leavesOut),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),
+this.change()),isMade?this.shown=moment:(lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){
+tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}missing(steps){return[...new Set(steps.flatMap(step=>this.
+scene?.lacking(step)??[]))]}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&
+!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){
+this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){
+let{vertex,fragment}=header.shaders,variant=variantOf(header,this.settings,isClose);return this.graphics.programs.get(vertex,
+fragment,...variant)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.
+slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){
+let shown=this.available(until);this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||
+!this.camera)return;if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);
+return}if(!program.ready||!this.scene?.earth.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(
+program,shown,until);this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.
+panel.clear(),this.scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||
+this.request()}advance(now){let{player,options}=this,isMade=steps=>(this.next=steps,!this.missing(steps).length&&!!this.
+scene?.make(steps,now));this.next=[],!(!player.playing||!player.advance(now,isMade))&&(player.varies?options.onTime?.(player.
+time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{
+header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
 focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
 range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);return{focus,anchor:isFar(subtract2(
 local,old))?isFar(local)?local:[0,0,0]:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,

@@ -64,7 +64,8 @@ def plane() -> FlowField:
 def mounted(client: ClientPage, scene: Scene, camera: Camera, **options: Any) -> None:
     data = ClientData(scene.textures, Colours(plain=COLOUR, background=GROUND))
     header = data.header(scene.settings, camera=state(camera), time=scene.time)
-    client.mount(packed(data, header, tuple(range(data.steps))), SIZE, smooth=False, **options)
+    options = {"controls": False, "smooth": False, **options}
+    client.mount(packed(data, header, tuple(range(data.steps))), SIZE, **options)
 
 
 def judged(scene: Scene, camera: Camera, size: tuple[int, int] = SIZE) -> Bytes:
