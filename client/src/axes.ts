@@ -1,21 +1,21 @@
 // Ticks at the left and lower border of the picture, or a bar of a round length.
 
-import type { Camera } from "./camera.ts";
+import { pointInPlane, type Camera } from "./camera.ts";
 import { withUnit } from "./dom.ts";
 import { lonLatOf } from "./lonlat.ts";
 import type { Header, Part } from "./protocol.ts";
 import { degreeTicks, ticksOf, type Tick } from "./ticks.ts";
-import { add, clamp, dot, length, scale, subtract, type Vector } from "./vectors.ts";
+import { clamp, length, subtract } from "./vectors.ts";
 
 export const AXES = ["ticks", "scale", "none"] as const;
 export type AxesKind = (typeof AXES)[number];
 
 const SVG = "http://www.w3.org/2000/svg";
-/** Places of a border between which what it shows is taken as straight. */
+/** Parts of a border; values between their ends are interpolated linearly. */
 const PARTS = 48;
-/** Share of a way along a border that its coordinate has: less of an oblique view. */
+/** Least share of the distance along a border that its coordinate accounts for; an oblique view has less. */
 const LEAST_SHARE = 0.999;
-/** Pixels that a tick needs along the lower border for each of its letters, and beside them; at the left. */
+/** Pixels of a letter and between labels at the lower border, and between labels at the left one. */
 const [LETTER_PX, GAP_PX, ROW_PX] = [6.5, 14, 34];
 const TICK_PX = 4;
 /** Most ticks of a border, and the widest scale bar, in pixels and as a share of the picture. */
@@ -24,7 +24,7 @@ const [MOST_TICKS, BAR_PX, BAR_SHARE] = [9, 140, 0.3];
 const MIDDLE_SHARE = 0.02;
 const COORDINATES = ["x", "y", "z"];
 
-/** What a border shows: its coordinate's values at even places, and its name or the letters of degrees. */
+/** Values of a coordinate at even places of a border, and its name, or the letters of its two sides. */
 export interface Border {
   readonly name?: string;
   readonly letters?: string;
@@ -153,7 +153,7 @@ export class Axes {
 function scaleOf({ parts }: AxesHost, header: Header, camera: Camera): number {
   const { earth } = header;
   if (!earth?.map) return 1;
-  const [a, b] = [-1, 1].map((x) => placeAt(camera, header, MIDDLE_SHARE * x, 0));
+  const [a, b] = [-1, 1].map((x) => pointInPlane(header.geometry, camera, MIDDLE_SHARE * x, 0));
   const [from, to] = [a, b].map((place) => lonLatOf(earth, place, parts.get("lonlat")));
   if (!from || !to) return 1;
   const [east, north] = [to[0] - from[0], to[1] - from[1]].map((degrees) => (degrees * Math.PI) / 180);
@@ -167,7 +167,12 @@ function borderOf(host: AxesHost, from: [number, number], to: [number, number]):
   const { header, camera, parts } = host;
   if (!header || !camera || !hasTicks(header)) return null;
   const places = Array.from({ length: PARTS + 1 }, (_, n) =>
-    placeAt(camera, header, from[0] + ((to[0] - from[0]) * n) / PARTS, from[1] + ((to[1] - from[1]) * n) / PARTS),
+    pointInPlane(
+      header.geometry,
+      camera,
+      from[0] + ((to[0] - from[0]) * n) / PARTS,
+      from[1] + ((to[1] - from[1]) * n) / PARTS,
+    ),
   );
   const { earth, lengthUnit } = header;
   if (earth?.map) {
@@ -190,7 +195,8 @@ function borderOf(host: AxesHost, from: [number, number], to: [number, number]):
   const normal = header.geometry.frame.slice(6).map(Math.abs);
   const across = [0, 1, 2].find((n) => n !== axis && n !== normal.indexOf(Math.max(...normal)));
   if (Math.abs(border[across ?? 0]) > 1 - LEAST_SHARE) return null;
-  return { name: withUnit(COORDINATES[axis], lengthUnit && `(${lengthUnit})`), values: places.map((place) => place[axis]) };
+  const name = withUnit(COORDINATES[axis], lengthUnit && `(${lengthUnit})`);
+  return { name, values: places.map((place) => place[axis]) };
 }
 
 /** Angles without the jumps of a turn. */
@@ -200,16 +206,4 @@ function unwrapped(degrees: number[]): number[] {
     if (n && Number.isFinite(value - degrees[n - 1])) turns -= Math.round((value - degrees[n - 1]) / 360);
     return value + 360 * turns;
   });
-}
-
-/** Point of the plane of a surface at a place of the view, from -1 to 1, right and up. */
-function placeAt(camera: Camera, { geometry }: Header, x: number, y: number): Vector {
-  const [right, up, ahead] = camera.axes;
-  const { height } = camera;
-  const { parallel, position, focal_point: focus } = camera.state;
-  const target = add(add(focus as Vector, right, x * camera.aspect * height), up, y * height);
-  const ray = parallel ? ahead : subtract(target, position);
-  const normal = geometry.frame.slice(6) as Vector;
-  const far = dot(normal, subtract(geometry.center as Vector, target)) / dot(normal, ray);
-  return add(target, scale(ray, far));
 }

@@ -318,6 +318,13 @@ export function widened(
   return camera;
 }
 
+/** Point of the plane of a flat surface at a place of the view. */
+export function pointInPlane({ center, frame }: Surface, camera: Camera, x: number, y: number): Vector {
+  const [start, along] = camera.ray(x, y);
+  const normal = fromFrame(frame, [0, 0, 1]);
+  return add(start, along, dot(subtract(center, start), normal) / dot(along, normal));
+}
+
 /** Whether two surfaces lie in the same place, as a coarse form and the whole one. */
 export function isSamePlace(a: Surface, b: Surface): boolean {
   const near = length(subtract(a.center, b.center)) < 0.1 * a.extent;

@@ -1,11 +1,11 @@
 // What is drawn of the Earth: land or a globe below the flow, and lines above it.
 
-import { projection, type Camera } from "./camera.ts";
+import { pointInPlane, projection, type Camera } from "./camera.ts";
 import type { Graphics } from "./context.ts";
 import { linePoints, linesOf, pieceGroups, thinned, visibleRuns, type PieceGroup } from "./maplines.ts";
 import { positions } from "./mesh.ts";
 import { EARTH_LINES, type EarthLines, type Header, type Part } from "./protocol.ts";
-import { add, clamp, cross, dot, fromFrame, length, scale, subtract, toFrame, unit, type Vector } from "./vectors.ts";
+import { add, clamp, cross, dot, length, scale, subtract, toFrame, unit, type Vector } from "./vectors.ts";
 
 const POINT_BYTES = 12;
 const PIECE_ENDS = 2;
@@ -23,15 +23,13 @@ interface Drawn {
 /** Place of a globe, or of a flat map, in a view; null beside them. */
 export function groundAt({ earth, geometry }: Header, camera: Camera, x: number, y: number) {
   if (!earth) return null;
-  const [start, along] = camera.ray(x, y);
   if (earth.map) {
-    const across = fromFrame(geometry.frame, [0, 0, 1]);
-    const depth = dot(subtract(geometry.center, start), across) / dot(along, across);
-    const place = add(start, along, depth);
+    const place = pointInPlane(geometry, camera, x, y);
     const [x0, y0, x1, y1] = earth.map;
     const isInside = place[0] >= x0 && place[0] <= x1 && place[1] >= y0 && place[1] <= y1;
     return isInside ? place : null;
   }
+  const [start, along] = camera.ray(x, y);
   const nearest = dot(start, along);
   const square = nearest ** 2 - dot(start, start) + earth.radius ** 2;
   const depth = -nearest - Math.sqrt(square);

@@ -177,17 +177,19 @@ if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(pla
 1e9,limits.aspect,aspect].map(shape=>fitted(surface,limits,positions2,shape).parallel_scale),isUsual=Math.abs(state.parallel_scale/
 usual-1)<.001;state.parallel_scale>.98*high&&(camera.parallel_scale=isUsual?all:Math.max(state.parallel_scale,all))}else if(!state.
 parallel&&state.view_angle>.9*limits.view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(
-state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function isSamePlace(a,b){let near=length2(subtract2(
-a.center,b.center))<.1*a.extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){
-let{state,aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
-toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
-m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
-up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<
-3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(
-subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-
-near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),
-m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*
-m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
+state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function pointInPlane({center,frame},camera,x,y){
+let[start,along]=camera.ray(x,y),normal=fromFrame(frame,[0,0,1]);return add(start,along,dot2(subtract2(center,start),normal)/
+dot2(along,normal))}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.extent/
+b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){let{state,aspect}=camera,
+{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(toFrame(
+frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,m=new Array(
+16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(c=>c/
+half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<3;n+=
+1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(subtract2(
+middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-near),b=-2*
+far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*
+a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,
+m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
 LONGEST_STRIP_MS=150,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;function quality(price,fixed,pixels,samples,budget){let room=Math.
 max(budget-fixed,Math.min(fixed/2,budget),2)/price;if(pixels*(samples+PIXEL_COST)<=room)return{scale:1,samples};let fewer=Math.
 min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),
@@ -281,10 +283,9 @@ scalars);return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=p
 share)?share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-
 2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],
 aside=corner+(a>=b?1:columns);return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){
-return corners.reduce((sum,[node,share])=>sum+share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;let[start,along]=camera.
-ray(x,y);if(earth.map){let across=fromFrame(geometry.frame,[0,0,1]),depth2=dot2(subtract2(geometry.center,start),across)/
-dot2(along,across),place=add(start,along,depth2),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&
-place[1]<=y1?place:null}let nearest=dot2(start,along),square=nearest**2-dot2(start,start)+earth.radius**2,depth=-nearest-
+return corners.reduce((sum,[node,share])=>sum+share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
+geometry,camera,x,y),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&place[1]<=y1?place:null}let[
+start,along]=camera.ray(x,y),nearest=dot2(start,along),square=nearest**2-dot2(start,start)+earth.radius**2,depth=-nearest-
 Math.sqrt(square);return depth>0?add(start,along,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1,this.drop(name==="position"?"lan\
 d":name)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.drawn.get(name);if(drawn){
@@ -403,23 +404,21 @@ this.text(x+8,y-5,text,"beside")}line(x1,y1,x2,y2){let line=document.createEleme
 entries({x1,y1,x2,y2}))line.setAttribute(name,value.toFixed(1));this.element.append(line)}text(x,y,words,kind){let text=document.
 createElementNS(SVG,"text");text.setAttribute("x",x.toFixed(1)),text.setAttribute("y",y.toFixed(1)),text.setAttribute("c\
 lass",kind),text.textContent=words,this.element.append(text)}};function scaleOf({parts},header,camera){let{earth}=header;
-if(!earth?.map)return 1;let[a,b]=[-1,1].map(x=>placeAt(camera,header,MIDDLE_SHARE*x,0)),[from,to]=[a,b].map(place=>lonLatOf(
-earth,place,parts.get("lonlat")));if(!from||!to)return 1;let[east,north]=[to[0]-from[0],to[1]-from[1]].map(degrees=>degrees*
-Math.PI/180),middle=(from[1]+to[1])/2*Math.PI/180;return Math.hypot(Math.sin(east/2)*2*Math.cos(middle),north)*earth.radius/
-length2(subtract2(b,a))||1}function borderOf(host,from,to){let{header,camera,parts}=host;if(!header||!camera||!hasTicks(
-header))return null;let places=Array.from({length:PARTS+1},(_,n)=>placeAt(camera,header,from[0]+(to[0]-from[0])*n/PARTS,
-from[1]+(to[1]-from[1])*n/PARTS)),{earth,lengthUnit}=header;if(earth?.map){let along=from[1]===to[1]?0:1,[low,high]=[earth.
-map.slice(0,2),earth.map.slice(2)],degrees=places.map(place=>{if(place[along]<low[along]||place[along]>high[along])return NaN;
-let inside=place.map((c,n)=>n<2?clamp(c,low[n],high[n]):c);return lonLatOf(earth,inside,parts.get("lonlat"))?.[along]??NaN});
-return{letters:along?"NS":"EW",values:unwrapped(degrees)}}let way=subtract2(places[PARTS],places[0]),axis=way.map(Math.abs).
-indexOf(Math.max(...way.map(Math.abs)));if(Math.abs(way[axis])<LEAST_SHARE*length2(way))return null;let[right,up]=camera.
-axes,border=from[1]===to[1]?right:up,normal=header.geometry.frame.slice(6).map(Math.abs),across=[0,1,2].find(n=>n!==axis&&
-n!==normal.indexOf(Math.max(...normal)));return Math.abs(border[across??0])>1-LEAST_SHARE?null:{name:withUnit(COORDINATES[axis],
-lengthUnit&&`(${lengthUnit})`),values:places.map(place=>place[axis])}}function unwrapped(degrees){let turns=0;return degrees.
-map((value,n)=>(n&&Number.isFinite(value-degrees[n-1])&&(turns-=Math.round((value-degrees[n-1])/360)),value+360*turns))}
-function placeAt(camera,{geometry},x,y){let[right,up,ahead]=camera.axes,{height}=camera,{parallel,position,focal_point:focus}=camera.
-state,target=add(add(focus,right,x*camera.aspect*height),up,y*height),ray=parallel?ahead:subtract2(target,position),normal=geometry.
-frame.slice(6),far=dot2(normal,subtract2(geometry.center,target))/dot2(normal,ray);return add(target,scale2(ray,far))}var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},ColourControls=class{element=dom("di\
+if(!earth?.map)return 1;let[a,b]=[-1,1].map(x=>pointInPlane(header.geometry,camera,MIDDLE_SHARE*x,0)),[from,to]=[a,b].map(
+place=>lonLatOf(earth,place,parts.get("lonlat")));if(!from||!to)return 1;let[east,north]=[to[0]-from[0],to[1]-from[1]].map(
+degrees=>degrees*Math.PI/180),middle=(from[1]+to[1])/2*Math.PI/180;return Math.hypot(Math.sin(east/2)*2*Math.cos(middle),
+north)*earth.radius/length2(subtract2(b,a))||1}function borderOf(host,from,to){let{header,camera,parts}=host;if(!header||
+!camera||!hasTicks(header))return null;let places=Array.from({length:PARTS+1},(_,n)=>pointInPlane(header.geometry,camera,
+from[0]+(to[0]-from[0])*n/PARTS,from[1]+(to[1]-from[1])*n/PARTS)),{earth,lengthUnit}=header;if(earth?.map){let along=from[1]===
+to[1]?0:1,[low,high]=[earth.map.slice(0,2),earth.map.slice(2)],degrees=places.map(place=>{if(place[along]<low[along]||place[along]>
+high[along])return NaN;let inside=place.map((c,n)=>n<2?clamp(c,low[n],high[n]):c);return lonLatOf(earth,inside,parts.get(
+"lonlat"))?.[along]??NaN});return{letters:along?"NS":"EW",values:unwrapped(degrees)}}let way=subtract2(places[PARTS],places[0]),
+axis=way.map(Math.abs).indexOf(Math.max(...way.map(Math.abs)));if(Math.abs(way[axis])<LEAST_SHARE*length2(way))return null;
+let[right,up]=camera.axes,border=from[1]===to[1]?right:up,normal=header.geometry.frame.slice(6).map(Math.abs),across=[0,
+1,2].find(n=>n!==axis&&n!==normal.indexOf(Math.max(...normal)));return Math.abs(border[across??0])>1-LEAST_SHARE?null:{name:withUnit(
+COORDINATES[axis],lengthUnit&&`(${lengthUnit})`),values:places.map(place=>place[axis])}}function unwrapped(degrees){let turns=0;
+return degrees.map((value,n)=>(n&&Number.isFinite(value-degrees[n-1])&&(turns-=Math.round((value-degrees[n-1])/360)),value+
+360*turns))}var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},ColourControls=class{element=dom("di\
 v",{class:"colours"});viewer;scalars=dom("select",{"aria-label":"Colour by"});swatches=dom("div",{class:"swatches",role:"\
 group"});ends=["Lowest value","Highest value"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto=dom(
 "button",{type:"button",class:"link"},["auto"]);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){this.

@@ -20,17 +20,17 @@ export type LoadTile = (
 
 export interface Source {
   load: LoadTile;
-  /** Whether time steps of the whole can be had again, and tiles for as long as anybody asks. */
+  /** Whether it can load time steps of the whole again, and any tile at any time. */
   readonly hasSteps?: boolean;
   /** Tiles that are loaded at once. */
   readonly atOnce?: number;
   /** Memory in bytes that its parts may take, here and on the graphics card. */
   readonly memory?: number;
-  /** Fails where nothing can be had. */
+  /** Rejects if the source cannot be read at all. */
   open?(): Promise<void>;
 }
 
-/** Who is given parts, or told why there are none. */
+/** Receives parts, or the reason why they are missing. */
 export interface Taker {
   readonly parts: ReadonlyMap<string, unknown>;
   readonly tiles: { has(name: string, part: string): boolean } | null;
@@ -40,7 +40,7 @@ export interface Taker {
 
 type Job = readonly [key: TileKey | null, steps: number[]];
 
-/** Milliseconds after which what could not be had may be asked for again. */
+/** Milliseconds after which a failed request may be repeated. */
 const FAILED_MS = 10000;
 /** Milliseconds by which a timer may be early. */
 const SPARE_MS = 20;
@@ -51,7 +51,7 @@ const ALL_COARSE = "The surface is shown coarse";
 const COARSE = "A part of the surface is shown coarse";
 const ABSENT_STEP = "A time step cannot be shown";
 
-/** What could not be had of late: a network may be there again. */
+/** Requests that failed recently; the network may have come back since. */
 export class Failures {
   private readonly times = new Map<string, number>();
   private readonly now: () => number;
@@ -74,7 +74,7 @@ class Queue {
   readonly source: Source;
   readonly taker: Taker;
   private readonly running = new Map<string, AbortController>();
-  /** Those that wait or run, and those that could not be had, which are tried again. */
+  /** Jobs that wait or run, and failed ones, which are tried again. */
   jobs: Job[] = [];
   private failed = new Failures();
 
@@ -95,7 +95,7 @@ class Queue {
     this.next();
   }
 
-  /** Give up all, and forget what could not be had. */
+  /** Cancel all jobs, and forget the failures. */
   stop(): void {
     this.want([]);
     this.failed = new Failures();
@@ -139,14 +139,14 @@ class Queue {
   }
 }
 
-/** What is said of a fault; what is no sentence of its own follows on what cannot be shown for it. */
+/** The message for an error; a bare detail follows on the consequence for the picture. */
 function wordsOf(what: string, error: unknown): string {
   const { fault, message = String(error), detail = "" } = error as Partial<StoreError>;
   console.warn(message, detail);
   return fault === "other" ? message : `${what}: ${message}`;
 }
 
-/** What a view asks of its source. */
+/** Requests of a view to its source. */
 export class Requests {
   private readonly tiles: Queue;
   private readonly wholes: Queue;
@@ -156,7 +156,7 @@ export class Requests {
     this.wholes = new Queue(source, taker);
   }
 
-  /** Tell what is wrong with the source before anybody looks closer. */
+  /** Report an unreadable source before anybody zooms in. */
   open(): void {
     const { source, taker } = this.tiles;
     source.open?.().catch((error) => taker.lack(wordsOf(ALL_COARSE, error)));
@@ -175,7 +175,7 @@ export class Requests {
     this.wholes.want(wanted.map((step) => [null, [step]]));
   }
 
-  /** Give up what is on its way: it is of a scene, or in colours, that are not shown any more. */
+  /** Cancel running requests: their scene or their colours are not shown any more. */
   stop(): void {
     this.tiles.stop();
     this.wholes.stop();

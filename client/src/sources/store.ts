@@ -3,7 +3,7 @@
 
 import * as zarr from "zarrita";
 
-/** Milliseconds before an object is asked for again that could not be had. */
+/** Milliseconds before a failed object is requested again. */
 const PAUSES_MS = [300, 1000, 3000];
 /** Milliseconds without a byte after which an answer counts as lost. */
 const STALL_MS = 20_000;

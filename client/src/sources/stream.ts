@@ -26,7 +26,7 @@ const MOST_BYTES = 2 ** 28;
 /** Parts that a tile may need beside its flow. */
 const TRACED_FROM = ["padded", "unit", "open", "nearest", "normal", "rays"];
 
-/** Why something could not be had. */
+/** Why a request failed. */
 const REASONS: Record<Exclude<StoreFault, "other">, string> = {
   missing: "it is not in the store, or the store is not open to everyone.",
   broken: "what the store has of it is broken.",
@@ -56,7 +56,7 @@ const areNumbers = (values: unknown, count?: number): values is number[] =>
 const areWhole = (values: unknown, count: number): boolean =>
   areNumbers(values, count) && values.every(Number.isInteger);
 
-/** Whether what is told of the poles of a tile fits its nodes. */
+/** Whether the header's description of the poles matches the nodes of the tile. */
 function arePoles({ nodes, longest = 0, poles = [] }: TraceHeader): boolean {
   return (
     Number.isFinite(longest) &&
