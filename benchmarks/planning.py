@@ -14,8 +14,6 @@ from typing import Any
 from flowtex.pyramid.layout import TILE_CELLS
 from flowtex.tiles.pyramid import ROOT_NODES
 
-__all__ = ["RESULTS", "tables", "write_docs"]
-
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS, PAGE = ROOT / "benchmarks" / "pyramid.json", ROOT / "docs" / "scale.md"
 #: Fields and workers that are planned for.

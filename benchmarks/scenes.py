@@ -10,8 +10,6 @@ from scipy.ndimage import map_coordinates
 
 import flowtex
 
-__all__ = ["FOCUS", "Stage", "View", "gyre", "gyre_field", "gyre_view", "lic_actor", "vortex_view"]
-
 Floats = NDArray[np.float64]
 
 #: A point of the double gyre where nothing special happens.

@@ -16,8 +16,6 @@ from flowtex.rendering.cpu import render
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
 
-__all__ = ["across_lines", "globe", "seams"]
-
 Floats = NDArray[np.float64]
 Seam = tuple[flowtex.FlowField, dict[str, dict[str, Any]]]
 

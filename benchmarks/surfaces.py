@@ -19,8 +19,6 @@ import flowtex
 from flowtex.camera import Camera
 from flowtex.rendering.cpu.raster import cover
 
-__all__ = ["SURFACES", "SurfaceView", "as_polydata", "surface_view"]
-
 Floats = NDArray[np.float64]
 
 #: Speed, as a share of the greatest, below which the direction of the flow counts as unknown.

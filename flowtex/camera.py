@@ -25,8 +25,6 @@ from flowtex.earth import EARTH_RADIUS
 from flowtex.errors import FieldError
 from flowtex.field import Surface
 
-__all__ = ["CAMERA_LIMITS", "WHOLE_VIEW", "Camera", "CameraError", "CameraLimits", "ViewPart"]
-
 Point = tuple[float, float, float]
 #: Left, bottom, right and top of a part of the view.
 ViewPart = tuple[float, float, float, float]

@@ -28,19 +28,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal
 
-__all__ = [
-    "Check",
-    "OpenGLMissingError",
-    "OpenGLReport",
-    "begin_trial",
-    "diagnose",
-    "main",
-    "opengl_report",
-    "prefer_headless",
-    "print_checks",
-    "require_opengl",
-]
-
 WINDOW_VARIABLE = "VTK_DEFAULT_OPENGL_WINDOW"
 TRIAL_COMMAND = (sys.executable, "-P", str(Path(__file__).resolve()), "--try")
 TRIAL_TIMEOUT_S = 120.0

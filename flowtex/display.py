@@ -11,8 +11,6 @@ from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, acce
 if TYPE_CHECKING:
     from flowtex.widget import FlowWidget
 
-__all__ = ["in_notebook", "show"]
-
 #: Width and height of a window, in pixels.
 WINDOW_SIZE = (1024, 768)
 #: Arguments that say something to VTK alone.

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["FieldError", "raise_faults"]
-
 
 class FieldError(ValueError):
     """Data or arguments are refused; the text names them, what was expected and the remedy.

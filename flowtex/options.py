@@ -39,21 +39,6 @@ from flowtex.field.datasets.detect import is_dataset
 from flowtex.field.datasets.pairs import two_names
 from flowtex.settings import TABLE, Settings, SettingsError, setting
 
-__all__ = [
-    "LAND_COLOR",
-    "NO_VALUE_COLOR",
-    "ROBUST",
-    "SPEED",
-    "Appearance",
-    "AppearanceAttributes",
-    "FieldOptions",
-    "Options",
-    "ViewOptions",
-    "accepts_options",
-    "option_form",
-    "option_text",
-]
-
 #: Colour of a surface that is coloured by nothing: a grey that can go darker and lighter.
 PLAIN_COLOR = "#a0a0a0"
 #: Colour where there is no value, as in PyVista.

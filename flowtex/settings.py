@@ -18,19 +18,6 @@ from typing import Any, Literal
 from flowtex._util.arguments import is_number, near_names
 from flowtex.errors import FieldError
 
-__all__ = [
-    "GROUPS",
-    "NEEDS",
-    "STEADINESS",
-    "TABLE",
-    "Affects",
-    "Control",
-    "Setting",
-    "Settings",
-    "SettingsError",
-    "named_values",
-]
-
 Affects = Literal["uniform", "shader", "textures", "trace"]
 #: How a panel lets a setting be changed; a "number" is typed.
 Control = Literal["checkbox", "choice", "slider", "number"]

@@ -12,8 +12,6 @@ from rich.console import Console
 
 from paper import Report, SectionError, reproduce
 
-__all__ = ["main"]
-
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the experiments, print which statements do not hold, and return the exit code.

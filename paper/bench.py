@@ -15,8 +15,6 @@ from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
 from paper import data_sets
 
-__all__ = ["OURS", "PAPER", "Bench"]
-
 T = TypeVar("T")
 
 #: The paper's own method: its noise texture and step texture, ten even contributions, backward.

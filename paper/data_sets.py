@@ -10,19 +10,6 @@ import numpy as np
 from flowtex import examples
 from flowtex.field import FlowField
 
-__all__ = [
-    "KILO",
-    "MEGA",
-    "PAIR_BYTES",
-    "PUBLISHED",
-    "VECTOR_BYTES",
-    "gyre",
-    "post",
-    "shuttle",
-    "stretched",
-    "vortex",
-]
-
 #: Nodes, time steps, kilobytes of the data and megabytes of the slices, as the paper has them.
 PUBLISHED: dict[str, tuple[tuple[int, int], int, float, float]] = {
     "post": ((32, 76), 1, 28.5, 1.00),

@@ -9,19 +9,6 @@ from typing import Any, Literal
 from flowtex._util.array_types import Bytes
 from paper.bench import Bench
 
-__all__ = [
-    "Block",
-    "Claim",
-    "Finding",
-    "Panel",
-    "Plate",
-    "Plot",
-    "Report",
-    "Section",
-    "Table",
-    "Text",
-]
-
 Sense = Literal["at most", "at least"]
 
 

@@ -13,21 +13,6 @@ from scipy import ndimage
 
 from flowtex._util.array_types import Bools, Floats
 
-__all__ = [
-    "Evenness",
-    "Grain",
-    "Streaks",
-    "aliasing",
-    "evenness",
-    "grain",
-    "likeness",
-    "local_grain",
-    "sharpness",
-    "standardised",
-    "streaks",
-]
-
-
 #: Width in pixels of the derivative, and of the window over which directions are averaged.
 EDGE_PIXELS, WINDOW_PIXELS = 1.0, 4.0
 #: Shades wider than this many pixels are no grain.

@@ -11,8 +11,6 @@ from typing import Any
 
 from paper.findings import Block, Claim, Finding, Panel, Plate, Plot, Report, Section, Table
 
-__all__ = ["write_page"]
-
 TEMPLATES = Path(__file__).parent / "templates"
 #: Folders of the pictures and of the plots, and the quality of JPEG files.
 PICTURES, PLOTS, JPEG_QUALITY = "pictures", "plots", 88

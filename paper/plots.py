@@ -16,19 +16,6 @@ from typing import Any
 
 from paper.findings import Plot
 
-__all__ = [
-    "COLOURS",
-    "GROUND",
-    "INK",
-    "RULE",
-    "SOFT",
-    "Line",
-    "PlotAxes",
-    "draw_lines",
-    "line_plot",
-    "plot_axes",
-]
-
 #: Marker colours, and the CSS variables that they stand for.
 INKS = {
     "#010101": "var(--ink)",

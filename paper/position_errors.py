@@ -11,9 +11,6 @@ from flowtex.field import FlowField
 from flowtex.field.interpolation import along_line, between_nodes
 from flowtex.trace import TraceSlices, paths, trace
 
-__all__ = ["Errors", "position_errors", "step_slices"]
-
-
 #: Steps of time that a particle goes back.
 STEPS = 10
 

@@ -20,8 +20,6 @@ from paper.page import write_page
 from paper.sections.level_of_detail import VORTEX_STEP
 from paper.views import grey, view_of
 
-__all__ = ["SectionError", "reproduce", "sections"]
-
 #: Modules of ``paper.sections``, and the keys of their sections in the order of the page.
 MODULES = (
     "table1",

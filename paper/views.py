@@ -23,9 +23,6 @@ from flowtex.settings import Settings
 from paper import measures
 from paper.bench import Bench
 
-__all__ = ["View", "grey", "view_of", "wing_view"]
-
-
 #: Colour of a surface without scalars.
 SURFACE_GREY = (0.627, 0.627, 0.627)
 #: Pixels along an outline that are not judged, and the share of the greatest speed below which the

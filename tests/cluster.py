@@ -21,8 +21,6 @@ from typing import Any, NamedTuple
 
 from waiting import wait_until
 
-__all__ = ["BUCKET", "Cluster", "ObjectStorage", "Request", "digests"]
-
 ROOT = Path(__file__).resolve().parents[1]
 BUCKET = "flows"
 #: Objects that are larger than this lie in files, and not in the memory of the server.

@@ -24,8 +24,6 @@ from waiting import PATIENCE_S, wait_until
 
 from flowtex._util.array_types import Bytes
 
-__all__ = ["Firefox", "firefox"]
-
 T = TypeVar("T")
 
 PREFERENCES = 'user_pref("webgl.force-enabled", true);\n'

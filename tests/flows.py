@@ -9,20 +9,6 @@ from triangle_meshes import random_plane, soup, sphere
 
 from flowtex import FlowField
 
-__all__ = [
-    "dense_gyre",
-    "gyre",
-    "holed",
-    "lines",
-    "ring",
-    "rippled",
-    "scattered_gyre",
-    "scattered_holed",
-    "scattered_swinging",
-    "swinging",
-    "torus",
-]
-
 
 @cache
 def gyre(columns: int = 61, rows: int = 31) -> FlowField:

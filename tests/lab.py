@@ -18,8 +18,6 @@ from waiting import PATIENCE_S, wait_until
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-__all__ = ["BASE", "Lab", "LabServer", "lab"]
-
 TOKEN = "test"
 #: Where the pages lie, as on JupyterHub.
 BASE = "/user/Ada"

@@ -38,20 +38,6 @@ from flowtex.rendering.uniforms import ViewState
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 
-__all__ = [
-    "COLOUR",
-    "DEEP",
-    "GROUND",
-    "ROOT",
-    "SHARE",
-    "SIZE",
-    "VIEWS",
-    "View",
-    "difference",
-    "judged",
-]
-
-
 #: Root mean square in steps of 8 bits, and share of pixels that differ by more than 8 of them.
 ROOT, SHARE = 0.6, 0.001
 #: One and a half times as wide as high: what the client widens no camera for.

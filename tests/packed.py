@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from flowtex.rendering.webgl.protocol import file_infos
 
-__all__ = ["parts_of", "unpacked"]
-
 
 def unpacked(info: dict[str, Any], text: str) -> NDArray[Any]:
     """Return the array of a part from its description and its text."""

@@ -9,8 +9,6 @@ from typing import Any
 from numpy.typing import NDArray
 from packed import unpacked
 
-__all__ = ["Reader"]
-
 
 class Reader(html.parser.HTMLParser):
     """Reads a page as a browser does: elements, and the text of each script."""

@@ -11,8 +11,6 @@ from waiting import PATIENCE_S
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
 
-__all__ = ["COMPLETE", "acted", "new_context", "opened_page", "painted"]
-
 #: A view of the client whose picture is the full one, of all that belongs to it.
 COMPLETE = '.flowtex[data-sharp="true"][data-tiles="0"][data-lacking="0"]'
 #: Ends when the browser has drawn what it knew of when it was called.

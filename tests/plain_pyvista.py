@@ -10,8 +10,6 @@ import pyvista as pv
 from flowtex import FlowField
 from flowtex.plotting.vtk_camera import look
 
-__all__ = ["off_colours"]
-
 
 def off_colours(picture: Any, mesh: Any, field: FlowField, **options: Any) -> float:
     """Return how far colours in the middle of a picture of a field are from PyVista's, on average.

@@ -15,8 +15,6 @@ from flowtex import FlowField
 if TYPE_CHECKING:
     from flowtex.app import FlowApp
 
-__all__ = ["Streamer", "difference", "picture", "played"]
-
 
 class Streamer:
     """Stands for trame-rca's, and counts what is sent."""

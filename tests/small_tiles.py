@@ -8,8 +8,6 @@ from typing import Any
 
 import pytest
 
-__all__ = ["TILE_CELLS", "shrink", "small_tiles"]
-
 #: Cells along a side of a block, and of a tile of four times four of them.
 BLOCK_CELLS, TILE_CELLS = 16, 64
 

@@ -21,15 +21,6 @@ from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.settings import TABLE
 
-__all__ = [
-    "field_arguments",
-    "field_of",
-    "junk",
-    "links",
-    "property_test",
-    "setting_values",
-]
-
 Array = NDArray[Any]
 Strategy = st.SearchStrategy[Any]
 

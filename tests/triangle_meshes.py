@@ -9,8 +9,6 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.triangles.surface import TriangleSurface
 
-__all__ = ["cube", "random_plane", "soup", "sphere", "surface_of"]
-
 Mesh = tuple[Floats, Indices]
 
 

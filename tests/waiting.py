@@ -7,8 +7,6 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-__all__ = ["PATIENCE_S", "until", "wait_until"]
-
 #: Seconds that a slow and busy machine may take for anything. Nothing passes by being quicker.
 PATIENCE_S = 180.0
 INTERVAL_S = 0.005

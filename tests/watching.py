@@ -12,8 +12,6 @@ from waiting import wait_until
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-__all__ = ["DECODED", "Watch", "count", "difference"]
-
 #: Ends when the picture that the page was given is on the screen.
 DECODED = """async () => {
   const image = document.querySelector(".flowtex-view img");

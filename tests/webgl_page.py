@@ -24,8 +24,6 @@ from flowtex.web.source import TileSource
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
-__all__ = ["ClientPage", "TileMaker", "packed", "state", "tile_maker"]
-
 Pixels = NDArray[np.uint8]
 #: Gives the parts of a tile, by its key and time steps.
 TileMaker = Callable[[Any, Any], Parts]

@@ -14,17 +14,6 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 
-__all__ = [
-    "check_field",
-    "checked_array",
-    "checked_count",
-    "checked_number",
-    "checked_path",
-    "checked_size",
-    "is_number",
-    "near_names",
-]
-
 
 def is_number(value: Any) -> bool:
     """Whether a value is one real number that is not NaN; texts and truth values are none."""

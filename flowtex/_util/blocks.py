@@ -8,8 +8,6 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats, Indices
 
-__all__ = ["block_means", "bounds", "even_runs", "row_blocks"]
-
 #: Nodes of a block, so few that what is computed of them stays in a processor's cache.
 BLOCK_NODES = 16384
 

@@ -13,8 +13,6 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray
 
-__all__ = ["ByteCache", "WeakCache", "digest"]
-
 
 class _Sized(Protocol):
     """A value that knows its size in memory."""

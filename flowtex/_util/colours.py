@@ -11,8 +11,6 @@ from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Bytes, Floats
 from flowtex.errors import FieldError
 
-__all__ = ["CMAPS", "DEFAULT_CMAP", "colour_shares", "colour_table", "is_diverging", "rgb"]
-
 DEFAULT_CMAP = "viridis"
 #: Entries of a colour map.
 ENTRIES = 256

@@ -10,8 +10,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
-__all__ = ["SIGNALS", "Ended", "announce_end", "ended_by_signals"]
-
 #: Windows has no SIGHUP.
 SIGNALS = tuple(s for s in signal.Signals if s.name in ("SIGTERM", "SIGHUP"))
 

@@ -6,8 +6,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-__all__ = ["import_extra", "install_extra"]
-
 _CHECKOUT = Path(__file__).resolve().parents[2]
 
 

@@ -8,8 +8,6 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-__all__ = ["available_bytes", "give_back"]
-
 #: What is assumed where the system does not tell.
 UNKNOWN_BYTES = 4_000_000_000
 

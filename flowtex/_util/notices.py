@@ -6,8 +6,6 @@ import sys
 import warnings
 from pathlib import Path
 
-__all__ = ["Notice", "notify"]
-
 _PACKAGE = str(Path(__file__).resolve().parents[1])
 
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from rich.progress import Progress
     from rich.status import Status
 
-__all__ = ["Stopped", "check", "stoppable", "track", "waiting"]
-
 T = TypeVar("T")
 
 #: Time before a bar appears.

@@ -21,8 +21,6 @@ try:
 except ModuleNotFoundError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["TemporaryFolder", "claim", "remove_stale"]
-
 PREFIX, SUFFIX = "flowtex-", ".tmp"
 NAME = re.compile(r"flowtex-\w{8}\.tmp")
 

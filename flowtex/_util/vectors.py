@@ -6,8 +6,6 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 
-__all__ = ["dot", "norm"]
-
 
 def dot(one: Floats, other: Floats) -> Floats:
     """Inner products of vectors (..., C), of shape (...)."""

@@ -23,8 +23,6 @@ from typing import IO
 from flowtex._util.arguments import checked_path
 from flowtex._util.temporary import claim, remove_stale
 
-__all__ = ["WholeFile", "whole_file"]
-
 #: Characters of the name of a file that are in that of its part.
 STEM_LENGTH = 40
 

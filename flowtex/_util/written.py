@@ -10,19 +10,6 @@ from typing import Any
 
 from flowtex.errors import FieldError
 
-__all__ = [
-    "NUMBER",
-    "PLAIN",
-    "SWITCH",
-    "Form",
-    "UnreadableError",
-    "finite_number",
-    "named_texts",
-    "number_or_text",
-    "numbers",
-    "or_none",
-]
-
 
 class UnreadableError(FieldError):
     """A text that stands for no value; the error says what was expected."""

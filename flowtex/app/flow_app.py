@@ -30,8 +30,6 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.options import ViewOptions
 
-__all__ = ["FlowApp", "first_choice", "serve"]
-
 #: Arguments that choose something in a file or a mesh, and those that make a mesh another field.
 CHOICE_ARGUMENTS = tuple(f.name for f in fields(Choice))
 FIELD_ARGUMENTS = ("times", "periodic", "sign_free")

@@ -13,18 +13,6 @@ from flowtex.cli.options import UsageError, arguments
 from flowtex.options import Options
 from flowtex.textures.images import load_image
 
-__all__ = [
-    "begin_opengl",
-    "check_lines",
-    "check_movie_file",
-    "check_page_file",
-    "check_picture_file",
-    "drawing",
-    "require_app",
-    "require_opengl",
-    "writing",
-]
-
 
 def check_picture_file(output: Path) -> None:
     """Refuse a picture that could not be written, before anything is drawn."""

@@ -26,8 +26,6 @@ from flowtex.cli.serve import serve
 from flowtex.cli.write import export, movie, render
 from flowtex.errors import FieldError
 
-__all__ = ["main"]
-
 app = App(
     name="flowtex",
     help="Draw the flow on a surface as a texture that stays sharp at every zoom.",

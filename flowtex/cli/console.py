@@ -12,8 +12,6 @@ from flowtex._util.terminal.console import terminal
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
-__all__ = ["announcer", "complain", "describe", "in_flags", "say"]
-
 
 def complain(error: Exception, colour: str = "red") -> None:
     """Print an error, or a warning, in one paragraph on stderr."""

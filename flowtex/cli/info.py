@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from flowtex.field import FlowField
     from flowtex.field.io.summary import ArraySummary, FileSummary
 
-__all__ = ["info"]
-
 #: Times and blocks that are listed one by one at most.
 MOST_TIMES, MOST_BLOCKS = 8, 40
 

@@ -16,8 +16,6 @@ from flowtex.options import FieldOptions
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
-__all__ = ["load_field", "notices"]
-
 
 def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
     """Return the flow of a file, or of several that belong together."""

@@ -15,8 +15,6 @@ from flowtex.cli.console import complain, say
 from flowtex.cli.load import notices
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
 
-__all__ = ["pyramid"]
-
 
 def pyramid(
     *files: FILE,

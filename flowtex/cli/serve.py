@@ -29,8 +29,6 @@ from flowtex.cli.options import (
 if TYPE_CHECKING:
     from flowtex.field import FlowField
 
-__all__ = ["serve"]
-
 
 def serve(
     store: Annotated[

@@ -29,8 +29,6 @@ from flowtex.examples import NAMES
 if TYPE_CHECKING:
     from flowtex.app import Library
 
-__all__ = ["demo", "show"]
-
 #: How each example is first seen: zoom and point of the mesh.
 FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
     "cylinder": (3.2, (4.0, 0.0)),

@@ -35,8 +35,6 @@ from flowtex.cli.options import (
     pixels,
 )
 
-__all__ = ["export", "movie", "render"]
-
 #: Share of the flow that may leave the surface before the message has it.
 NOTABLE_LOSS = 0.01
 

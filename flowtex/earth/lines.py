@@ -15,8 +15,6 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.earth.projection import EARTH_RADIUS, Projection
 
-__all__ = ["MapLines", "coastlines", "graticule"]
-
 COASTS = Path(__file__).with_name("coastlines.npz")
 #: What is stored for a degree, as tools/coastlines.py has it.
 STEPS_PER_DEGREE = 100

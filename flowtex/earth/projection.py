@@ -17,8 +17,6 @@ from flowtex._util.array_types import Floats
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
-__all__ = ["EARTH_RADIUS", "GLOBE", "NAMES", "Projection", "ProjectionError", "place_text"]
-
 #: Mean radius of the Earth in metres.
 EARTH_RADIUS = 6_371_000.0
 #: The name of the sphere among the projections.

@@ -14,8 +14,6 @@ from flowtex.earth import EARTH_RADIUS, Projection, coastlines
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["ocean", "weather"]
-
 EAST, NORTH = {"units": "degrees_east"}, {"units": "degrees_north"}
 LONGITUDE = {"standard_name": "longitude", "long_name": "longitude", "axis": "X", **EAST}
 LATITUDE = {"standard_name": "latitude", "long_name": "latitude", "axis": "Y", **NORTH}

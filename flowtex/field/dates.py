@@ -13,8 +13,6 @@ from flowtex.errors import FieldError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["as_seconds", "date_text", "seconds_since"]
-
 DAY_S = 86_400.0
 
 

@@ -41,8 +41,6 @@ from flowtex.field.triangles.creases import velocity_on_triangles
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.validation import with_gaps
 
-__all__ = ["WHOLE_SHAPE", "FlowField"]
-
 #: Where a field that is the coarsest level of a larger one keeps how many nodes (J, I) that has.
 WHOLE_SHAPE = "_whole_shape"
 

@@ -27,8 +27,6 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
-__all__ = ["GridNodes", "grid_nodes"]
-
 
 @dataclass(frozen=True, eq=False)
 class GridNodes:

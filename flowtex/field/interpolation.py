@@ -11,19 +11,6 @@ from flowtex._util.arguments import checked_count
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 
-__all__ = [
-    "along_line",
-    "between_nodes",
-    "bracket",
-    "cell_of",
-    "cubic_weights",
-    "every_line",
-    "fill_blanked",
-    "inverse_along_line",
-    "nearest_known",
-    "steps_around",
-]
-
 A = TypeVar("A", bound=AnyArray)
 
 

@@ -31,8 +31,6 @@ from flowtex.field.surface import Surface
 from flowtex.field.triangles.nearest import ON_SURFACE, START_NODES, TriangleLocator, closest
 from flowtex.field.triangles.surface import TriangleSurface
 
-__all__ = ["TRIANGLES", "Locator", "SurfacePoint", "locate", "locator", "surface_point"]
-
 #: Nodes closer than this share of the surface's extent lie at one point.
 SAME_POINT_SHARE = 1e-12
 #: Steps of a walk, and cells along an axis that one of them goes, at most.

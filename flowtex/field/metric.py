@@ -25,8 +25,6 @@ from flowtex.field.poles import Pole
 from flowtex.field.steps import Steps
 from flowtex.field.surface import Surface
 
-__all__ = ["IndexVelocity", "to_index_space"]
-
 #: Below this ratio of squared area to squared lengths a cell counts as collapsed.
 COLLAPSED_AREA = 1e-10
 

@@ -19,8 +19,6 @@ from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.blocks import bounds
 from flowtex.field.validation import LENGTHS, finite_nodes, largest
 
-__all__ = ["NodalArrays", "close_axes", "find_closure"]
-
 A = TypeVar("A", bound=AnyArray)
 
 #: Lines closer than this share of the extent of the mesh coincide.

@@ -17,8 +17,6 @@ from flowtex.field.interpolation import steps_around
 from flowtex.field.locate import surface_point
 from flowtex.field.signs import weighted_axis
 
-__all__ = ["PointValues", "values_at"]
-
 
 @dataclass(frozen=True, eq=False)
 class PointValues:

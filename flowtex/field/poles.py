@@ -24,8 +24,6 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
 
-__all__ = ["Pole", "Poles", "find_poles"]
-
 #: Nodes closer than this share of the distance to the next line lie at one point.
 SAME_POINT_SHARE = 1e-3
 #: Lines that lie this close to where even ones would, in cells, are even.

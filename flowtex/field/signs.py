@@ -21,16 +21,6 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.field.poles import Poles
 
-__all__ = [
-    "axes",
-    "corner_signs",
-    "oriented",
-    "products",
-    "sign_free_faults",
-    "weighted_axis",
-    "with_equal_ends",
-]
-
 #: Cost of a step to a node at right angles, over that of a step to one that agrees, less one.
 TURN_COST = 10.0
 #: A vector shorter than this share of the longest has no direction.

@@ -33,8 +33,6 @@ from flowtex.field.io.meshes import (
 from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.vectors import candidates
 
-__all__ = ["FlowSource", "Source"]
-
 #: Size of a series that is held in memory; a larger one is read again for each field.
 MAX_SERIES_BYTES = 2_000_000_000
 #: Places of a plane that cuts a volume, evenly spaced along an axis; one of them in the middle.

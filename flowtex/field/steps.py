@@ -10,8 +10,6 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex._util.cache import ByteCache
 
-__all__ = ["LazySteps", "Steps", "first_step", "map_steps", "typical_steps"]
-
 #: Bytes of steps that are kept once they have been read, and their number.
 KEPT_BYTES, MOST_KEPT = 256_000_000, 8
 

@@ -21,8 +21,6 @@ from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.poles import Pole, Poles, find_poles
 from flowtex.field.validation import finite_nodes
 
-__all__ = ["CubicMap", "Surface", "known_positions"]
-
 #: Lines from a pole over which the size of the cells comes to be their length alone.
 POLE_LINES = 8
 

@@ -16,22 +16,6 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.blocks import bounds
 from flowtex.errors import FieldError
 
-__all__ = [
-    "LENGTHS",
-    "MAGNITUDES",
-    "as_numbers",
-    "finite_nodes",
-    "largest",
-    "node_faults",
-    "node_positions",
-    "range_faults",
-    "scalar_steps",
-    "shape_faults",
-    "three_components",
-    "time_faults",
-    "with_gaps",
-]
-
 #: A surface narrower than this share of its length is a line.
 LINE_WIDTH = 1e-7
 #: Ends of lengths, for single precision, and of speeds and times, whose squares must be numbers.

@@ -24,17 +24,6 @@ from flowtex.field import FlowField
 from flowtex.field.dates import date_text
 from flowtex.scene import Scene
 
-__all__ = [
-    "Plate",
-    "annotate",
-    "difference_text",
-    "length_text",
-    "map_scale",
-    "plates",
-    "round_length",
-    "time_text",
-]
-
 #: Height of the text: a share of the picture's height, or of a width that goes with it.
 TEXT_SHARE, WIDEST_ASPECT = 1 / 30, 1.6
 #: Height below which text cannot be read, in pixels.

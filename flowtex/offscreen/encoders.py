@@ -23,15 +23,6 @@ from flowtex._util.progress import Stopped
 from flowtex._util.whole_file import WholeFile
 from flowtex.errors import FieldError
 
-__all__ = [
-    "DEFAULT_QUALITY",
-    "MovieError",
-    "MovieWriter",
-    "check_movie",
-    "default_fps",
-    "write_movie",
-]
-
 Size = tuple[int, int]
 
 #: Suffixes of the files that can be written.

@@ -27,8 +27,6 @@ from flowtex.options import (
 )
 from flowtex.scene import Scene
 
-__all__ = ["FlowImage", "axes", "extent"]
-
 #: Left, right, bottom and top.
 Extent = tuple[float, float, float, float]
 

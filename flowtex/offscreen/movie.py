@@ -30,9 +30,6 @@ from flowtex.offscreen.plotter import OffscreenPlotter
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.settings import TABLE, Settings
 
-__all__ = ["FrameTimes", "Movie", "frame_times", "frames", "movie", "run_seconds"]
-
-
 #: Seconds for one run through the times of a field: so many for each step, within limits.
 STEP_S, SHORTEST_RUN_S, LONGEST_RUN_S = 0.25, 5.0, 30.0
 #: Frames of a movie and frames in a second, at most.

@@ -22,8 +22,6 @@ from flowtex.plotting.vtk_camera import apply_camera, look, read_camera
 from flowtex.scene import Scene, share_field
 from flowtex.textures.images import averaged
 
-__all__ = ["OffscreenPlotter", "add_scenes", "new_plotter", "point_camera"]
-
 #: Longest side of what is drawn at once, in pixels.
 LONGEST_SIDE = 16_384
 #: Pixels that are drawn for one of the picture along a side, at most.

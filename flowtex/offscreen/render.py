@@ -15,9 +15,6 @@ from flowtex.scene import Scene
 from flowtex.tiles import Pyramid, has_pyramid
 from flowtex.trace import SliceStore, TraceSlices
 
-__all__ = ["render"]
-
-
 #: Memory of fields and traces that are kept after a picture, and of a node of a field.
 KEPT_BYTES, NODE_BYTES = 500_000_000, 200
 

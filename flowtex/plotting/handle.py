@@ -18,8 +18,6 @@ from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
 from flowtex.scene import Change, Scene, share_field
 
-__all__ = ["FlowHandle"]
-
 #: A lit surface: dark sides stay bright enough to read the texture there.
 LIGHT: dict[str, Any] = {"ambient": AMBIENT_LIGHT, "diffuse": DIFFUSE_LIGHT}
 

@@ -17,8 +17,6 @@ from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import read_camera
 from flowtex.textures.images import as_image
 
-__all__ = ["show_plotter"]
-
 NAME = "flowtex"
 
 

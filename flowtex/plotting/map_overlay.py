@@ -33,8 +33,6 @@ from flowtex.rendering.vtk import FlowSurface
 from flowtex.rendering.vtk.mesh import FlowMapper
 from flowtex.scene import Scene
 
-__all__ = ["MapOverlay"]
-
 
 class Part(NamedTuple):
     """One actor: how it is nearer than the surface, its width in pixels, and forms of its mesh."""

@@ -7,8 +7,6 @@ from typing import Any
 
 from vtkmodules.vtkRenderingCore import vtkTextRenderer
 
-__all__ = ["SCALAR_BAR", "arrange_with"]
-
 #: A scalar bar that keeps out of the picture's way.
 SCALAR_BAR: dict[str, Any] = {
     "fmt": "%.3g",

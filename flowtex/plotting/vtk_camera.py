@@ -7,8 +7,6 @@ from typing import Any
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
 
-__all__ = ["apply_camera", "look", "read_camera"]
-
 
 def read_camera(vtk_camera: Any) -> Camera:
     """Return what a VTK camera has, such as ``plotter.camera``; it must see something."""

@@ -19,13 +19,6 @@ from flowtex._util.cache import digest
 from flowtex.pyramid.places import FORMAT, DamageError, PyramidError
 from flowtex.tiles.pyramid import Nodes, level_shape
 
-__all__ = [
-    "check_about",
-    "is_scalar_name",
-    "part_digest",
-    "sealed",
-]
-
 #: Nodes along an axis, steps, levels, characters of a text, and scalars, at most.
 MOST_NODES, MOST_STEPS, MOST_LEVELS, MOST_LETTERS, MOST_SCALARS = 10**7, 10**6, 40, 10_000, 1000
 #: Nodes of the coarsest level, which is read whole, at most.

@@ -24,8 +24,6 @@ from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, widened
 from flowtex.trace import SliceStore
 
-__all__ = ["write_tile"]
-
 #: What of the slices is the same in all tiles, and told by the page.
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
 #: Error of a value as a share of the range that most of them have.

@@ -47,28 +47,6 @@ from flowtex.pyramid.source import Source
 from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS
 from flowtex.tiles.pyramid import root_level
 
-__all__ = [
-    "DIGESTS",
-    "FLOW",
-    "MOST_HELD",
-    "SURFACE",
-    "TILE_CELLS",
-    "VALUES",
-    "VELOCITY_BITS",
-    "Part",
-    "about_source",
-    "attributes_of",
-    "create_array",
-    "create_level",
-    "empty_field",
-    "parts_along",
-    "parts_of",
-    "rounded",
-    "tiles_of",
-    "to_write",
-    "value_names",
-]
-
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.
 SHARD_CHUNKS = (2, 4)

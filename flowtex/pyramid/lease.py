@@ -20,8 +20,6 @@ from typing import Any
 
 from flowtex.pyramid.places import LEASE, PyramidError, store_at
 
-__all__ = ["Lease"]
-
 #: Seconds between renewals, and after which a lease that was not renewed is stale.
 RENEWAL_S, STALE_S = 20.0, 120.0
 

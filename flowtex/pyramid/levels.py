@@ -34,8 +34,6 @@ from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.tiles import TileKey
 from flowtex.tiles.pyramid import Nodes, level_shape
 
-__all__ = ["Levels"]
-
 #: What of an array's metadata decides on the meaning of its bytes.
 FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_value", "codecs")
 #: How often is looked whether what is read is still wanted.

@@ -22,8 +22,6 @@ from zarr.storage import WrapperStore
 from flowtex._util.cache import ByteCache
 from flowtex.pyramid.places import MOST_REPEATS, ReadFault, fault_words, is_refused
 
-__all__ = ["Objects", "bounded"]
-
 #: Objects, or parts of them, that are on their way at once from one store.
 MOST_READS = 16
 #: Memory of what is kept of them, packed as it came.

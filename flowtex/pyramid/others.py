@@ -37,8 +37,6 @@ from flowtex.pyramid.places import (
 from flowtex.pyramid.source import RegionSource
 from flowtex.tiles.pyramid import ROOT_NODES, Nodes, level_lines, root_level
 
-__all__ = ["OtherLevels", "has_parts", "levels_of_others"]
-
 #: Nodes up to which a dataset is opened as a whole.
 WHOLE_NODES = 2_000_000
 #: Metadata of groups and arrays, of Zarr's formats 3 and 2.

@@ -19,25 +19,6 @@ from flowtex._util.arguments import checked_path
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
-__all__ = [
-    "DOCUMENT",
-    "FORMAT",
-    "LEASE",
-    "ChangedError",
-    "DamageError",
-    "PyramidError",
-    "ReadFault",
-    "check_room",
-    "fault_words",
-    "is_refused",
-    "is_remote",
-    "is_store",
-    "objects_at",
-    "place_text",
-    "plain_faults",
-    "store_at",
-]
-
 #: Written into every store; a reader refuses what it does not know.
 FORMAT = "flowtex-pyramid-4"
 #: The object of a store that tells who builds it.

@@ -26,8 +26,6 @@ from flowtex.pyramid.layout import (
 from flowtex.tiles import ends_of
 from flowtex.tiles.pyramid import Nodes
 
-__all__ = ["SAMPLES", "create_samples", "ranges_of", "write_samples"]
-
 SAMPLES = "samples"
 #: Nodes of a sample of one quantity at one time.
 MOST_SAMPLES = 1 << 20

@@ -26,8 +26,6 @@ from flowtex.pyramid.places import is_store
 from flowtex.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
 
-__all__ = ["FieldSource", "RegionSource", "Source", "source_of"]
-
 
 class Source(ABC):
     """Nodes that a pyramid is built from.

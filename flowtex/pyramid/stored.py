@@ -22,8 +22,6 @@ from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, have_pyramid
 from flowtex.tiles.pyramid import Nodes, averaged
 
-__all__ = ["StoredPyramid", "open_store", "root_of"]
-
 
 def open_store(store: str | Path, **options: Any) -> FlowField:
     """Open a pyramid in a store as a field.

@@ -33,17 +33,6 @@ from flowtex.pyramid.stored import StoredPyramid, root_of
 from flowtex.tiles import TileKey
 from flowtex.tiles.pyramid import Nodes, averaged, beside, level_lines
 
-__all__ = [
-    "TileTask",
-    "checks_of",
-    "compare_finest",
-    "make_finest",
-    "make_part",
-    "make_tile",
-    "mend",
-    "write_part",
-]
-
 
 class TileTask(NamedTuple):
     """A tile, and those of its destination times that are to be written."""

@@ -18,8 +18,6 @@ from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.pyramid.places import PyramidError, plain_faults
 
-__all__ = ["OWN_BYTES", "PART_BYTES", "TILE_BYTES", "Cluster", "Threads"]
-
 #: Most memory that a task takes: one that makes a part of a level, and one that traces a tile or
 #: the root, as ``benchmarks/pyramid.py`` measures. A process has its own besides, for what is
 #: imported.

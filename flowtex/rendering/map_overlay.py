@@ -13,19 +13,6 @@ from flowtex.earth import EARTH_RADIUS, MapLines, coastlines, graticule
 from flowtex.field import FlowField
 from flowtex.field.triangles.surface import TriangleSurface
 
-__all__ = [
-    "SPACINGS",
-    "SPACING_PX",
-    "STROKES",
-    "USUAL_HEIGHT_PX",
-    "WIDTH_RANGE",
-    "Stroke",
-    "globe_radius",
-    "land_cells",
-    "map_box",
-    "map_lines",
-]
-
 
 class Stroke(NamedTuple):
     """How a line is drawn: its colour, opacity, and width in pixels."""

@@ -23,8 +23,6 @@ from flowtex._util.vectors import dot, norm
 from flowtex.textures import TextureSet
 from flowtex.tiles import BLOCK_CELLS, block_places
 
-__all__ = ["MAX_ERROR_PIXELS", "MeshLevels", "Region", "join", "mesh_limits"]
-
 #: Distance on the screen between a node and the triangle that stands for it.
 MAX_ERROR_PIXELS = 0.05
 #: What counts of an error of the outline, a quarter of a pixel across it; and of one along the

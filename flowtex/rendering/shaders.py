@@ -13,15 +13,6 @@ import re
 from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
-__all__ = [
-    "VARIANTS",
-    "GLSLError",
-    "shader_folder",
-    "shader_names",
-    "shader_source",
-    "shader_text",
-]
-
 _PACKAGE = Path(__file__).resolve().parents[1]
 _INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 

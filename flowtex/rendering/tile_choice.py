@@ -15,16 +15,6 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex.settings import Settings
 from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
 
-__all__ = [
-    "Choices",
-    "TileView",
-    "cell_pixels",
-    "choose_tiles",
-    "cover",
-    "finer_part",
-    "wanted_tiles",
-]
-
 #: Pixels of the longer side of a cell above which the next level is drawn.
 CELL_PIXELS = 2.5
 

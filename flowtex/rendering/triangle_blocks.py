@@ -12,8 +12,6 @@ from flowtex._util.array_types import Floats, Indices, Ints
 from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.textures import TextureSet, TriangleGeometry
 
-__all__ = ["TriangleBlocks", "mesh_levels_of"]
-
 
 class TriangleBlocks:
     """The triangles that a view needs, as :class:`MeshLevels` has those of a structured surface.

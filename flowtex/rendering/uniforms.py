@@ -17,18 +17,6 @@ from flowtex.rendering.constants import FAR_CELLS, KERNELS
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
-__all__ = [
-    "ANCHOR_RANGE",
-    "ViewState",
-    "client_constants",
-    "is_moving",
-    "is_near",
-    "is_sparse",
-    "needed_lags",
-    "uniforms",
-    "variants",
-]
-
 #: Doublings from the finest cell of the noise to the extent of the surface.
 NOISE_DOUBLINGS = 30
 #: Finest doublings at which the origin of the noise is zero, so that single precision holds it.

@@ -8,9 +8,6 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import Floats, Floats32
 from flowtex.field.surface import CubicMap, Surface
 
-__all__ = ["NodeDisplacements"]
-
-
 #: Nodes looked up together, so few that they stay in a processor's cache.
 BLOCK = 16384
 #: Tangents that differ by less than this share of the longest make a map linear.

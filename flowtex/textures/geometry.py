@@ -23,9 +23,6 @@ from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.surface import Surface
 
-__all__ = ["DrawnSurface", "SurfaceGeometry"]
-
-
 #: Mip levels of a texture beside its finest one, at most, and of a tile's.
 DEEPEST, TILE_LEVELS = 5, 3
 

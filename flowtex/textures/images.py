@@ -16,17 +16,6 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bytes, Floats32
 from flowtex.settings import SettingsError
 
-__all__ = [
-    "LARGEST",
-    "ImageError",
-    "as_image",
-    "as_picture",
-    "averaged",
-    "load_image",
-    "pixels_of",
-]
-
-
 #: Texels along a side, at most; a larger image is averaged down to it.
 LARGEST = 4096
 #: Rounding by which a float may lie outside 0 to 1.

@@ -42,8 +42,6 @@ from flowtex.textures.patterns import (
 )
 from flowtex.trace import SliceStore
 
-__all__ = ["HALF_LEVELS", "PaperTextures"]
-
 #: Longest step in units of lag: half precision ends soon after.
 LONGEST_STEP = 6e4
 #: Deviations that a shader has room for: at every level and half-way to the next.

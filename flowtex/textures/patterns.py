@@ -20,17 +20,6 @@ from flowtex._util.array_types import Floats, Ints
 from flowtex.field import FlowField
 from flowtex.field.interpolation import between_nodes
 
-__all__ = [
-    "SPOT_GRAIN",
-    "SQUARES",
-    "TexelMap",
-    "checkerboard",
-    "even_noise",
-    "side_lengths",
-    "spots",
-]
-
-
 #: Texels from one spot to the next, and the width of squares of noise that averages as spots do.
 SPOT, SPOT_GRAIN = 8, 7.2
 #: Radius of a spot, and width of its soft edge, as shares of the way to the next one.

@@ -11,8 +11,6 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from flowtex._util.array_types import Floats32
 from flowtex.textures.texture_set import TextureSet
 
-__all__ = ["LayerPrefetch"]
-
 
 class LayerPrefetch:
     """Layers of a texture set by destination time, one of them computed before it is needed."""

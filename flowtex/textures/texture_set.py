@@ -44,9 +44,6 @@ from flowtex.textures.paper import PaperTextures
 from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace import SliceStore, TraceSlices
 
-__all__ = ["AGREED", "MOST_LAGS", "TextureSet", "check_noise"]
-
-
 #: Slices on each side that a shader has room for.
 MOST_LAGS = 32
 #: Greatest number in half precision, in which texels are stored.

@@ -22,8 +22,6 @@ from flowtex.field.triangles.creases import normals_at_corners
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.textures.geometry import DrawnSurface
 
-__all__ = ["TriangleGeometry"]
-
 
 @dataclass(frozen=True, eq=False)
 class TriangleGeometry(DrawnSurface):

@@ -11,8 +11,6 @@ import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
 
-__all__ = ["Boxes"]
-
 
 class Boxes:
     """Boxes of so many ``steps``, each of which makes 2 x 2 of one, by medians of points (N, 3).

@@ -21,8 +21,6 @@ from flowtex.field.triangles.arrays import known_means
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.triangles.topology import flipped, triangle_normals
 
-__all__ = ["Clusters", "levels_of"]
-
 #: Side of the first bins in edges there.
 FIRST_EDGES = 2.0
 #: Passes in which the edge of a node becomes that of its surroundings.

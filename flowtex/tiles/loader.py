@@ -24,8 +24,6 @@ from flowtex._util.progress import Stopped, check, stoppable
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.tiles.pyramid import Pyramid, TileKey
 
-__all__ = ["Tile", "TileLoader"]
-
 #: Memory of the tiles that are kept, in bytes.
 BUDGET_BYTES = 1_000_000_000
 #: Memory of a texel, whose four numbers have single precision first and half of it later, and of a

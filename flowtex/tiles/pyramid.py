@@ -35,15 +35,6 @@ from flowtex.tiles.region import Region, Whole, is_cut, tile_of
 from flowtex.trace import SliceStore
 from flowtex.trace.lags import small_cell
 
-__all__ = [
-    "BLOCK_CELLS",
-    "PATH_CELLS",
-    "TILE_BLOCKS",
-    "Pyramid",
-    "TileKey",
-    "block_places",
-]
-
 #: Most nodes, of one time, of a field that is traced whole.
 ROOT_NODES = 150_000
 #: Cells along a side of a block, the smallest part of a tile that is drawn or left out by itself,

@@ -7,8 +7,6 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 
-__all__ = ["drawn_speeds", "ends_of", "widened"]
-
 #: Percentiles at the ends of a range without outliers.
 ROBUST_PERCENTILES = (2, 98)
 #: Values that differ by less than this share of the greatest are the same.

@@ -16,8 +16,6 @@ from flowtex.textures import TextureSet
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.trace import SliceStore
 
-__all__ = ["Region", "Whole", "is_cut", "tile_of"]
-
 #: Share of its length up to which a path must not be cut, and of the paths of a tile that may be.
 NEEDED_SHARE, MOST_CUT_SHARE = 0.75, 5e-3
 

@@ -9,8 +9,6 @@ from flowtex.field import FlowField
 from flowtex.tiles.pyramid import Pyramid
 from flowtex.tiles.triangle_pyramid import TrianglePyramid
 
-__all__ = ["has_pyramid", "have_pyramid", "shared_pyramid"]
-
 #: Where a field keeps what makes its pyramid; fields that are made of this one have none.
 _OWN = "_pyramid"
 

@@ -26,8 +26,6 @@ from flowtex.tiles.clusters import Clusters, levels_of
 from flowtex.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.trace import SliceStore
 
-__all__ = ["TrianglePyramid"]
-
 #: Most nodes of a field that is traced whole.
 ROOT_NODES = 25_000
 #: Nodes that boxes are measured by, at most.

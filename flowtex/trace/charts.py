@@ -20,8 +20,6 @@ from flowtex.field.poles import Pole, Poles
 from flowtex.field.signs import corner_signs
 from flowtex.trace.node_grid import Corners, NodeGrid
 
-__all__ = ["Charts", "Patch", "cap"]
-
 Numbers = NDArray[np.int8]
 
 #: Cells from a pole within which a path is followed in the plane: so many at least, and up to

@@ -31,8 +31,6 @@ from flowtex._util.progress import check
 from flowtex.field import FlowField
 from flowtex.trace.node_grid import Corners, NodeGrid
 
-__all__ = ["Integrate", "Map", "SideSlices", "Within", "compose", "landings"]
-
 #: Pieces of a path, at most, before the rest is looked up in one whatever its error.
 MOST_PIECES = 64
 #: Paths looked up together.

@@ -14,8 +14,6 @@ from flowtex.field.derived import FOLLOWED, node_gradient, true_positions
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.trace.trace import trace
 
-__all__ = ["lyapunov_exponent"]
-
 
 def lyapunov_exponent(field: FlowField, horizon: float) -> Steps:
     """Return the exponent at each node and step, (T, J, I), per unit of time.

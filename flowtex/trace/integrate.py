@@ -26,8 +26,6 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.trace.sampler import Sampler
 
-__all__ = ["MOST_CELLS", "Paths", "integrate"]
-
 Numbers = NDArray[np.int8]
 
 #: A step may grow or shrink by these factors.

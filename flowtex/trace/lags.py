@@ -12,9 +12,6 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 
-__all__ = ["choose_lags", "drawn_lags", "lag_unit", "longest_path", "small_cell"]
-
-
 #: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
 FIRST_CELLS, LAST_EXTENTS, MOST_CHOSEN_LAGS = 0.25, 0.25, 24
 #: Percentile of the sizes of cells that small ones have.

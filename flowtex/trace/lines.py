@@ -14,8 +14,6 @@ from flowtex._util.array_types import Indices
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 
-__all__ = ["changing_share", "chosen_lines", "judged_lines"]
-
 #: Length of a streak as a share of the surface, and of the velocity that may change meanwhile.
 STREAK_EXTENTS, MOST_CHANGE = 0.05, 0.5
 #: Share of the nodes where it may change by more, along pathlines.

@@ -16,8 +16,6 @@ from flowtex._util.array_types import AnyArray, Bools, Bytes, Indices
 from flowtex.field import FlowField
 from flowtex.field.poles import Poles
 
-__all__ = ["BORDER_ROUNDING_CELLS", "LEAST_ROOM_CELLS", "Corners", "NodeGrid"]
-
 #: Cells that rounding may carry a path over a border that it follows.
 BORDER_ROUNDING_CELLS = 1e-6
 #: Cells that a particle may move at once: where nothing is blanked, and next to a blanked cell.

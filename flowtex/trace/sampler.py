@@ -20,9 +20,6 @@ from flowtex.field.interpolation import bracket, fill_blanked
 from flowtex.trace.charts import Charts, Patch, cap
 from flowtex.trace.node_grid import LEAST_ROOM_CELLS, NodeGrid
 
-__all__ = ["LengthSampler", "Sampler", "TimeSampler"]
-
-
 #: A particle slower than this share of the greatest speed has stopped.
 STOPPED_SPEED = 1e-7
 #: Pairs of tangents whose products make the metric.

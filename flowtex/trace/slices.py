@@ -23,9 +23,6 @@ from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError
 from flowtex.field.interpolation import bracket
 
-__all__ = ["TraceSlices"]
-
-
 #: Written into every file; a reader refuses what it does not know.
 FORMAT = "flowtex-slices-1"
 #: Arrays over the nodes, and the axis along which j runs in them.

@@ -24,8 +24,6 @@ from flowtex.trace.lines import chosen_lines
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.trace import trace
 
-__all__ = ["SliceStore", "shared_store"]
-
 #: Size of the slices that are cached, besides the ones in use.
 CACHE_BYTES = 512_000_000
 #: Size of the steps in which paths to one time are traced, where they are read late, and bytes of a

@@ -30,9 +30,6 @@ from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.triangles import triangle_paths, triangle_slices
 
-__all__ = ["paths", "trace"]
-
-
 #: Lags that single precision holds, with what is computed of them.
 LEAST_LAG, MOST_LAG = 1e-30, 1e30
 #: Error allowed in one step, in cells.

@@ -20,8 +20,6 @@ from flowtex.rendering.webgl.protocol import part_info, part_text
 from flowtex.web.export import different, json_text, page_data
 from flowtex.web.view import WebView
 
-__all__ = ["write_scene"]
-
 #: Letters from which on a part has a script of its own, which scenes of the same flow share.
 LETTERS_APART = 50_000
 

@@ -39,18 +39,6 @@ from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
 from flowtex.web.source import TileSource
 from flowtex.web.view import WebView, web_views
 
-__all__ = [
-    "Page",
-    "different",
-    "estimate",
-    "export",
-    "json_text",
-    "page_data",
-    "page_pieces",
-    "page_text",
-    "write_page",
-]
-
 #: Size of an average part after packing, over that before, base64 included.
 PACKED_SHARE = 0.45
 #: The same where the client traces, and of values.

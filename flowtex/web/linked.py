@@ -14,8 +14,6 @@ from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.tiles import shared_pyramid
 from flowtex.web.view import WebView
 
-__all__ = ["StoreLink", "first_parts", "linked_data", "store_header"]
-
 #: What a name of a server may have, of which nothing means anything in a policy of a page.
 HOST = re.compile(r"[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\]")
 EXPECTED = (

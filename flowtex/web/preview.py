@@ -28,8 +28,6 @@ from flowtex.web.view import WebView
 if TYPE_CHECKING:
     from PIL import Image
 
-__all__ = ["preview_png"]
-
 #: Nodes and samples of a small picture, which no eye can tell from more of them.
 NODES, SAMPLES = 3_000, 17
 #: Greatest spacing of samples in grains. Pixels side by side share no sample of a greater one, and

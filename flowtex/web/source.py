@@ -27,8 +27,6 @@ from flowtex.scene import steps_of
 from flowtex.textures import TextureSet
 from flowtex.tiles import TileKey
 
-__all__ = ["TileSource"]
-
 #: Memory of the tiles that are kept to be handed over again, and of a node of them, in bytes.
 BUDGET_BYTES, NODE_BYTES = 400_000_000, 200
 #: Parts that are made at once, for all browsers together.

@@ -15,8 +15,6 @@ from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
 from flowtex.tiles import Pyramid
 
-__all__ = ["WebView", "colours_of", "even_steps", "web_views"]
-
 
 class WebView:
     """A scene for a client in a browser.

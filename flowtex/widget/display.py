@@ -21,8 +21,6 @@ from typing import Any, Self
 import anywidget
 import ipywidgets
 
-__all__ = ["Displayed"]
-
 #: Seconds that cells wait for small pictures, at most; how much comes back in a second.
 MAX_WAIT_S, WAIT_REGAINED = 2.0, 0.2
 #: Stills of one cell: of more than fifty outputs JupyterLab hides the rest.

@@ -34,8 +34,6 @@ from flowtex.web.source import TileSource
 from flowtex.web.view import WebView
 from flowtex.widget.worker import Worker, WorkerPool
 
-__all__ = ["Feed"]
-
 #: A field of more nodes, at all times together, is shown coarse first.
 LARGE_NODES = 60_000
 #: Nodes of the coarse form of a steady field, and of one that varies, which takes longer to trace.

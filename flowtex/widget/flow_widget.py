@@ -33,8 +33,6 @@ from flowtex.widget.panel import make_panel
 from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait, TraitValueError
 from flowtex.widget.views import HEADERS, Views
 
-__all__ = ["FlowWidget"]
-
 SLACK = 1e-9  #: Share of the duration by which a time may lie outside it, for rounding's sake.
 
 

@@ -9,8 +9,6 @@ import ipywidgets
 
 from flowtex.settings import TABLE, Setting, SettingsError
 
-__all__ = ["make_panel"]
-
 
 def make_panel(widget: Any) -> tuple[Any, Callable[[], None]]:
     """Return a panel with a control for each setting, and what closes it.

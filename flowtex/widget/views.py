@@ -20,8 +20,6 @@ from flowtex.tiles import TileKey
 from flowtex.web.view import WebView
 from flowtex.widget.feed import Feed
 
-__all__ = ["HEADERS", "Views"]
-
 #: Traits of the widget with the headers of the views, from left to right.
 HEADERS = ("_header", "_header_beside")
 

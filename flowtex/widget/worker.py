@@ -11,8 +11,6 @@ import itertools
 import threading
 from collections.abc import Callable
 
-__all__ = ["Worker", "WorkerPool"]
-
 Job = Callable[[], None]
 #: Urgency as a number that is least for what comes first, order of asking, for whom, and what.
 Entry = tuple[int, int, "Worker", Job]

@@ -37,8 +37,6 @@ from paper.redundancy.residuals import (
 )
 from paper.redundancy.texels import TexelDensity
 
-__all__ = ["Redundancy", "redundancy"]
-
 Values = NDArray[np.floating[Any]]
 
 #: Share of the bound that the slope at lag zero may make up at the first lag.

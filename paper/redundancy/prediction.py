@@ -22,8 +22,6 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.field.interpolation import bracket
 from flowtex.trace import TraceSlices
 
-__all__ = ["BY_LAG", "COMPOSED", "Predictor", "SliceGrid"]
-
 #: Ways to predict: polynomials by degree, and composition.
 BY_LAG = ("mean 0", "mean 1", "mean 2", "path 1", "path 2", "path 3")
 COMPOSED = "composed"

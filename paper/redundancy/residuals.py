@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Floats, Indices
 
-__all__ = ["BoundedCoding", "Coding", "Differences", "ExactCoding", "differences", "power_below"]
-
 #: Any precision of floats.
 Values = NDArray[np.floating[Any]]
 

@@ -9,8 +9,6 @@ from scipy import ndimage
 from flowtex._util.array_types import Floats
 from flowtex.trace import TraceSlices
 
-__all__ = ["TexelDensity", "error_in_texels"]
-
 
 class TexelDensity:
     """Texels of the noise per cell, anywhere on the surface.

@@ -26,9 +26,6 @@ from flowtex.field import FlowField
 from flowtex.rendering.cpu.raster import cover
 from paper.references.lic import lic
 
-__all__ = ["draw_texture", "forssell_lic", "texel_velocity"]
-
-
 #: How many times the kernel may grow in texels where they are short on the surface.
 MAX_STRETCH = 8.0
 

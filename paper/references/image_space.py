@@ -30,9 +30,6 @@ from flowtex.errors import raise_faults
 from flowtex.field import FlowField
 from flowtex.rendering.cpu.raster import cover
 
-__all__ = ["ImageSpace"]
-
-
 #: Frames in which a grain of the noise blinks once.
 BLINK_FRAMES = 24
 

@@ -23,9 +23,6 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import raise_faults
 
-__all__ = ["KERNELS", "lic"]
-
-
 #: Lengths in pixels by which a line may miss a corner between pixels and still pass through it.
 CORNER_TOLERANCE_PIXELS = 1e-9
 

@@ -15,9 +15,6 @@ from paper.plots import Line, line_plot
 from paper.references import ImageSpace
 from paper.views import View, grey, view_of
 
-__all__ = ["SECTIONS"]
-
-
 #: Frames before the camera moves, while it moves, and after it; pixels that it moves in a frame.
 STILL_FRAMES, PAN_PIXELS = 30, 6.0
 POINT, ZOOM = (0.63, 0.37), 2.0

@@ -10,9 +10,6 @@ from paper.findings import Claim, Finding, Panel, Plate, Section, Table
 from paper.references import draw_texture, forssell_lic
 from paper.views import grey, view_of
 
-__all__ = ["SECTIONS"]
-
-
 #: Texels of the texture of computational space, for each node.
 TEXELS_PER_NODE = 6
 

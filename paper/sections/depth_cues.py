@@ -16,9 +16,6 @@ from paper.findings import Block, Claim, Finding, Panel, Plate, Section, Table
 from paper.references import ImageSpace
 from paper.views import View, grey
 
-__all__ = ["SECTIONS"]
-
-
 #: Texels of the noise for each pixel of the picture's width: few enough that near by one covers
 #: several pixels, as otherwise mip levels bring all grains to the size of a pixel.
 TEXELS_PER_PIXEL = 0.6

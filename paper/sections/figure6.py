@@ -9,9 +9,6 @@ from paper.findings import Block, Claim, Finding, Panel, Plate, Section, Table
 from paper.references import draw_texture, forssell_lic
 from paper.views import View, grey, view_of, wing_view
 
-__all__ = ["SECTIONS"]
-
-
 #: Length of the kernel of LIC in nodes, and texels of the noise along the surface.
 LIC_LENGTH_NODES, RESOLUTION = 12.0, 512
 

@@ -16,9 +16,6 @@ from paper.bench import PAPER, Bench
 from paper.findings import Block, Claim, Finding, Plot, Section, Table
 from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, plot_axes
 
-__all__ = ["SECTIONS"]
-
-
 #: Destination time of figure 1, slices that are drawn, and the middle (i, j) of a vortex.
 FIGURE1_STEP, FIGURE1_SLICES, VORTEX_NODE = 12, 4, (18, 64)
 #: Nodes around it that are shown, by their distance, and the one whose path is shown.

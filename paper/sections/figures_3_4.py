@@ -14,8 +14,6 @@ from paper.findings import Claim, Finding, Section, Table, Text
 from paper.plots import Line, line_plot
 from paper.position_errors import STEPS, Errors, position_errors, step_slices
 
-__all__ = ["SECTIONS"]
-
 #: Growth over ten steps up to which an error counts as not accumulating.
 BOUNDED_GROWTH = 2.0
 FACTOR_WORDS = {2: "half", 4: "a quarter"}

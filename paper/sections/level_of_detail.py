@@ -13,8 +13,6 @@ from paper.bench import OURS, PAPER, Bench
 from paper.findings import Block, Claim, Finding, Panel, Plate, Section, Table, Text
 from paper.views import View, grey, view_of, wing_view
 
-__all__ = ["SECTIONS"]
-
 #: Points to zoom into: beside the post, and between vortices of the time step that is shown.
 BESIDE_POST, BETWEEN_VORTICES, VORTEX_STEP = (0.25, 0.5), (0.4, 0.55), 10
 

@@ -12,8 +12,6 @@ from paper.bench import Bench
 from paper.findings import Block, Claim, Finding, Section, Table, Text
 from paper.redundancy import error_in_texels, redundancy
 
-__all__ = ["SECTIONS"]
-
 #: Bound of the error in texels of the noise, and texels of the noise along the surface.
 BOUND_TEXELS, RESOLUTION = 0.25, 1024
 READING = (

@@ -10,8 +10,6 @@ from paper.findings import Claim, Finding, Panel, Plate, Plot, Section
 from paper.plots import Line, draw_lines, plot_axes
 from paper.views import grey, view_of
 
-__all__ = ["SECTIONS"]
-
 #: A point to look at, and texels of the noise.
 POINT, RESOLUTION = (0.63, 0.37), 1024
 KERNELS: dict[str, dict[str, Any]] = {

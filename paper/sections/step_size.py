@@ -18,8 +18,6 @@ from paper.findings import Claim, Finding, Panel, Plate, Section, Table
 from paper.plots import Line, line_plot
 from paper.views import View, grey, view_of
 
-__all__ = ["SECTIONS"]
-
 Values = Mapping[str, Any]
 
 #: Texels of the noise, and the zoom at which one is about as wide as a pixel.

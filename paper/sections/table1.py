@@ -6,8 +6,6 @@ from paper.bench import Bench
 from paper.data_sets import KILO, PUBLISHED, VECTOR_BYTES
 from paper.findings import Claim, Finding, Section, Table
 
-__all__ = ["SECTIONS"]
-
 
 def _table1(bench: Bench) -> Finding:
     rows, numbers, claims = [], {}, []

@@ -12,8 +12,6 @@ from flowtex.trace import SliceStore, trace
 from paper.bench import PAPER, Bench
 from paper.findings import Block, Claim, Finding, Section, Table, Text
 
-__all__ = ["SECTIONS"]
-
 #: Seconds of preprocessing, and of texture creation and loading, as the paper has them.
 PUBLISHED = {"post": (2.312, 0.08), "shuttle": (3.172, 0.077), "vortex": (8.875, 0.24)}
 #: Seconds that count as a few, and as slightly more; frames a second that count as several hundred.

@@ -8,8 +8,6 @@ from paper.bench import Bench
 from paper.data_sets import KILO, MEGA, PAIR_BYTES, PUBLISHED, VECTOR_BYTES
 from paper.findings import Claim, Finding, Section, Table, Text
 
-__all__ = ["SECTIONS"]
-
 #: Convolution size of the paper, and slices of a steady field that its sizes come to.
 K, STEADY_SLICES = 10, 54
 

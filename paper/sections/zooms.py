@@ -13,9 +13,6 @@ from paper.plots import Line, draw_lines, plot_axes
 from paper.references import draw_texture, forssell_lic
 from paper.views import View, grey, view_of
 
-__all__ = ["SECTIONS"]
-
-
 #: Texels of the paper's noise, a point to zoom into, and texels of the texture of LIC.
 RESOLUTION, POINT, LIC_SHAPE = 1024, (0.63, 0.37), (128, 256)
 METHODS = {

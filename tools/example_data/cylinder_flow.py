@@ -33,8 +33,6 @@ from scipy.linalg import lapack
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-__all__ = ["CylinderFlow", "CylinderSetup"]
-
 RADIUS = 0.5
 
 

@@ -24,18 +24,6 @@ from flowtex.examples._shipped import CYLINDER, DATA
 
 Real = NDArray[np.float64]
 
-__all__ = [
-    "FULL",
-    "STEPS",
-    "Shedding",
-    "node_radii",
-    "node_velocity",
-    "refine",
-    "restart",
-    "run",
-    "write",
-]
-
 #: The state from which the run can be taken up.
 RESTART = Path(__file__).parent / "cylinder_restart.npz"
 

@@ -13,8 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["STEPS", "pack", "save"]
-
 #: Whole steps from zero to the largest value; leaves room in 16 bits.
 STEPS = 32000
 

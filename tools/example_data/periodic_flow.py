@@ -22,8 +22,6 @@ from flowtex.examples._shipped import periodic_velocity
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-__all__ = ["PeriodicFlow", "decaying_turbulence", "resample"]
-
 
 @dataclass(frozen=True)
 class PeriodicFlow:

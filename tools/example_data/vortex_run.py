@@ -20,8 +20,6 @@ from flowtex.examples._shipped import DATA, VORTEX
 
 Real = NDArray[np.float64]
 
-__all__ = ["advance", "at_nodes", "run", "write"]
-
 #: Nodes that are computed and shipped along each axis, the closing line not counted.
 COMPUTED, NODES = 198, 99
 VISCOSITY, SEED, WAVES = 2e-4, 3, 6.0

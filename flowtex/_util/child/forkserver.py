@@ -24,8 +24,6 @@ from typing import Any, NoReturn
 
 from flowtex._util.child.worker import serve, settle
 
-__all__ = ["FORKS", "ForkServer", "fork_server", "main"]
-
 #: Whether children are forked; elsewhere libraries do not bear that.
 FORKS = sys.platform == "linux"
 

@@ -16,8 +16,6 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray
 
-__all__ = ["MessageError", "read_message", "write_message"]
-
 #: Length of the header.
 _PREFIX = struct.Struct(">I")
 #: Bytes of a header, at most.

@@ -27,8 +27,6 @@ from flowtex._util.progress import Stopped, check
 if FORKS:
     import fcntl
 
-__all__ = ["Child", "ChildError", "prepare"]
-
 #: Seconds between two checks whether an answer is still wanted, and for which the status of a
 #: child that has closed its pipe is waited for.
 CHECK_INTERVAL_S, STATUS_WAIT_S = 0.05, 5.0

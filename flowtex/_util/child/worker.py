@@ -18,8 +18,6 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.child.messages import read_message, write_message
 from flowtex._util.progress import stoppable
 
-__all__ = ["PROGRAM", "Answer", "Handler", "serve", "settle", "spawned", "start_text"]
-
 #: A value of JSON, and arrays.
 Answer = tuple[Any, Sequence[AnyArray]]
 #: Answers a request, which is a value of JSON.

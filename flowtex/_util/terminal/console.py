@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.console import Console
 
-__all__ = ["plain_text", "terminal"]
-
 #: Characters that move the cursor, colour, ring, or turn the direction of writing, and halves of
 #: characters; a line may end, and have tabs.
 _CONTROLS = re.compile(

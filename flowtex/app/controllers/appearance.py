@@ -20,20 +20,6 @@ from flowtex.options import Appearance as Look
 from flowtex.scene import Scene
 from flowtex.settings import TABLE, SettingsError, named_values
 
-__all__ = [
-    "ANOTHER_FILE",
-    "ANOTHER_TIME",
-    "BACKGROUNDS",
-    "COLOUR_BY",
-    "COMPARISONS",
-    "LOOK",
-    "MAP_LINES",
-    "PLAIN",
-    "Appearance",
-    "comparison",
-    "look_shown",
-]
-
 #: The choice of no colours.
 PLAIN = "none"
 #: Lines of a map, where the field has a projection; and all of how a surface looks that the page

@@ -25,8 +25,6 @@ from flowtex.web.assets import asset
 from flowtex.web.source import TileSource
 from flowtex.web.view import colours_of
 
-__all__ = ["RENDERERS", "BrowserRendering"]
-
 _log = logging.getLogger(__name__)
 
 #: Where the picture is drawn.

@@ -13,8 +13,6 @@ from flowtex.app.streaming.stream import Figures
 from flowtex.offscreen.annotations import length_text, map_scale, round_length
 from flowtex.settings import TABLE
 
-__all__ = ["KEYS", "VIEWS", "CameraControls"]
-
 #: Directions from which a surface can be looked at, and what is up then.
 VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
     "from +x": ((1, 0, 0), (0, 0, 1)),

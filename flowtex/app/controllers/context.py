@@ -15,8 +15,6 @@ from flowtex.camera import Camera, CameraError
 from flowtex.field import FlowField
 from flowtex.settings import Settings
 
-__all__ = ["Context", "Controller"]
-
 
 class Context:
     """What the controllers of a page share.

@@ -27,8 +27,6 @@ from flowtex.field.interpolation import steps_around
 from flowtex.field.source import Source
 from flowtex.scene import coarsened_field
 
-__all__ = ["Data"]
-
 #: Nodes of another file above which it is first shown coarser, and how many it then has.
 FILE_PREVIEW = 40_000, 8_000
 #: The same for another part of the data that is shown: a slider redraws while it moves.

@@ -40,8 +40,6 @@ from flowtex.offscreen.movie import FrameTimes, frame_times
 from flowtex.settings import Settings, named_values
 from flowtex.textures.images import averaged
 
-__all__ = ["MOST_PIXELS", "ExportError", "Job", "MovieJob", "PictureJob", "TiledPicture"]
-
 T = TypeVar("T")
 
 #: Pixels of a picture, and of a movie, and its longest side, at most.

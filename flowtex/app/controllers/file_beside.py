@@ -17,8 +17,6 @@ from flowtex.field.interpolation import steps_around
 from flowtex.offscreen.annotations import time_text
 from flowtex.plotting.handle import FlowHandle
 
-__all__ = ["FileBeside"]
-
 
 class FileBeside(Controller):
     """The flow of another file than ``data`` shows, in a second pane.

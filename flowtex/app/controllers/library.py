@@ -37,8 +37,6 @@ from flowtex.settings import Settings
 from flowtex.tiles import Pyramid
 from flowtex.trace import SliceStore
 
-__all__ = ["Choice", "Library", "TracedFlow"]
-
 #: Endings of files that a folder is searched for.
 SUFFIXES = frozenset(
     [

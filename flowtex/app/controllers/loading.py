@@ -17,8 +17,6 @@ from flowtex.app.controllers.library import Choice
 from flowtex.app.server.validation import shortened
 from flowtex.errors import FieldError
 
-__all__ = ["LoadRequest", "announced", "without_folder"]
-
 _log = logging.getLogger(__name__)
 
 T = TypeVar("T")

@@ -9,8 +9,6 @@ from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.server.validation import number
 from flowtex.offscreen.annotations import time_text
 
-__all__ = ["PACES", "Playback"]
-
 #: How many times faster than usual time may go by.
 PACES = (0.25, 0.5, 1.0, 2.0, 4.0)
 #: Stops of the time slider between two steps of the field.

@@ -27,8 +27,6 @@ from flowtex.field import FlowField
 from flowtex.plotting.handle import FlowHandle
 from flowtex.probe import PointValues, Probe, locate, probe, values_at
 
-__all__ = ["Lines", "PathCard", "PointInfo", "PointText", "clip_line", "number_text", "with_unit"]
-
 Lines = list[tuple[str, str]]
 
 #: Seconds between two tips.

@@ -48,8 +48,6 @@ from flowtex.options import Appearance as Look
 from flowtex.options import option_form
 from flowtex.settings import TABLE, SettingsError
 
-__all__ = ["DEFAULTS", "from_link", "to_link", "to_python"]
-
 #: Values that a link leaves out.
 DEFAULTS: dict[str, Any] = {
     "clock": 0.0,

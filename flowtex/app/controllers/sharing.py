@@ -18,8 +18,6 @@ from flowtex.app.server.files import Downloads
 from flowtex.app.server.validation import number
 from flowtex.errors import FieldError
 
-__all__ = ["FORMATS", "Sharing"]
-
 #: What can be saved.
 FORMATS = ("PNG", "MP4", "GIF")
 #: Seconds between two reports of how far a job is.

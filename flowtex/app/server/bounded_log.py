@@ -10,8 +10,6 @@ from contextlib import contextmanager
 from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
-__all__ = ["RepeatFilter", "bounded_log"]
-
 #: Records of one place in the code that are written in a window, and its seconds.
 MOST_RECORDS, WINDOW_S = 5, 60.0
 #: Characters of a message, and of a traceback with it.

@@ -17,8 +17,6 @@ from typing import Any
 
 from aiohttp import web
 
-__all__ = ["LimitedServer", "keep", "limit_time"]
-
 #: Seconds for the head of a request, and for finding an answer (an upload lasts until it is read).
 HEAD_S, ANSWER_S = 30.0, 900.0
 #: Connections at one time, at most, and connections that wait to be let in.

@@ -25,8 +25,6 @@ from flowtex._util.temporary import TemporaryFolder
 from flowtex.app.server.security import new_secret
 from flowtex.errors import FieldError
 
-__all__ = ["Content", "Downloads", "Give", "Routes", "Take", "add_route", "plain_name"]
-
 #: Seconds that a download waits to be fetched, and bytes of all of them together, at most.
 LIFETIME_S, DOWNLOAD_BYTES = 1800.0, 2_000_000_000
 #: Bytes of a file that is sent which are written at once.

@@ -14,8 +14,6 @@ from typing import Any
 
 from wslink.chunking import UnChunker
 
-__all__ = ["LimitedMessages", "restrict"]
-
 #: Bytes of a message, and messages that a page may begin before it ends one.
 MESSAGE_BYTES, OPEN_MESSAGES = 16_000_000, 4
 #: What trame offers, and no page of ours asks for.

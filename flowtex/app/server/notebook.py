@@ -24,8 +24,6 @@ from flowtex.app.server.security import ANY, LOCAL, new_secret
 from flowtex.app.server.sessions import Sessions
 from flowtex.app.server.site import Site
 
-__all__ = ["NotebookPage", "proxy_path"]
-
 #: Height of a frame, in CSS pixels.
 HEIGHT_PX = 520
 #: Connections that may wait while the kernel runs a cell.

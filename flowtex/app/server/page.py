@@ -8,8 +8,6 @@ import logging
 from collections.abc import Callable, Coroutine
 from typing import Any
 
-__all__ = ["PageState", "Signal", "start_task"]
-
 _log = logging.getLogger(__name__)
 _count = itertools.count(1)
 

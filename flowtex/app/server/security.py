@@ -29,8 +29,6 @@ from aiohttp import web
 from flowtex.app.server.connections import limit_time
 from flowtex.errors import FieldError
 
-__all__ = ["ANY", "FAULT", "LOCAL", "guard", "is_same", "known_hosts", "new_secret"]
-
 #: Names of this machine, for itself alone.
 LOCAL = frozenset({"localhost"})
 #: Stands for every name.

@@ -12,8 +12,6 @@ from flowtex.pyramid.layout import create_level
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import DOCUMENT, ReadFault, fault_words, is_refused, objects_at
 
-__all__ = ["ServedStore"]
-
 #: Objects of the store that are read at once.
 MOST_READS = 32
 #: Numbers of objects as Zarr writes them.

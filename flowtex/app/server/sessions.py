@@ -50,8 +50,6 @@ from flowtex.app.server.files import Routes
 from flowtex.app.server.messages import LimitedMessages, restrict
 from flowtex.app.server.security import new_secret
 
-__all__ = ["ClosedError", "FullError", "MakeApp", "Session", "Sessions", "usual_limit"]
-
 #: Makes an application on a trame server. An application has ``server``, ``stream`` (a
 #: :class:`~flowtex.app.streaming.stream.FrameStream`) and ``close()``.
 MakeApp = Callable[[Any], Any]

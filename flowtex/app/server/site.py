@@ -37,8 +37,6 @@ from flowtex.app.server.security import FAULT, LOCAL, guard, is_same, new_secret
 from flowtex.app.server.sessions import ClosedError, FullError, MakeApp, Sessions
 from flowtex.errors import FieldError
 
-__all__ = ["ServeError", "Site", "run_site", "serve_until_ended"]
-
 DOOR = Path(__file__).parents[1] / "ui" / "static" / "door.html"
 #: Bytes of what the door sends, at most.
 REQUEST_BYTES = 4096

@@ -22,8 +22,6 @@ from flowtex.app.server.served_store import ServedStore
 from flowtex.app.server.site import serve_until_ended
 from flowtex.pyramid.places import DOCUMENT
 
-__all__ = ["run_store", "store_application"]
-
 #: Seconds for which a browser may keep an object.
 KEPT_S = 3600
 WRONG = "This page opens with the whole address that flowtex printed."

@@ -16,8 +16,6 @@ from flowtex.app.server.files import Routes, plain_name
 from flowtex.errors import FieldError
 from flowtex.field.remote import prepare_readers
 
-__all__ = ["UPLOAD_SUFFIXES", "Uploads"]
-
 #: Endings of files that are taken.
 UPLOAD_SUFFIXES = (
     *(".vts", ".vtr", ".vti", ".vtk", ".vtu", ".vtp"),

@@ -18,16 +18,6 @@ from flowtex._util.array_types import AnyArray
 from flowtex.settings import SettingsError
 from flowtex.textures.images import pixels_of
 
-__all__ = [
-    "clipped",
-    "decode_picture",
-    "mapping",
-    "name_among",
-    "number",
-    "sent_picture",
-    "shortened",
-]
-
 #: Characters of a message to a page, at most.
 MESSAGE_LENGTH = 400
 #: Bytes of a picture that is sent, and pixels in it, at most.

@@ -31,8 +31,6 @@ from flowtex.options import FieldOptions
 from flowtex.scene import AppearanceAttributes, Change, Scene
 from flowtex.settings import Settings
 
-__all__ = ["FlowArea"]
-
 
 class FlowArea(AppearanceAttributes):
     """A flow drawn on the server, as a part of a page.

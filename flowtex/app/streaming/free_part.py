@@ -7,8 +7,6 @@ from itertools import combinations
 
 from flowtex.camera import ViewPart
 
-__all__ = ["Cover", "covers_of_pane", "free_part"]
-
 #: Left, top, right and bottom of what lies on the view, from 0 to 1 rightwards and downwards.
 Cover = tuple[float, float, float, float]
 #: Share of the whole view's scale below which a panel lies on the surface.

@@ -17,8 +17,6 @@ from flowtex.app.server.validation import clipped, mapping
 from flowtex.app.streaming.viewport import GAP_PX, Viewport
 from flowtex.camera import CAMERA_LIMITS
 
-__all__ = ["Place", "Pointer"]
-
 #: Notches of the wheel that one event may stand for; trackpads send small parts of one.
 MOST_NOTCHES = 5.0
 #: Farthest from the view that a pointer is followed, in pixels, and how far two fingers may spread.

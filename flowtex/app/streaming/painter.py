@@ -23,8 +23,6 @@ from flowtex.app.server.validation import clipped
 from flowtex.app.streaming.reprojection import Snapshot, coverage, reproject, whole_shift
 from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
 
-__all__ = ["MOVING_S", "PLAYING_S", "Cost", "PanePainter", "Quality", "ViewPainter", "view_pixels"]
-
 #: Seconds that a picture may take in motion, while playing, and for one tile at rest.
 MOVING_S, PLAYING_S, TILE_S = 0.06, 0.14, 0.1
 #: Seconds that a picture takes however small it is, and what a pixel costs beside its samples,

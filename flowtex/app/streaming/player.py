@@ -15,8 +15,6 @@ from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 from flowtex.offscreen.movie import run_seconds
 
-__all__ = ["Player"]
-
 #: Pictures in a second while playing, at most.
 RATE_HZ = 20.0
 #: Seconds that one picture may let go by, however long it takes.

@@ -15,8 +15,6 @@ from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import Camera
 from flowtex.field import Surface
 
-__all__ = ["Snapshot", "coverage", "plane_to_view", "reproject", "whole_shift"]
-
 #: Change of scale below which a picture only shifts.
 SCALE_TOLERANCE = 1e-3
 #: Distance from a whole number of pixels below which a shift is one, in pixels.

@@ -32,8 +32,6 @@ from flowtex.app.streaming.painter import MOVING_S, PLAYING_S, ViewPainter, view
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 
-__all__ = ["Figures", "FrameStream"]
-
 #: Seconds without a change after which the full picture is drawn.
 REST_S = 0.12
 #: Pictures in a second, at most.

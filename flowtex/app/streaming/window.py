@@ -15,8 +15,6 @@ from flowtex._util.array_types import Bytes
 from flowtex.camera import Camera
 from flowtex.plotting.vtk_camera import apply_camera
 
-__all__ = ["OffscreenWindow", "Rect"]
-
 Rect = tuple[int, int, int, int]
 
 

@@ -11,19 +11,6 @@ from trame.widgets import vuetify3 as v3
 
 from flowtex.settings import NEEDS, STEADINESS, Setting
 
-__all__ = [
-    "ARIA",
-    "buttons",
-    "control",
-    "hint",
-    "number",
-    "row",
-    "select",
-    "slider",
-    "switch",
-    "toggle",
-]
-
 #: More choices than this are a menu.
 MOST_BUTTONS = 3
 #: Attributes that trame's widgets do not know by themselves.

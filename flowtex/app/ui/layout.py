@@ -18,8 +18,6 @@ from flowtex.app.server.uploads import UPLOAD_SUFFIXES
 from flowtex.app.ui.controls import ARIA, hint, select, slider, toggle
 from flowtex.app.ui.panel import build_panel, panel_shown
 
-__all__ = ["THEMES", "build_page"]
-
 #: What complains is dark in both.
 COMPLAINT = {"surface-variant": "#2a3440", "on-surface-variant": "#e8edf2"}
 THEMES = {

@@ -32,8 +32,6 @@ from flowtex.app.ui.controls import (
 from flowtex.options import ROBUST, Appearance, option_text
 from flowtex.settings import GROUPS, TABLE
 
-__all__ = ["build_panel", "panel_shown"]
-
 
 def build_panel(controllers: Controllers) -> None:
     """Put the panel into the page that is open."""

@@ -16,23 +16,6 @@ from flowtex.errors import FieldError
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "FACES",
-    "LEVEL",
-    "LEVELS",
-    "NODES",
-    "TIME",
-    "Choice",
-    "Section",
-    "axis_kind",
-    "axis_values",
-    "drawn_steps",
-    "horizontal_dims",
-    "seconds_in",
-    "sections",
-    "way_ahead",
-]
-
 #: Names of axes that are vertical, and horizontal, where no attribute says so.
 LEVELS = re.compile(
     r"^(s_rho|s_w|sc_r|nav_lev|k|k_\w|lev\w*|depth\w*|z|z_\w+|zl|height\w*|altitude|"

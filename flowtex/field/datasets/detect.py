@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["is_dataset"]
-
 
 def is_dataset(thing: Any) -> bool:
     """Whether something is a dataset of xarray's, or several of them; xarray is not loaded."""

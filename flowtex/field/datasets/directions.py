@@ -8,8 +8,6 @@ from flowtex._util.array_types import Floats
 from flowtex.earth import GLOBE, Projection
 from flowtex.field.datasets.places import Places, over_sphere
 
-__all__ = ["turned"]
-
 
 def turned(places: Places, ahead: tuple[int, int], u: Floats, v: Floats) -> tuple[Floats, Floats]:
     """Return components eastward and northward, or along x and y, of those along rows and columns.

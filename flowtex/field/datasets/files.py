@@ -20,16 +20,6 @@ from flowtex.field.io.inspection.files import inspect_file
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "SUFFIXES",
-    "belong_together",
-    "dataset_paths",
-    "import_cfgrib",
-    "is_dataset_file",
-    "open_datasets",
-    "open_files",
-]
-
 NETCDF = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
 ZARR, JSON = (".zarr",), (".json",)

@@ -15,8 +15,6 @@ from flowtex.field.datasets.pairs import Pair
 from flowtex.field.datasets.places import Places, find_places, over_sphere
 from flowtex.field.datasets.staggered import Sides, centred, first_side
 
-__all__ = ["find_grid", "sea_mask", "unrepeated"]
-
 #: Names of masks in the middle of cells, 1 at sea.
 MASKS = ("mask_rho", "mask_t", "tmask", "tmaskutil", "wet", "wet_c")
 #: Lines of a grid that repeat others are as near to them as this share of a cell.

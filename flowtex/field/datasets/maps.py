@@ -11,18 +11,6 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.earth import GLOBE, Projection
 from flowtex.field.datasets.places import Places
 
-__all__ = [
-    "CYLINDERS",
-    "TORN",
-    "MapLines",
-    "MapNodes",
-    "lines_on_map",
-    "on_map",
-    "projection_of",
-    "shown_positions",
-    "shown_rows",
-]
-
 #: The flat map that is drawn where none is chosen, and those on which an axis that goes around the
 #: Earth goes on at the other side, a map further.
 FLAT = "platecarree"

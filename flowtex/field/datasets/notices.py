@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from flowtex._util import notices
 
-__all__ = ["DatasetNotice", "notify"]
-
 
 class DatasetNotice(notices.Notice):
     """Something of a dataset was chosen without being asked for.

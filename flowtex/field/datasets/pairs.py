@@ -17,8 +17,6 @@ from flowtex.field.datasets.axes import FACES, NODES
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Pair", "choose_pair", "find_pairs", "to_metres_per_second", "two_names"]
-
 #: Words for the first component, and those for the second one.
 PARTNERS = {
     "eastward": "northward",

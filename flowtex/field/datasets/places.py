@@ -17,8 +17,6 @@ from flowtex.field.io.inspection.limits import values_in
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["LATITUDE", "LONGITUDE", "Places", "find_places", "over_sphere"]
-
 LONGITUDE = re.compile(
     r"^(nav_lon|(.*_)?lon(gitude)?(_\w+)?|lon[a-z]?|xlong.*|glam\w?|geolon\w*|[tu]long|xc|xg)$",
     re.I,

@@ -51,8 +51,6 @@ from flowtex.field.steps import LazySteps
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Recognised", "as_datasets", "read_datasets", "recognise"]
-
 #: Longest name that a legend has room for.
 LONGEST_NAME = 40
 

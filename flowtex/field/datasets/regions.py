@@ -31,8 +31,6 @@ from flowtex.field.periodic import find_closure
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["RegionLines", "RegionNodes", "Regions", "Words", "numbers_in", "region_lines"]
-
 #: What is beyond this stands for missing data, though no attribute tells.
 LARGEST_VALUE = 1e15
 

@@ -18,8 +18,6 @@ from flowtex.field.field import FlowField
 from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.source import FlowSource
 
-__all__ = ["DatasetSource", "open_source"]
-
 
 class DatasetSource(FlowSource):
     """Datasets of xarray's that belong together; blocks are the maps they can be drawn on.

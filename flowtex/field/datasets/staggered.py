@@ -19,8 +19,6 @@ from flowtex.field.io.inspection.limits import values_in
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Sides", "centred", "first_side", "shift_told"]
-
 #: Paddings of SGRID, and the first side that they stand for.
 PADDINGS = {"none": 0, "high": 0, "low": -1, "both": -1}
 

@@ -20,8 +20,6 @@ from flowtex.field.io.inspection.limits import check_count, check_memory
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["read_winds"]
-
 #: Names of the components by the number of the parameter, those of the categories that move.
 NUMBERS = {2: "u", 3: "v"}
 #: Bytes in memory of one byte of JSON, at most: "[]," is a list of its own.

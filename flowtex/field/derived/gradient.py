@@ -19,8 +19,6 @@ from flowtex.field.poles import Pole
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.surface import TriangleSurface
 
-__all__ = ["NodeGradient", "node_gradient", "true_positions", "true_velocity"]
-
 #: Below this ratio of squared area to squared lengths a cell has no area to divide by.
 COLLAPSED_AREA = 1e-10
 #: Neighbours that a quadratic fit needs, and its regularisation as a share of the largest entry.

@@ -14,16 +14,6 @@ from flowtex.field.derived.gradient import node_gradient, true_velocity
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.surface import Surface
 
-__all__ = [
-    "DERIVED",
-    "FOLLOWED",
-    "LONG_NAMES",
-    "derived_steps",
-    "derived_unit",
-    "followed_steps",
-    "speed_unit",
-]
-
 
 def _vorticity(a: Floats) -> Floats:
     return np.asarray(a[1, 0] - a[0, 1])

@@ -14,8 +14,6 @@ from numpy.typing import ArrayLike
 
 from flowtex.earth import Projection
 
-__all__ = ["FieldArrays", "GridArrays", "TriangleArrays"]
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FieldArrays:

@@ -10,8 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-__all__ = ["NO_VELOCITY", "find_vectors"]
-
 #: Names of vectors that are no velocity.
 NO_VELOCITY = re.compile(
     r".*normals?|.*texture.?coord.*|t_?coords?|coord(inate)?s?|points?|positions?", re.IGNORECASE

@@ -13,8 +13,6 @@ from flowtex.field.io.arrays import FieldArrays
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["FieldConstructors"]
-
 
 class FieldConstructors:
     """Class methods that read something and make a field of what it gives."""

@@ -16,8 +16,6 @@ from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.io.files import read_file
 from flowtex.field.io.reader_errors import errors_of_file
 
-__all__ = ["errors_of", "read_files"]
-
 #: Arguments that are for meshes; the others are for data of the Earth.
 OF_MESHES = ("plane", "slice", "contour", "block", "periodic", "sign_free")
 

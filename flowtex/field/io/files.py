@@ -21,8 +21,6 @@ from flowtex.field.io.meshes import time_steps, times_of
 from flowtex.field.io.readers import open_reader
 from flowtex.field.io.surfaces import beside
 
-__all__ = ["OpenFile", "open_file", "read_file"]
-
 _KNOWN_FORMATS = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
     ".foam and more), or PLOT3D (.xyz with .q beside it)"

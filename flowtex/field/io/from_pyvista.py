@@ -49,8 +49,6 @@ from flowtex.field.io.vectors import (
 from flowtex.field.periodic import find_closure
 from flowtex.field.signs import axes, products
 
-__all__ = ["read_meshes"]
-
 
 @dataclass(kw_only=True)
 class _PlaneStep(SheetStep):

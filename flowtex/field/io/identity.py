@@ -17,8 +17,6 @@ from pathlib import Path
 from flowtex.field.io import plot3d
 from flowtex.field.io.surfaces import beside
 
-__all__ = ["Identity", "file_identity", "members_of"]
-
 #: Path, number on the disk, size and time of change in nanoseconds of each file; zeros where there
 #: is none.
 Identity = tuple[tuple[str, int, int, int], ...]

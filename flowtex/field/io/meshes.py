@@ -21,28 +21,6 @@ from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field.io.vectors import MeshArray, candidates, catalogue, missing_arrays
 
-__all__ = [
-    "SAME_NODE_SHARE",
-    "TimeStep",
-    "cell_dimension",
-    "cell_dimensions",
-    "check_arrays",
-    "check_nodes",
-    "drawn_parts",
-    "hidden_nodes",
-    "is_reader",
-    "is_structured",
-    "leaves",
-    "part_size",
-    "parts_of",
-    "pick",
-    "several_fault",
-    "several_parts",
-    "time_steps",
-    "times_of",
-    "visible_cells",
-]
-
 #: Flags of VTK's ghost arrays that hide: a hidden point; a refined or a hidden cell. Points and
 #: cells that are duplicates of a neighbouring piece carry data and count as visible.
 _HIDDEN_POINT, _HIDDEN_CELL = 2, 8 | 32

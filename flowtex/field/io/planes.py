@@ -28,8 +28,6 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
 
-__all__ = ["Plane", "choose_plane", "count_nodes", "nodes_to_keep", "plane_faults", "spread"]
-
 _PLANE = re.compile(r"\s*([ijk])\s*=\s*([+-]?\d+)\s*", re.IGNORECASE)
 
 

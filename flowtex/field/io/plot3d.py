@@ -20,8 +20,6 @@ import numpy as np
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 
-__all__ = ["GRID_SUFFIXES", "find_grid", "find_layout", "find_solution", "read_plot3d"]
-
 #: VTK's number for the function that makes ``Velocity`` from density and momentum.
 VELOCITY = 200
 

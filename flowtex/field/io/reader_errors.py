@@ -17,8 +17,6 @@ from xml.etree.ElementTree import ParseError
 
 from flowtex.errors import FieldError
 
-__all__ = ["errors_of_file"]
-
 #: Held while VTK's output window, its logger and Python's root logger are changed: each exists once
 #: in a process, and two threads that replace them at the same time corrupt the heap. A file may be
 #: opened while another is read, so the thread that holds it may take it again.

@@ -9,8 +9,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-__all__ = ["open_reader"]
-
 
 def open_reader(file: Path) -> Any:
     """Return the reader of a file: one of PyVista's, or one that is used alike.

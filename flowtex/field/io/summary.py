@@ -39,8 +39,6 @@ from flowtex.field.io.vectors import (
     vector_faults,
 )
 
-__all__ = ["ArraySummary", "BlockSummary", "FileSummary", "describe"]
-
 
 @dataclass(frozen=True)
 class ArraySummary:

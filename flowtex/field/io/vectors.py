@@ -15,17 +15,6 @@ import numpy as np
 from flowtex._util.array_types import AnyArray
 from flowtex.field.io.components import NO_VELOCITY, find_vectors
 
-__all__ = [
-    "BLANKING",
-    "MeshArray",
-    "candidates",
-    "catalogue",
-    "choose_vectors",
-    "missing_arrays",
-    "values_of",
-    "vector_faults",
-]
-
 #: Arrays that say what is hidden and nothing about the flow.
 BLANKING = ("vtkGhostType", "IBlank", "vtkValidPointMask")
 _PLACES: tuple[Literal["points"], Literal["cells"]] = ("points", "cells")

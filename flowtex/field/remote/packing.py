@@ -13,8 +13,6 @@ from flowtex.field.field import FlowField
 from flowtex.field.source import Source
 from flowtex.field.steps import LazySteps
 
-__all__ = ["describe_source", "pack_field", "take_description", "unpack_field"]
-
 #: Attributes of a field that are arrays, and those that are values of JSON.
 ARRAYS = ("points", "velocity", "times", "valid", "has_position", "triangles")
 VALUES = ("periodic", "name", "length_unit", "time_unit", "sign_free", "units", "long_names")

@@ -13,8 +13,6 @@ from flowtex.field.remote.packing import describe_source, pack_field
 from flowtex.field.source import Source
 from flowtex.field.steps import LazySteps
 
-__all__ = ["Reader"]
-
 
 class Reader:
     """Answers the requests of a :class:`~flowtex.field.remote.RemoteSource`."""

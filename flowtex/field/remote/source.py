@@ -20,8 +20,6 @@ from flowtex.field.io.identity import file_identity
 from flowtex.field.remote.packing import take_description, unpack_field
 from flowtex.field.source import Source
 
-__all__ = ["RemoteSource", "open_remote", "prepare_readers"]
-
 _log = logging.getLogger(__name__)
 
 READER = "flowtex.field.remote.reader:Reader"

@@ -26,14 +26,6 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
-__all__ = [
-    "TriangleNodes",
-    "known_means",
-    "nodal_means",
-    "solid_triangles",
-    "triangle_nodes",
-]
-
 #: Twice the area of a triangle over the square of its longest side, below which it has none.
 FLAT_TRIANGLE = 1e-12
 

@@ -14,8 +14,6 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.triangles.surface import TriangleSurface
 
-__all__ = ["SHARP", "normals_at_corners", "velocity_on_triangles"]
-
 #: Cosine of the angle between the normals of a node and a triangle below which there is an edge.
 SHARP = 0.86
 

@@ -8,8 +8,6 @@ import scipy
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.triangles.surface import TriangleSurface
 
-__all__ = ["ON_SURFACE", "START_NODES", "TriangleLocator", "closest"]
-
 #: Nodes around a point that cells are walked from.
 START_NODES = 4
 #: Distance from a triangle, in sizes of its cell, within which a point lies on it.

@@ -18,8 +18,6 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.topology import flipped, neighbours, triangle_normals
 
-__all__ = ["TriangleSurface"]
-
 #: Greatest share of a second corner, by which no next triangle is meant.
 MOST_SHARE = 1 - 1e-7
 

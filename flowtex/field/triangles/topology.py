@@ -7,16 +7,6 @@ import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 
-__all__ = [
-    "edges_of",
-    "flipped",
-    "merged_nodes",
-    "needle_edges",
-    "neighbours",
-    "repeated",
-    "triangle_normals",
-]
-
 #: Nodes on borders closer than this share of the surface's extent are one.
 SAME_NODE_SHARE = 1e-9
 #: Edges of a triangle without area that are shorter than this share of the longest are a point.

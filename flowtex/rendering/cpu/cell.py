@@ -12,8 +12,6 @@ from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.path import Slices, TriangleSlices
 from flowtex.rendering.cpu.places import Places, TrianglePlaces
 
-__all__ = ["CellPath"]
-
 
 class CellPath:
     """Paths of N fragments that follow the velocity of the nodes around each.

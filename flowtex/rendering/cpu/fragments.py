@@ -14,8 +14,6 @@ from flowtex.rendering.cpu.places import Places, TrianglePlaces, shares_by
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.textures import TextureSet, TriangleGeometry
 
-__all__ = ["Fragments", "Varying"]
-
 
 @dataclass(frozen=True, eq=False)
 class Varying:

@@ -19,8 +19,6 @@ from flowtex.rendering.constants import (
 )
 from flowtex.rendering.cpu.fragments import Varying
 
-__all__ = ["footprint", "level_colour", "on_surface", "slice_level"]
-
 
 def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
     """Longest and shortest side of what a pixel covers, from derivatives (N, C), (N,) each."""

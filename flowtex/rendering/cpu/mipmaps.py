@@ -6,8 +6,6 @@ import numpy as np
 
 from flowtex._util.array_types import Floats, Floats32, Indices
 
-__all__ = ["Mips"]
-
 
 class Mips:
     """A texture array, or an image as an array of one layer, with its mip levels.

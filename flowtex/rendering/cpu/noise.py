@@ -15,8 +15,6 @@ from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import footprint, on_surface
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
 
-__all__ = ["Motion", "NoiseLattice", "SpaceNoise", "mix", "noise_lattice", "octave"]
-
 Hashes = NDArray[np.uint32]
 
 

@@ -16,8 +16,6 @@ from flowtex.rendering.cpu.noise import mix
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
 from flowtex.textures import PaperTextures
 
-__all__ = ["PaperImages", "PaperNoise", "PaperPicture"]
-
 Values = Mapping[str, Any]
 
 

@@ -10,8 +10,6 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.places import Places, TrianglePlaces
 
-__all__ = ["AxisSlices", "Path", "Slices", "TriangleSlices"]
-
 
 @dataclass(frozen=True, eq=False)
 class Slices:

@@ -16,8 +16,6 @@ from flowtex.rendering.cpu.render import lookup_maker
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Sums
 from flowtex.textures import TextureSet
 
-__all__ = ["LoadedTextures", "Recorder", "Window", "camera_facing", "cover_place"]
-
 
 def cover_place(
     surface: Surface, place: SurfacePoint, camera: Camera, size: tuple[int, int]

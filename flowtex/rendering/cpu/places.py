@@ -9,8 +9,6 @@ import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
 
-__all__ = ["Places", "TrianglePlaces", "shares_by"]
-
 
 @dataclass(frozen=True, eq=False)
 class TrianglePlaces:

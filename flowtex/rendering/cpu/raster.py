@@ -24,9 +24,6 @@ from flowtex.field import Surface
 from flowtex.field.locate import TRIANGLES
 from flowtex.field.triangles.surface import TriangleSurface
 
-__all__ = ["Coverage", "cover", "rasterise"]
-
-
 #: Pixels, or rows of pixels, that are looked at together.
 CHUNK = 1 << 20
 #: Pixels by which the rows and columns of a triangle may be off from rounding.

@@ -26,9 +26,6 @@ from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 
-__all__ = ["Picture", "lookup_maker", "render", "slice_mips", "slices_at", "view_state"]
-
-
 #: Fragments that are followed together: what a sample needs of them stays in the cache.
 PART = 1 << 14
 

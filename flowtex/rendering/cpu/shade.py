@@ -9,8 +9,6 @@ from flowtex._util.array_types import Bytes, Floats
 from flowtex.rendering import constants as const
 from flowtex.settings import Settings
 
-__all__ = ["mean_colours", "paint", "shade", "tone"]
-
 
 def shade(colour: ArrayLike, value: Floats, settings: Settings) -> Floats:
     """Lay the texture, (...), over colours from 0 to 1, (3,) or (..., 3), as ``flowtexShade``."""

@@ -15,8 +15,6 @@ from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import Path, Slices
 from flowtex.rendering.cpu.places import Places
 
-__all__ = ["Lookup", "LookupMaker", "Side", "Summing", "Sums", "shared", "weight"]
-
 Values = Mapping[str, Any]
 
 

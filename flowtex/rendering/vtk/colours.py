@@ -14,8 +14,6 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from flowtex._util.array_types import Floats, Floats32
 from flowtex.textures import SurfaceGeometry, TriangleGeometry
 
-__all__ = ["MappedColours"]
-
 #: Greatest share of the range of a colour map that half precision is to hold.
 MOST_RANGES = 1e3
 

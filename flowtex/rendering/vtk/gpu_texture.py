@@ -14,8 +14,6 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObje
 
 from flowtex._util.array_types import Floats32
 
-__all__ = ["GPUTexture"]
-
 #: OpenGL's numbers of internal formats, in half precision, by channels.
 FORMATS = {1: 0x822D, 2: 0x822F, 4: 0x881A}
 #: OpenGL's number of numbers in half precision.

@@ -49,8 +49,6 @@ from flowtex.rendering.vtk.mesh import (
 from flowtex.settings import Settings
 from flowtex.textures import LayerPrefetch, SurfaceGeometry, TextureSet
 
-__all__ = ["FlowLayer"]
-
 #: Name under which PyVista registers the replacements.
 OWNER = "flowtex"
 

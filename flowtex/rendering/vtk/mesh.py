@@ -16,17 +16,6 @@ from vtkmodules.vtkRenderingCore import vtkPolyDataMapper
 from flowtex._util.array_types import Floats32, Indices
 from flowtex.textures import SurfaceGeometry, TextureSet, TriangleGeometry
 
-__all__ = [
-    "ATTRIBUTES",
-    "FlowMapper",
-    "set_attributes",
-    "set_position",
-    "set_triangles",
-    "surface_mesh",
-    "use_flow_mapper",
-    "vertex_attributes",
-]
-
 #: Extents from the origin from which on VTK draws points relative to another one; nearer by it
 #: takes them to single precision as they are.
 FAR_EXTENTS = 1e3

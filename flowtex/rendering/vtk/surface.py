@@ -36,8 +36,6 @@ from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.tiles import TILE_BLOCKS, Pyramid, Tile, TileKey, TileLoader
 
-__all__ = ["FlowSurface"]
-
 #: Time after which a window is drawn again while tiles are on their way.
 LOOK_INTERVAL_MS = 250
 

@@ -37,8 +37,6 @@ from flowtex.settings import TABLE, Settings
 from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet, TriangleGeometry
 from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
 
-__all__ = ["ClientData", "Colours", "single", "tile_parts"]
-
 #: Shaders of the client, by the name under which the header has their text.
 SHADERS = {
     "vertex": "webgl2/vertex.glsl",

@@ -27,8 +27,6 @@ from flowtex.rendering.map_overlay import (
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.geometry import DrawnSurface
 
-__all__ = ["dates_of", "earth_header", "earth_parts"]
-
 #: Greatest number of a place on a line, of those that a side of the lines' box is divided into.
 LINE_STEPS = 65535
 #: Places along the longer side of a map at which longitude and latitude are handed over, at most,

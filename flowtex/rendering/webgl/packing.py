@@ -10,8 +10,6 @@ from flowtex._util.array_types import AnyArray, Halves
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.textures import TextureSet
 
-__all__ = ["Packing", "half", "packing_of"]
-
 #: Greatest number in half precision.
 HALF_MAX = 65504.0
 #: Bytes of packed steps that are cached, and how many steps at least.

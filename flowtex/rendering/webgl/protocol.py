@@ -24,18 +24,6 @@ import numpy as np
 from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import digest
 
-__all__ = [
-    "FORMAT",
-    "Header",
-    "Parts",
-    "file_infos",
-    "part_buffer",
-    "part_info",
-    "part_text",
-    "parts_file",
-    "plain_list",
-]
-
 #: Number of the form of header and parts; a client refuses one that it does not know.
 FORMAT = 4
 #: Of gzip, for the parts of a page.

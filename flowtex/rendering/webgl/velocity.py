@@ -23,8 +23,6 @@ from flowtex.trace.charts import Charts
 from flowtex.trace.lags import drawn_lags
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
 
-__all__ = ["can_trace", "steps_around", "surface_parts", "trace_header", "velocity_part"]
-
 #: Share of the typical speed by which that along the surface may differ from the whole one.
 SAME_SPEED_SHARE = 1e-3
 #: Least size of a cell in typical ones.

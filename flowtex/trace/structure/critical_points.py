@@ -18,8 +18,6 @@ from flowtex.field.poles import Pole
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.trace.structure.zeros import bilinear_zeros, linear_zeros, triangle_indices
 
-__all__ = ["KINDS", "CriticalPoint", "CriticalPoints", "critical_points"]
-
 #: Kinds of critical points, for tables and legends.
 KINDS = ("saddle", "source", "sink", "centre", "spiral source", "spiral sink")
 #: Growth of a spiral, as a share of its rotation, up to which it is a centre.

@@ -20,8 +20,6 @@ from flowtex.trace.structure.critical_points import (
 )
 from flowtex.trace.trace import paths
 
-__all__ = ["Separatrices", "Separatrix", "separatrices"]
-
 #: Distance from the saddle at which a line begins, and between its points, in cells.
 BEGIN_CELLS, POINT_CELLS = 0.05, 0.5
 #: Length of a line, as a share of the surface's extent, and points of one at most.

@@ -6,8 +6,6 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
 
-__all__ = ["bilinear_zeros", "linear_zeros", "triangle_indices"]
-
 #: How far beyond its cell a zero may lie, in cells: it must not be lost between two of them.
 ROUNDING_CELLS = 1e-9
 

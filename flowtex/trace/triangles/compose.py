@@ -22,8 +22,6 @@ from flowtex.trace.integrate import MOST_CELLS
 from flowtex.trace.triangles.integrate import TrianglePaths
 from flowtex.trace.triangles.motion import BEHIND, SteadyMotion, TriangleMesh
 
-__all__ = ["DIRECT_STEPS", "Composition", "known_lags"]
-
 #: Length in small cells up to which paths are integrated, and least number of such slices.
 DIRECT_CELLS, LEAST_DIRECT = 8.0, 2
 #: Rounds of steps for these, of which any mesh takes half: what goes on circles about a node.

@@ -31,8 +31,6 @@ from flowtex.trace.triangles.motion import (
     dot,
 )
 
-__all__ = ["TrianglePaths", "begin", "integrate"]
-
 #: Rounds of steps after which paths are ended, for each of the rows that nodes would make, and at
 #: least: a few that turn in one place must not hold up all others.
 STEPS_PER_ROW, LEAST_STEPS = 30, 3_000

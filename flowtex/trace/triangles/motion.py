@@ -21,16 +21,6 @@ from flowtex.field import FlowField
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
 
-__all__ = [
-    "ChangingMotion",
-    "Derivatives",
-    "Motion",
-    "SteadyMotion",
-    "TriangleMesh",
-    "dot",
-    "speed_floor",
-]
-
 #: Triangles whose geometry is computed at once.
 BLOCK_TRIANGLES = 65536
 #: Columns of the table of a steady motion.

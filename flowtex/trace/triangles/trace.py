@@ -25,8 +25,6 @@ from flowtex.trace.triangles.motion import (
     speed_floor,
 )
 
-__all__ = ["triangle_paths", "triangle_slices"]
-
 #: Particles followed together.
 BLOCK = 16384
 

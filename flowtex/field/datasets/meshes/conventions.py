@@ -14,8 +14,6 @@ from flowtex.field.io.inspection.limits import values_in
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["find_mesh"]
-
 #: Names of the corners of faces, and of coordinates of the nodes, of models without a convention.
 #: Each has the mesh's words, the corners, pairs of coordinates, and the number of the first node.
 MODELS = (

@@ -12,8 +12,6 @@ from flowtex.field.datasets.maps import TORN, projection_of, shown_positions
 from flowtex.field.datasets.meshes.mesh import Mesh
 from flowtex.field.datasets.places import Places
 
-__all__ = ["MeshMap", "mesh_on_map"]
-
 #: Maps around a pole, which have no edge at a meridian.
 AROUND_A_POLE = ("north", "south")
 #: Degrees of longitude from which on a triangle is around a pole, or touches it.

@@ -17,8 +17,6 @@ from flowtex.field.datasets.places import DEGREES, LENGTHS
 from flowtex.field.io.inspection.limits import values_in
 from flowtex.field.triangles.topology import triangle_normals
 
-__all__ = ["Mesh"]
-
 #: Decimals of degrees to which bounds of neighbours agree.
 SAME_DEGREES = 5
 LONGITUDES = re.compile(r"lon|lambda", re.IGNORECASE)

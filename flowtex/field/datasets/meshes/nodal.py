@@ -14,8 +14,6 @@ from flowtex.field.datasets.axes import NODES, Choice, Section, sections
 from flowtex.field.datasets.meshes.mesh import Mesh
 from flowtex.field.triangles.arrays import nodal_means
 
-__all__ = ["WET", "NodalValues", "wet_at"]
-
 #: Variables that tell which nodes or faces are under water, and what they have there.
 WET = {
     "wet_nodes": 1,

@@ -13,8 +13,6 @@ from flowtex.field.datasets.axes import FACES, LEVELS, NODES
 from flowtex.field.datasets.meshes.conventions import find_mesh
 from flowtex.field.datasets.meshes.mesh import Mesh
 
-__all__ = ["with_mesh_axes"]
-
 #: Dates as letters, which some models write beside times that are less exact, or instead of them.
 LETTERS = ("Times", "xtime")
 #: A dimension of the two components of a vector.

@@ -16,8 +16,6 @@ from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 from flowtex.field.io.inspection.numbers import TextScanner
 
-__all__ = ["check_ensight"]
-
 #: Values of a variable at each place.
 COMPONENTS = {"scalar": 1, "vector": 3, "tensor symm": 6, "tensor asym": 9}
 _MODEL = re.compile(r"^model:(?:\s+\d+){0,2}\s+(\S+)", re.MULTILINE)

@@ -13,8 +13,6 @@ from flowtex.field.io.inspection.ensight import check_ensight
 from flowtex.field.io.inspection.surfaces import check_obj, check_ply, check_stl
 from flowtex.field.io.inspection.zarr_folder import DOCUMENTS, check_zarr
 
-__all__ = ["inspect_file"]
-
 #: Bytes that tell what most files are.
 HEAD_BYTES = 256
 GRIB_SUFFIXES = (".grib", ".grb")

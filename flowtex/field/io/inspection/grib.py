@@ -8,8 +8,6 @@ from typing import BinaryIO
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 
-__all__ = ["MAGIC", "check_grib"]
-
 MAGIC = b"GRIB"
 #: What is between messages is gone over in parts of so many bytes.
 CHUNK_BYTES = 1 << 16

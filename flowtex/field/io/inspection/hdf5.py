@@ -14,8 +14,6 @@ from typing import Any, NoReturn
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 
-__all__ = ["MAGIC", "check_hdf5"]
-
 MAGIC = b"\x89HDF\r\n\x1a\n"
 
 

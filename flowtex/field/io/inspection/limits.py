@@ -10,8 +10,6 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.memory import available_bytes
 from flowtex.errors import FieldError
 
-__all__ = ["check_count", "check_memory", "size_text", "values_in"]
-
 #: A reader and what is made of its data take some times what a file declares.
 MEMORY_SHARE = 0.5
 

@@ -7,8 +7,6 @@ from typing import BinaryIO
 
 import numpy as np
 
-__all__ = ["TextScanner"]
-
 CHUNK_BYTES = 1 << 20
 #: Longest word that VTK reads at once.
 WORD_LENGTH = 255

@@ -10,8 +10,6 @@ from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count
 from flowtex.field.io.inspection.numbers import TextScanner
 
-__all__ = ["check_obj", "check_ply", "check_stl"]
-
 #: Bytes of the types of PLY.
 PLY_TYPES = {
     **dict.fromkeys(("char", "uchar", "int8", "uint8"), 1),

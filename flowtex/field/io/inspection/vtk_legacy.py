@@ -14,8 +14,6 @@ from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 from flowtex.field.io.inspection.numbers import TextScanner
 
-__all__ = ["MAGIC", "check_vtk_legacy"]
-
 MAGIC = b"# vtk DataFile Version"
 #: Bytes of a value in the file and in memory; VTK tells types by how their names begin.
 TYPES = {

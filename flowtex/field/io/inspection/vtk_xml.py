@@ -21,8 +21,6 @@ from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 from flowtex.field.io.inspection.numbers import TextScanner
 
-__all__ = ["SUFFIXES", "check_vtk_xml", "is_xml"]
-
 #: Endings of files of one mesh, of its pieces, of blocks and of series.
 SUFFIXES = (
     *(".vti", ".vtp", ".vtr", ".vts", ".vtu", ".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu"),

@@ -14,8 +14,6 @@ from typing import Any
 
 from flowtex.field.io.inspection.limits import check_memory
 
-__all__ = ["DOCUMENTS", "check_zarr"]
-
 #: Documents of one array, and of all of them.
 DOCUMENTS = ("zarr.json", ".zarray", ".zmetadata")
 #: Bytes of a number, at most.

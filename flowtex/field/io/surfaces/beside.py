@@ -12,8 +12,6 @@ from flowtex.errors import FieldError
 from flowtex.field.io.meshes import TimeStep
 from flowtex.field.io.vectors import candidates
 
-__all__ = ["SUFFIXES", "read_with_vectors"]
-
 #: Endings of such files.
 SUFFIXES = (".obj", ".ply", ".stl")
 #: Name that the vectors get.

@@ -21,8 +21,6 @@ from flowtex.field.io.vectors import BLANKING, MeshArray, catalogue
 from flowtex.field.triangles.arrays import solid_triangles
 from flowtex.field.triangles.topology import needle_edges
 
-__all__ = ["HIDDEN", "Contour", "Cut", "Slice", "cut_faults", "find_cut", "surface_of"]
-
 _NORMALS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _AXIS = re.compile(r"\s*(?P<axis>[xyz])\s*(=\s*(?P<at>[^\s=]+)\s*)?", re.IGNORECASE)
 #: Flags of VTK's ghost arrays for cells that are not drawn: those of other pieces, too, for they

@@ -23,8 +23,6 @@ from flowtex.field.io.vectors import (
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
 
-__all__ = ["SheetStep", "read_surfaces", "stacked"]
-
 
 @dataclass(kw_only=True)
 class SheetStep:
