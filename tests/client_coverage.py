@@ -51,7 +51,10 @@ class PageCoverage:
             identifier = script["scriptId"]
             if self._lengths.get(identifier, 0) < SHORTEST:
                 continue
-            answer = self._session.send("Debugger.getScriptSource", {"scriptId": identifier})
+            try:
+                answer = self._session.send("Debugger.getScriptSource", {"scriptId": identifier})
+            except sync_api.Error:  # the script is gone with its frame
+                continue
             for name, text in BUNDLES.items():
                 start = answer["scriptSource"].find(text)
                 if start >= 0:
