@@ -59,6 +59,8 @@ MakeApp = Callable[[Any], Any]
 PAGES_PER_CORE, PAGE_BYTES = 8, 250e6
 #: Seconds without a connection after which a session makes room for a newcomer.
 REPLACE_AFTER_S = 30.0
+#: Seconds that a page may take to load, between its session and its connection.
+LOADING_S = 120.0
 #: Seconds for which a page that asks for its session waits for the connection of its earlier self
 #: to end. When it does not, somebody has made a copy of the tab.
 RECONNECT_WAIT_S = 2.0
@@ -83,6 +85,7 @@ class Session:
         self.app = app
         self.routes = Routes.of(app.server)
         self._left = time.monotonic()
+        self._loading = False
         self._sockets: set[web.WebSocketResponse] = set()
         self._endpoint: Any = None
         self._task: asyncio.Task[None] | None = None
@@ -98,8 +101,12 @@ class Session:
         return 0.0 if self.connected else time.monotonic() - self._left
 
     def expect(self) -> None:
-        """Count the time without a page from this moment on."""
-        self._left = time.monotonic()
+        """Give a page time to load, and to connect."""
+        self._left, self._loading = time.monotonic(), True
+
+    def is_idle(self, limit: float) -> bool:
+        """Whether no page has been connected for ``limit`` seconds, and none is loading."""
+        return self.away > max(limit, LOADING_S if self._loading else 0.0)
 
     async def start(self, secret: str) -> dict[str, Any]:
         """Start the trame server, and return what it wants served: folders, by route."""
@@ -138,6 +145,7 @@ class Session:
         await socket.prepare(request)
         others = [] if shared else list(self._sockets)
         self._sockets.add(socket)
+        self._loading = False
         for other in others:
             await other.close(code=WSCloseCode.GOING_AWAY, message=b"opened in another page")
 
@@ -165,7 +173,7 @@ class Session:
             await socket.close(code=WSCloseCode.POLICY_VIOLATION)
         finally:
             self._sockets.discard(socket)
-            self.expect()
+            self._left = time.monotonic()
             # wslink's endpoint forgets the connection, but not what it has gathered for it.
             await self._endpoint.onClose(link.client_id)
             self._endpoint.authentified_client_ids.discard(link.client_id)
@@ -298,7 +306,9 @@ class Sessions:
             if self._closed:
                 raise ClosedError
             await self._make_room()
-            return (await self._make())[0]
+            session, _ = await self._make()
+            session.expect()
+            return session
 
     async def _make(self) -> tuple[Session, dict[str, Any]]:
         server = get_server(f"flowtex-session-{next(_count)}")
@@ -353,7 +363,7 @@ class Sessions:
 
     def _is_idle(self, token: str) -> bool:
         session = self._by_token.get(token)
-        return session not in (None, self._ready) and session.away > 60 * self.idle
+        return session not in (None, self._ready) and session.is_idle(60 * self.idle)
 
     async def close(self) -> None:
         """End all sessions."""

@@ -191,7 +191,14 @@ def test_an_idle_session_ends_and_one_in_use_does_not(monkeypatch: pytest.Monkey
             used, idle = await here.token(), await here.token()
             link = await here.link(used)
             app = here.app(idle)
-            now[0] = 0.25
+            # A page that loads slowly finds its session.
+            now[0] = sessions.LOADING_S
+            session = here.site.sessions.get(idle)
+            assert session is not None and not session.is_idle(0.24)
+            await (await here.link(idle)).close()
+            await until(lambda: not session.connected)
+            assert not session.is_idle(0.24)
+            now[0] += 0.25
             await until(lambda: app.closed)
             assert here.site.sessions.get(idle) is None and not here.app(used).closed
             await until(lambda: app.server.name not in AVAILABLE_SERVERS)
