@@ -16,7 +16,7 @@ SETUP := pyproject.toml tools/setup.sh tools/run_uv.py tools/common.sh tools/loc
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check coverage fuzz lint format docs site gallery client paper paper-quick wheel clean
+.PHONY: help demo test check coverage fuzz integrations lint format docs site gallery client paper paper-quick wheel clean
 
 help: ## list what can be made
 	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
@@ -42,6 +42,10 @@ coverage: $(VENV)/.ready-test ## what of flowtex/ and client/src the tests run, 
 
 fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, files and messages
 	FLOWTEX_FUZZ=$(FUZZ) $(BIN)/pytest -n auto --maxprocesses 4 -m hypothesis $(PYTEST_ARGS)
+
+integrations: $(VENV)-integrations/.ready ## show the widget in Panel, Shiny, Solara and Streamlit, in an environment of their own
+	@sh tools/browsers.sh $(VENV)-integrations/bin/python
+	$(VENV)-integrations/bin/python -m pytest tests/integrations $(PYTEST_ARGS)
 
 lint: $(VENV)/.ready-test ## style, format, types and the browser client, without the tests
 	@sh tools/check.sh $(BIN) none
@@ -74,7 +78,7 @@ wheel: $(VENV)/.ready-test ## build dist/flowtex-*.whl and the source archive
 	$(BIN)/hatchling build
 
 clean: ## remove the environment and everything that was built
-	rm -rf $(VENV) dist build out .mypy_cache .pytest_cache .ruff_cache
+	rm -rf $(VENV) $(VENV)-integrations dist build out .mypy_cache .pytest_cache .ruff_cache
 	find . -name node_modules -type d -prune -exec rm -rf {} +
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
@@ -90,3 +94,7 @@ $(VENV)/.ready-test: $(SETUP)
 $(VENV)/.ready-site: $(SETUP)
 	@sh tools/setup.sh "$(PYTHON)" $(VENV) all site
 	@touch $@ $(VENV)/.ready-demo
+
+$(VENV)-integrations/.ready: $(SETUP)
+	@sh tools/setup.sh "$(PYTHON)" $(VENV)-integrations notebook integrations
+	@touch $@

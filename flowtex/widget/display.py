@@ -181,12 +181,13 @@ def _shell() -> Any:
 
 
 def _kernel_shell() -> Any:
-    """Return the shell of a notebook's kernel."""
+    """Return the shell of a notebook's kernel; what stands for one in Solara displays nothing."""
     shell = _shell()
-    return None if getattr(shell, "kernel", None) is None else shell
+    shows = hasattr(shell, "display_formatter") and getattr(shell, "kernel", None) is not None
+    return shell if shows else None
 
 
 def _cell_number() -> int | None:
     """Return the number of the cell that runs; ``None`` outside IPython."""
     shell = _shell()
-    return None if shell is None else int(shell.execution_count)
+    return getattr(shell, "execution_count", None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import sys
 import threading
 import uuid
@@ -29,6 +30,7 @@ from flowtex.web.assets import asset
 from flowtex.web.export import PREVIEW, page_text, write_page
 from flowtex.web.view import web_views
 from flowtex.widget.display import Displayed
+from flowtex.widget.host import Host
 from flowtex.widget.panel import make_panel
 from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait, TraitValueError
 from flowtex.widget.views import HEADERS, Views
@@ -122,8 +124,11 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         self._state_lock = threading.RLock()
         self._frame: bytes | None = None
         self._ends: list[Callable[[], None]] = []
+        host = Host()
         self._views = Views(
-            views, self._announce, lambda content, buffers: self.send(content, buffers)
+            views,
+            lambda number, header: host.call(self._announce, number, header),
+            lambda content, buffers: host.call(self.send, content, buffers),
         )
         first = arguments.view.first_camera(views[0].field.surface, PREVIEW[0] / PREVIEW[1])
         super().__init__(
@@ -173,6 +178,20 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             return page_text(self._views.views, title=title, picture=picture, **now)
         write_page(self._views.views, path, title=title, picture=picture, **now)
         return None
+
+    def as_html(self) -> str:
+        """Return what is shown as a frame of HTML, live where no kernel runs.
+
+        It holds all that :meth:`to_html` writes, so saved notebooks and reports that keep HTML keep
+        the view: ``IPython.display.HTML(widget.as_html())``.
+        """
+        width, height = self.size
+        style = f"width: {f'{width}px' if width else '100%'}; height: {height}px; border: 0"
+        page, name = self.to_html(), self.field.name or "flow"
+        return (
+            f'<iframe srcdoc="{html.escape(str(page))}" title="{html.escape(name)}" '
+            f'style="{style}" allow="fullscreen"></iframe>'
+        )
 
     def close(self) -> None:
         """Take the widget out of the page and let go of everything."""

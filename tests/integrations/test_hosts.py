@@ -1,0 +1,141 @@
+"""The widget in applications of Panel, Shiny, Solara and Streamlit, and in Notebook 7: `make integrations`.
+
+Each is started with a file of its own kind, shows a flow, and where it carries messages a drag in
+the browser is heard in Python.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from waiting import PATIENCE_S, wait_until
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Frame, Page
+
+pytestmark = [pytest.mark.slow, pytest.mark.browser]
+
+MAKE = """import json, os, pathlib, flowtex
+HEARD = pathlib.Path(os.environ["HEARD"])
+def flow():
+    widget = flowtex.FlowWidget(flowtex.examples.double_gyre(), samples=5, size=(300, 160))
+    widget.observe(lambda change: HEARD.write_text(json.dumps(change["new"])), "camera")
+    return widget
+"""
+SHINY = """from shiny.express import ui
+from shinywidgets import render_widget
+@render_widget
+def shown():
+    return flow()
+"""
+SOLARA = """import solara
+@solara.component
+def Page():
+    widget = solara.use_memo(flow, [])
+    solara.Column(children=[widget])
+"""
+PANEL = """import panel
+panel.pane.HTML(flow().as_html()).servable()
+"""
+STREAMLIT = """import streamlit
+streamlit.components.v1.html(flow().to_html(), width=300, height=160)
+"""
+#: The text of an application, and what starts it.
+HOSTS = {
+    "shiny": (SHINY, ("shiny", "run", "app.py", "--port={port}")),
+    "solara": (SOLARA, ("solara", "run", "app.py", "--port={port}", "--no-open")),
+    "panel": (PANEL, ("panel", "serve", "app.py", "--port={port}")),
+    "streamlit": (
+        STREAMLIT,
+        ("streamlit", "run", "app.py", "--server.port={port}", "--server.headless=true"),
+    ),
+}
+#: Hosts that show a frame, from which Python hears nothing.
+FRAMED = ("panel", "streamlit")
+
+
+@contextmanager
+def served(host: str, folder: Path) -> Iterator[str]:
+    """Give the address of an application of a host."""
+    text, words = HOSTS[host]
+    (folder / "app.py").write_text(MAKE + text)
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    program = Path(sys.executable).parent / words[0]
+    command = [str(program), *(word.format(port=port) for word in words[1:])]
+    address = f"http://127.0.0.1:{port}/" + ("app" if host == "panel" else "")
+    log = folder / "log.txt"
+    environment = {**os.environ, "HEARD": str(folder / "heard.json")}
+    with log.open("w") as said:
+        process = subprocess.Popen(
+            command, cwd=folder, env=environment, stdout=said, stderr=subprocess.STDOUT
+        )
+
+    def answers() -> bool:
+        assert process.poll() is None, log.read_text()
+        with suppress(OSError), urllib.request.urlopen(address, timeout=PATIENCE_S):
+            return True
+        return False
+
+    try:
+        wait_until(answers, log.read_text)
+        yield address
+    finally:
+        process.terminate()
+        process.wait(PATIENCE_S)
+
+
+def drawn_in(page: Page) -> Frame:
+    """Wait for a full picture, and return the frame that has it."""
+
+    def has_picture(frame: Frame) -> bool:
+        with suppress(Exception):  # a frame that is gone
+            return frame.locator('.flowtex[data-sharp="true"]').count() > 0
+        return False
+
+    def found() -> Frame | None:
+        page.wait_for_timeout(50)
+        return next(filter(has_picture, page.frames), None)
+
+    return wait_until(found, lambda: page.inner_text("body"))  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize("host", HOSTS)
+def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: Path) -> None:
+    if find_spec(host) is None:
+        pytest.skip(f"{host} is not installed: make integrations")
+    with served(host, tmp_path) as address:
+        page.goto(address)
+        frame = drawn_in(page)
+        canvas = frame.locator(".flowtex canvas").first
+        box = canvas.bounding_box()
+        assert box is not None and box["width"] > 200 and box["height"] > 90
+        was = canvas.screenshot()
+        x, y = box["x"] + 100, box["y"] + 60
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x + 50, y, steps=4)
+        page.mouse.up()
+        wait_until(lambda: canvas.screenshot() != was)
+        if host not in FRAMED:
+            heard = tmp_path / "heard.json"
+
+            def moved() -> bool:
+                with suppress(OSError, ValueError):  # it is being written
+                    # The flow lies 0 to 2 along x, and follows the hand to the right.
+                    return json.loads(heard.read_text())["focal_point"][0] < 0.95
+                return False
+
+            wait_until(moved)
