@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -114,19 +113,19 @@ class StoredPyramid(Pyramid):
         parameter: str | None = None,
         lines: str | None = None,
     ) -> None:
-        self.field, self._stored = field, levels
-        about = levels.about
-        self.parameter = about["parameter"] if parameter is None else parameter
-        self.lines = about["lines"] if lines is None else lines
-        self.nodes = (about["nodes"][0], about["nodes"][1])
-        self.depth = about["depth"]
+        self._stored, about = levels, levels.about
+        super().__init__(
+            field,
+            parameter or about["parameter"],
+            lines or about["lines"],
+            nodes=(about["nodes"][0], about["nodes"][1]),
+            depth=about["depth"],
+        )
         self.ranges = {
             (name, robust): (ends[0], ends[1])
             for name, both in (about.get("ranges") or {}).items()
             for robust, ends in zip((False, True), both, strict=True)
         }
-        self._lock = threading.Lock()
-        self._places = {}
 
     @property
     def about(self) -> Mapping[str, Any]:
