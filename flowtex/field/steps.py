@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any, TypeAlias
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.cache import ByteCache
 
 #: Bytes of steps that are kept once they have been read, and their number.
@@ -99,6 +99,16 @@ class LazySteps:
 
 #: Nodal values at all time steps, (T, J, I, ...), in memory or read late.
 Steps: TypeAlias = Any
+
+
+class Nodes(NamedTuple):
+    """What some nodes have, as in a field; at one time step its velocity is (J, I, C)."""
+
+    points: Floats
+    valid: Bools
+    velocity: Steps
+    scalars: Mapping[str, Steps]
+    has_position: Bools | None = None
 
 
 class _Step:

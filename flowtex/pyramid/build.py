@@ -265,7 +265,7 @@ def _prepared(
         _remove(store)
     there = zarr.open_group(store, mode="r").attrs["flowtex"] if is_store(place) else None
     if there is None:
-        about = {**about, "ranges": source.ranges or {}}
+        about = {**about, "ranges": source.ranges()}
     else:
         there = check_about(there, place)
         other = [name for name in IDENTITY if there.get(name) != about[name]]

@@ -16,7 +16,7 @@ from flowtex._util.blocks import even_runs
 from flowtex._util.extras import import_extra
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
-from flowtex.field.steps import LazySteps
+from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.checks import check_about, part_digest
 from flowtex.pyramid.layout import (
     DIGESTS,
@@ -32,7 +32,7 @@ from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_t
 from flowtex.pyramid.samples import SAMPLES, create_samples
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.tiles import TileKey
-from flowtex.tiles.pyramid import Nodes, level_shape
+from flowtex.tiles.pyramid import level_shape
 
 #: What of an array's metadata decides on the meaning of its bytes.
 FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_value", "codecs")
@@ -162,8 +162,8 @@ class Levels:
             self._points([known[k] for k in self._places()], rows, columns) if known else velocity,
             known.get("valid", velocity).astype(bool),
             velocity,
-            known["has_position"].astype(bool) if "has_position" in known else None,
             dict(zip(scalars, rest[: len(scalars)], strict=True)),
+            known["has_position"].astype(bool) if "has_position" in known else None,
         )
         if part_digest(nodes, self.about, step) != told.tobytes():
             msg = f"velocity {words} of {self.place} is not what was written there"
@@ -244,8 +244,8 @@ class Levels:
             self._points([known[name] for name in self._places()], rows, columns),
             known["valid"].astype(bool),
             velocity,
-            known["has_position"].astype(bool) if about["has_position"] else None,
             {name.removeprefix("scalars/"): values for name, values in steps.items()},
+            known["has_position"].astype(bool) if about["has_position"] else None,
         )
 
     def _later(

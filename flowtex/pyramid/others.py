@@ -24,7 +24,7 @@ from flowtex.field import FlowField
 from flowtex.field.datasets.pairs import find_pairs
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
-from flowtex.field.steps import LazySteps
+from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.places import (
     PyramidError,
     ReadFault,
@@ -35,7 +35,7 @@ from flowtex.pyramid.places import (
     store_at,
 )
 from flowtex.pyramid.source import RegionSource
-from flowtex.tiles.pyramid import ROOT_NODES, Nodes, level_lines, root_level
+from flowtex.tiles.pyramid import ROOT_NODES, level_lines, root_level
 
 #: Nodes up to which a dataset is opened as a whole.
 WHOLE_NODES = 2_000_000
@@ -206,7 +206,6 @@ class OtherLevels:
             points,
             valid,
             _steps(count, velocity),
-            None,
             {name: _steps(count, partial(scalar, name)) for name in finest.names},
         )
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats
-from flowtex.field.steps import typical_steps
+from flowtex.field.steps import Nodes, typical_steps
 from flowtex.pyramid.layout import (
     SHARD_CHUNKS,
     TILE_CELLS,
@@ -24,7 +24,6 @@ from flowtex.pyramid.layout import (
     to_write,
 )
 from flowtex.tiles import ends_of
-from flowtex.tiles.pyramid import Nodes
 
 SAMPLES = "samples"
 #: Nodes of a sample of one quantity at one time.

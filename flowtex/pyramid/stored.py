@@ -13,13 +13,14 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.field import WHOLE_SHAPE
+from flowtex.field.steps import Nodes
 from flowtex.pyramid.layout import VELOCITY_BITS, empty_field
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.others import OtherLevels, levels_of_others
 from flowtex.pyramid.places import PyramidError, is_store, place_text
 from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid, TileKey, have_pyramid
-from flowtex.tiles.pyramid import Nodes, averaged
+from flowtex.tiles.pyramid import averaged
 
 
 def open_store(store: str | Path, **options: Any) -> FlowField:

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Indices
+from flowtex.field.steps import Nodes
 from flowtex.pyramid.checks import part_digest
 from flowtex.pyramid.client_parts import write_tile
 from flowtex.pyramid.layout import (
@@ -31,7 +32,7 @@ from flowtex.pyramid.samples import write_samples
 from flowtex.pyramid.source import Source
 from flowtex.pyramid.stored import StoredPyramid, root_of
 from flowtex.tiles import TileKey
-from flowtex.tiles.pyramid import Nodes, averaged, beside, level_lines
+from flowtex.tiles.pyramid import averaged, beside, level_lines
 
 
 class TileTask(NamedTuple):
@@ -114,9 +115,7 @@ def _source_nodes(levels: Levels, source: Source, part: Part) -> Nodes:
     valid = None
     if part.step and source.travels:  # others have it at hand
         valid = levels.valid(0, *(np.arange(some.start, some.stop) for some in lines))
-    nodes = source.nodes(part.step, *lines, valid)
-    known = None if source.has_position is None else source.has_position[lines]
-    return Nodes(nodes.points, nodes.valid, nodes.velocity, known, nodes.scalars)
+    return source.nodes(part.step, *lines, valid)
 
 
 def _as_written(nodes: Nodes) -> Nodes:

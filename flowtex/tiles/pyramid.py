@@ -28,7 +28,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
-from flowtex.field.steps import Steps, map_steps
+from flowtex.field.steps import Nodes, Steps, map_steps
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.trace import SliceStore
@@ -70,16 +70,6 @@ class TileKey(NamedTuple):
     def parent(self) -> TileKey:
         """The tile that this one refines; at the depth of the root it stands for the root."""
         return TileKey(self.level + 1, self.row // 2, self.column // 2)
-
-
-class Nodes(NamedTuple):
-    """What nodes of a level have, as in a field."""
-
-    points: Floats
-    valid: Bools
-    velocity: Steps
-    has_position: Bools | None
-    scalars: Mapping[str, Steps]
 
 
 class _Level(NamedTuple):
@@ -326,8 +316,8 @@ class Pyramid:
             field.points[at],
             field.valid[at],
             this.velocity[:, here[0], here[1]],
-            None if field.has_position is None else field.has_position[at],
             {k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
+            None if field.has_position is None else field.has_position[at],
         )
 
     @cached_property

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,25 +27,13 @@ from flowtex.field.datasets.maps import (
 from flowtex.field.datasets.places import Places
 from flowtex.field.io.inspection.limits import values_in
 from flowtex.field.periodic import find_closure
+from flowtex.field.steps import Nodes
 
 if TYPE_CHECKING:
     import xarray as xr
 
 #: What is beyond this stands for missing data, though no attribute tells.
 LARGEST_VALUE = 1e15
-
-
-class RegionNodes(NamedTuple):
-    """What the nodes of a region have at one time step.
-
-    ``points`` are (J, I, 3), ``valid`` is (J, I), ``velocity`` (J, I, 3), zero at nodes that are
-    not valid, and ``scalars`` are (J, I) by name.
-    """
-
-    points: Floats
-    valid: Bools
-    velocity: Floats
-    scalars: dict[str, Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +131,7 @@ class Regions:
         drawn = projection is not None and not projection.is_globe
         return (*self.scalars, "speed") if drawn else tuple(self.scalars)
 
-    def nodes(self, step: int, rows: Any, columns: Any, valid: Bools | None = None) -> RegionNodes:
+    def nodes(self, step: int, rows: Any, columns: Any, valid: Bools | None = None) -> Nodes:
         """Read some rows and columns, as slices or numbers, at a time step.
 
         ``valid`` tells the nodes that have data in the first step, where they are known.
@@ -162,7 +150,7 @@ class Regions:
         if len(self.names) > len(scalars):
             scalars["speed"] = np.hypot(u, v)
         points = self.lines.points(rows, columns)
-        return RegionNodes(points, valid, np.nan_to_num(velocity), scalars)
+        return Nodes(points, valid, np.nan_to_num(velocity), scalars)
 
     def _components(self, number: int, rows: Any, columns: Any) -> list[Floats]:
         parts = [self.read(one, number, rows, columns) * self.factor for one in self.components]
