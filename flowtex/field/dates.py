@@ -21,11 +21,6 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
 
     Dates become seconds since the first, and spans of time seconds. Numbers are returned as they
     are; they have no date, and spans have none.
-
-    Raises
-    ------
-    FieldError
-        When the unit of dates or spans is said to be another one, or spans are of months or years.
     """
     start = None
     try:
@@ -72,13 +67,7 @@ def date_text(start: Any, time: float, step: float) -> str:
 
 
 def seconds_since(start: Any, date: Any) -> float:
-    """Return a time in seconds since ``start``, from a number, a date, or a text such as a date.
-
-    Raises
-    ------
-    FieldError
-        When it is none.
-    """
+    """Return seconds since ``start`` of a number, a date, or a text such as a date."""
     if is_number(date) and not isinstance(date, (np.datetime64, np.timedelta64)):
         return float(date)
     if start is None:

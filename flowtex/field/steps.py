@@ -18,17 +18,9 @@ class LazySteps:
     """An array (T, J, I, ...) of which a step is read when it is indexed.
 
     It takes an index of NumPy's whose first part chooses steps: a number gives an array, a slice or
-    a list of numbers another array of steps, read later. ``np.asarray`` reads all.
-
-    Parameters
-    ----------
-    count
-        Number of steps.
-    read
-        Returns a step, (J, I, ...), by its number from 0. It may be called by several threads.
-    kept
-        Bytes of steps that stay in memory once they have been read; as many of those that are made
-        from them.
+    a list of numbers another array of steps, read later. ``np.asarray`` reads all. ``read`` returns
+    a step, (J, I, ...), by its number from 0, and may be called by several threads; ``kept`` bytes
+    of steps stay in memory once they have been read, and as many of those that are made from them.
     """
 
     def __init__(

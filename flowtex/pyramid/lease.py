@@ -25,19 +25,9 @@ RENEWAL_S, STALE_S = 20.0, 120.0
 
 
 class Lease:
-    """The right to build a store, held inside a ``with``.
+    """The right to build a store, held inside a ``with``; a PyramidError when another holds it.
 
-    Parameters
-    ----------
-    place
-        A folder or a URL.
-    clock
-        The time in seconds, the same on all machines but for some seconds.
-
-    Raises
-    ------
-    PyramidError
-        On entering when somebody else holds it.
+    The ``clock`` has to be the same on all machines but for some seconds.
     """
 
     def __init__(self, place: str, clock: Callable[[], float] = time.time) -> None:

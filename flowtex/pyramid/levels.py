@@ -59,23 +59,7 @@ class _Piece(NamedTuple):
 
 
 class Levels:
-    """The levels of a pyramid in a store.
-
-    Parameters
-    ----------
-    place
-        A folder or a URL.
-
-    Attributes
-    ----------
-    about
-        What is told of the field and its pyramid.
-
-    Raises
-    ------
-    PyramidError
-        When there is no pyramid, or one of another version.
-    """
+    """The levels of a pyramid in a store; ``about`` is what is told of it."""
 
     def __init__(self, place: str | Path) -> None:
         self.place = place_text(place)

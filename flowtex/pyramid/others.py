@@ -136,15 +136,7 @@ def _level_names(told: Any) -> list[str]:
 
 
 class OtherLevels:
-    """The levels of a store of others, read as :class:`~flowtex.pyramid.levels.Levels` are.
-
-    Parameters
-    ----------
-    place
-        The store.
-    sources
-        Its levels, the finest first.
-    """
+    """The levels of a store of others, the finest first, read as those of ours are."""
 
     def __init__(self, place: str, sources: list[RegionSource]) -> None:
         self.place = place

@@ -73,13 +73,7 @@ class ReadFault(OSError):
 
 
 def place_text(place: str | Path) -> str:
-    """Return the URL of a store, or the whole path of a local one.
-
-    Raises
-    ------
-    PyramidError
-        When it is no URL of object storage or of the web, or has a secret in it.
-    """
+    """Return the URL of a store, or the whole path of a local one; secrets are refused."""
     text = str(checked_path("store", place)) if not isinstance(place, str) else place
     if not _URL.match(text):
         checked_path("store", text)

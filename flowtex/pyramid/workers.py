@@ -32,14 +32,7 @@ MOST_SENT = 64_000_000
 
 
 class Threads:
-    """Threads of this process.
-
-    Parameters
-    ----------
-    memory
-        What they may take together, in bytes or such as ``"2GB"``; by default there is one for each
-        core.
-    """
+    """Threads of this process: one for each core, or as many as some memory has room for."""
 
     def __init__(self, memory: int | str | None = None) -> None:
         self._memory: int | None = None

@@ -37,22 +37,11 @@ MOST_LEFT = 0.7
 class Clusters:
     """Nodes of a level, each of which stands for some nodes of the field.
 
-    Attributes
-    ----------
-    whole
-        The field that has all nodes.
-    field
-        The field at this level.
-    triangles
-        Its triangles that are drawn, (M, 3), which face alike.
-    number
-        Node of this level that each node of the whole field is in, (N,), or -1.
-    sides
-        Side of the bins that nodes are joined in next, (n,), a power of two times the first.
-    border
-        Nodes on the border of what is drawn, (n,).
-    normals
-        Unit normals, or sums of them, (n, 3).
+    ``whole`` is the field that has all nodes, ``field`` the one at this level, and ``triangles``
+    (M, 3) are those of it that are drawn, which face alike. ``number`` (N,) is the node of this
+    level that each node of the whole field is in, or -1. ``sides`` (n,) are those of the bins that
+    nodes are joined in next, a power of two times the first; ``border`` (n,) marks nodes on the
+    border of what is drawn, and ``normals`` (n, 3) are unit normals, or sums of them.
     """
 
     whole: FlowField

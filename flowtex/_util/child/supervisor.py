@@ -39,13 +39,9 @@ PIPE_BYTES = 1 << 20
 class ChildError(Exception):
     """A child gives no answer.
 
-    Attributes
-    ----------
-    kind
-        Name of the class of the error that it raised; empty where it died, had to be ended, or
-        lacks memory: the text then says so, as in ``"crashed (SIGSEGV)"``.
-    trace
-        Where it was raised; empty where the text says all.
+    ``kind`` is the name of the class of the error that it raised; empty where it died, had to be
+    ended, or lacks memory: the text then says so, as in ``"crashed (SIGSEGV)"``. ``trace`` tells
+    where it was raised; empty where the text says all.
     """
 
     def __init__(self, text: str, kind: str = "", trace: str = "") -> None:
@@ -71,24 +67,11 @@ class Child:
     """A process that answers requests, one after another.
 
     Its methods may be called from any thread. It ends with this object, and with this process,
-    however that ends.
-
-    Parameters
-    ----------
-    entry
-        ``"module:name"`` of what makes the function that answers, without arguments. That takes a
-        value of JSON, and returns one with a list of arrays.
-    preload
-        Modules that are loaded before: a child that is forked has them at once.
-    memory
-        Bytes that it may take, where the system has a limit (not on macOS and Windows); by default
-        a share of what is available.
-    forks
-        Whether it is forked from a process with the modules loaded, or started from nothing.
-
-    Examples
-    --------
-    >>> child = Child("math:hypot")  # doctest: +SKIP
+    however that ends. ``entry`` is ``"module:name"`` of what makes the function that answers,
+    without arguments. That takes a value of JSON, and returns one with a list of arrays.
+    ``preload`` are modules that a child that is forked has at once, and ``memory`` bytes that it
+    may take, where the system has a limit (not on macOS and Windows); by default a share of what is
+    available.
     """
 
     def __init__(

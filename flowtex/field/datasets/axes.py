@@ -57,19 +57,10 @@ class Choice:
 class Section:
     """Part of a variable that is drawn: two axes, and time where it has several steps.
 
-    Attributes
-    ----------
-    array
-        The variable, ([time,] rows, columns) or ([time,] nodes or faces of a mesh); nothing of it
-        is read yet.
-    times
-        Dates, or seconds, one for each step, or ``None`` where no time is known.
-    notes
-        Sentences about what was chosen without being asked for.
-    level
-        Words for the level that is shown; empty where there is none.
-    numbers
-        What is drawn along axes where there is a choice, by name.
+    ``array`` is the variable, ([time,] rows, columns) or ([time,] nodes or faces of a mesh), of
+    which nothing is read yet. ``times`` are dates, or seconds, one for each step, or ``None`` where
+    no time is known; ``notes`` tell what was chosen without being asked for, ``level`` has words
+    for the level, and ``numbers`` what is drawn along axes where there is a choice, by name.
     """
 
     array: xr.DataArray
@@ -89,13 +80,7 @@ class Section:
 
 
 def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
-    """Return the dimensions of rows and columns, or the one of the nodes or faces of a mesh.
-
-    Raises
-    ------
-    FieldError
-        When they cannot be told.
-    """
+    """Return the dimensions of rows and columns, or the one of nodes or faces of a mesh."""
     for dim in (NODES, FACES):
         if dim in array.dims:
             return (dim,)
@@ -111,13 +96,7 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
 
 
 def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
-    """Choose along the axes of variables that belong together, alike in all of them.
-
-    Raises
-    ------
-    FieldError
-        When something is chosen that is not there, or the variables have nothing in common.
-    """
+    """Choose along the axes of variables that belong together, alike in all of them."""
     rows = [horizontal_dims(array) for array in arrays]
     others = [
         [str(d) for d in array.dims if d not in pair]

@@ -59,21 +59,10 @@ class Places:
 def find_places(
     array: xr.DataArray, dims: tuple[str, ...], datasets: Sequence[xr.Dataset]
 ) -> Places:
-    """Return where values on some rows and columns lie.
+    """Return where values on some rows and columns (``dims``) lie.
 
-    Parameters
-    ----------
-    array
-        A variable whose own coordinates are looked at first.
-    dims
-        Names of the dimensions of rows and columns.
-    datasets
-        Where other coordinates may be.
-
-    Raises
-    ------
-    FieldError
-        When there are none; the text lists what there is.
+    The variable's own coordinates are looked at before those of ``datasets``. A FieldError lists
+    what there is.
     """
     shape = tuple(_size(d, array, datasets) for d in dims)
     for lon, lat in _pairs(array, dims, datasets, (LONGITUDE, LATITUDE), ("longitude", "latitude")):
@@ -230,13 +219,7 @@ def _is_lonlat(a: Floats, b: Floats, lon: Any, lat: Any) -> bool:
 
 
 def _longitudes(lon: Floats, name: str) -> Floats:
-    """Return longitudes that go on along a row without a jump.
-
-    Raises
-    ------
-    FieldError
-        When those of a line are in no order.
-    """
+    """Return longitudes that go on along a row without a jump; those of a line have an order."""
     if not (np.ptp(lon, axis=0) == 0).all():  # as on a curvilinear grid
         return lon
     line = np.unwrap(lon[0], period=360.0)

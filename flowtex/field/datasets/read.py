@@ -71,29 +71,12 @@ LAND_SHARE = 0.01
 class Recognised:
     """What was recognised in a dataset, and why.
 
-    Attributes
-    ----------
-    pair
-        The two variables of the velocity.
-    along
-        Along what the components are: ``"earth"``, or ``"grid"`` where ``ahead`` tells the ways of
-        rows and columns, 1 or -1.
-    staggered
-        Whether the components lie on the sides of cells.
-    grid
-        Words for the kind of grid.
-    coordinates
-        Names of the coordinates that give positions.
-    places
-        Positions of the nodes in the middle of cells, and what lies there.
-    notes
-        Sentences about what was chosen without being asked for.
-    level
-        Words for the level; empty where there is none.
-    factor
-        What makes the components m/s.
-    mask
-        A variable that is positive where there is data; ``None`` without one.
+    ``pair`` are the two variables of the velocity, and ``along`` is along what they are:
+    ``"earth"``, or ``"grid"`` where ``ahead`` tells the ways of rows and columns, 1 or -1.
+    ``staggered`` tells that they lie on the sides of cells. ``grid``, ``coordinates``, ``notes``
+    and ``level`` are words: the kind of grid, names of the coordinates, what was chosen without
+    being asked for, and the level. ``places`` are the nodes in the middle of cells; ``factor``
+    makes components m/s, and ``mask`` is a variable that is positive where there is data.
     """
 
     pair: Pair
@@ -320,13 +303,7 @@ def recognise(
     sel: Mapping[str, Any] | None = None,
     isel: Mapping[str, Any] | None = None,
 ) -> Recognised:
-    """Find the velocity of a dataset, its grid and its places.
-
-    Raises
-    ------
-    FieldError
-        When they cannot be told; the text has the remedy.
-    """
+    """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
     datasets = as_datasets(data)
     pair = choose_pair(datasets, u, v)
     factors = [to_metres_per_second(array) for array in (pair.u, pair.v)]

@@ -40,17 +40,10 @@ LARGEST_VALUE = 1e15
 class RegionLines:
     """Where the nodes lie: two lines of coordinates, and their numbers in the data.
 
-    Attributes
-    ----------
-    a, b
-        Longitude of each column (I,) and latitude of each row (J,), or x and y; ``shown`` is the
-        former on the map, where the last column may be the first one, a turn further.
-    rows, columns
-        Numbers in the data, (J,) and (I,).
-    projection
-        The map; ``None`` in a plane.
-    closed
-        Whether the last column is the first one again.
+    ``a`` is the longitude of each column (I,) and ``b`` the latitude of each row (J,), or x and y;
+    ``shown`` is the former on the map, where the last column may be the first one, a turn further.
+    ``rows`` and ``columns`` are numbers in the data. ``projection`` is the map, ``None`` in a
+    plane, and ``closed`` tells whether the last column is the first one again.
     """
 
     a: Floats
@@ -99,21 +92,10 @@ class Words:
 class Regions:
     """A dataset on lines of coordinates.
 
-    Attributes
-    ----------
-    words
-        What the field is called.
-    lines
-        Where its nodes lie.
-    components
-        The variables of the velocity, ([time,] row, column), and the ``factor`` that makes them
-        m/s.
-    mask
-        Positive where there is data, (row, column).
-    scalars
-        Further variables, by name.
-    numbers
-        Number of each time step in the variables.
+    ``words`` are what the field is called, and ``lines`` where its nodes lie. ``components`` are
+    the variables of the velocity, ([time,] row, column), and ``factor`` makes them m/s; ``mask`` is
+    positive where there is data, (row, column), and ``scalars`` are further variables. ``numbers``
+    are those of the time steps in the variables.
     """
 
     words: Words

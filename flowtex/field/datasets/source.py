@@ -20,13 +20,7 @@ from flowtex.field.source import FlowSource
 
 
 class DatasetSource(FlowSource):
-    """Datasets of xarray's that belong together; blocks are the maps they can be drawn on.
-
-    Raises
-    ------
-    FieldError
-        When no velocity is found in them.
-    """
+    """Datasets of xarray's that belong together; blocks are the maps they can be drawn on."""
 
     def __init__(self, datasets: Any, *, name: str = "", path: Path | None = None) -> None:
         super().__init__(None, name=name, path=path)
@@ -84,13 +78,7 @@ class DatasetSource(FlowSource):
 
 
 def open_source(path: str | Path | Sequence[str | Path]) -> FlowSource:
-    """Open a file, or several files of data of the Earth.
-
-    Raises
-    ------
-    FieldError
-        When it cannot be read; the text starts with the path.
-    """
+    """Open a file, or several of data of the Earth; errors start with the path."""
     paths = dataset_paths(path)
     if not paths:
         if not isinstance(path, (str, Path)):

@@ -54,17 +54,11 @@ def node_gradient(surface: Surface, projection: Projection | None) -> NodeGradie
 class NodeGradient:
     """Derivatives at nodes along two orthonormal directions of the tangent plane.
 
-    Arrays have their components first: those of vectors are (3, J, I).
-
-    Attributes
-    ----------
-    directions
-        The two directions, (2, 3, J, I). Turning from the first to the second is positive: seen
-        from the side of a flat surface to which its largest normal component points, and from
-        outside on any other.
-    derivative
-        Takes an array (C, J, I) to its derivatives, (2, C, J, I); NaN where there are too few
-        neighbours with data.
+    Arrays have their components first: those of vectors are (3, J, I). Turning from the first of
+    the ``directions``, (2, 3, J, I), to the second is positive: seen from the side of a flat
+    surface to which its largest normal component points, and from outside on any other.
+    ``derivative`` takes an array (C, J, I) to its derivatives, (2, C, J, I); NaN where there are
+    too few neighbours with data.
     """
 
     directions: Floats

@@ -75,28 +75,12 @@ class BlockSummary:
 class FileSummary:
     """What a file holds.
 
-    Attributes
-    ----------
-    grid
-        Type of its mesh: of the block that is meant where it has several.
-    size
-        Words for how large it is.
-    cells
-        How many cells an unstructured mesh has of each kind.
-    bounds
-        Its ends, ((x, x), (y, y), (z, z)).
-    volume
-        Whether there is a volume to cut.
-    blocks
-        The blocks that hold something, when there are several.
-    candidates
-        Names of the arrays that may be the velocity.
-    times
-        Times of a series; empty for a single mesh.
-    blanked
-        Number of nodes that the file hides.
-    problem
-        What keeps :meth:`FlowField.from_file` from reading it as it stands; empty if nothing.
+    ``grid`` is the type of its mesh: of the block that is meant where it has several. ``size`` are
+    words, ``cells`` counts those of an unstructured mesh by kind, ``bounds`` are ends, ((x, x), (y,
+    y), (z, z)), and ``volume`` tells whether there is one to cut. ``blocks`` are those that hold
+    something, when there are several; ``candidates`` are names of what may be the velocity,
+    ``blanked`` counts hidden nodes, and ``problem`` is what keeps :meth:`FlowField.from_file` from
+    reading it as it stands.
     """
 
     path: Path

@@ -173,13 +173,7 @@ class _RemoteSteps:
 
 
 def open_remote(paths: Sequence[Path]) -> RemoteSource:
-    """Open a file, or several of data of the Earth, in another process.
-
-    Raises
-    ------
-    FieldError
-        When they cannot be read, or change all the while; the text starts with the path.
-    """
+    """Open a file, or several of data of the Earth, in another process."""
     for _ in range(MOST_READINGS):
         file = _OpenFile([path.expanduser().absolute() for path in paths])
         source = RemoteSource(file, file.ask("open", paths=[str(path) for path in file.paths])[0])

@@ -87,13 +87,8 @@ def _span(lon: Floats, middle: float) -> Floats:
 def _cut(lon: Floats, triangles: Indices, middle: float) -> tuple[Indices, Indices, Floats, Floats]:
     """Cut triangles across the edge of the map, each into one on its one side and two beyond.
 
-    Returns
-    -------
-    triangles
-        Numbers among the nodes and the new ones after them, (M, 3).
-    pairs, shares, at
-        Between which nodes the new ones are, (Q, 2), at which share of the way, and their
-        longitudes, (Q,).
+    Returns triangles (M, 3) of the nodes and the new ones after them; between which nodes the new
+    ones are, (Q, 2), at which share of the way, and their longitudes, (Q,).
     """
     across = np.ptp(lon[triangles], axis=1) > 180.0
     corners = triangles[across]

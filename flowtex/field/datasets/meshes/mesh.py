@@ -27,18 +27,10 @@ RADIANS = re.compile(r"^rad(ian)?s?$", re.IGNORECASE)
 class Mesh:
     """A mesh of polygons; its numbers are read when they are asked for.
 
-    Attributes
-    ----------
-    kind
-        Words for the convention.
-    x, y
-        Coordinates of the nodes, or those of the corners of each face where ``corners`` is missing.
-    corners
-        Numbers of the nodes of each face.
-    counts
-        How many corners each face has, where this is told apart.
-    first
-        Number of the first node.
+    ``kind`` has words for the convention. ``x`` and ``y`` are coordinates of the nodes, or those of
+    the corners of each face where ``corners``, the nodes of each face, is missing. ``counts`` tells
+    how many corners each face has, where this is told apart, and ``first`` is the number of the
+    first node.
     """
 
     kind: str

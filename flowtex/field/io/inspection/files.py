@@ -31,20 +31,9 @@ BY_SUFFIX: dict[str, Callable[[Path], None]] = {
 def inspect_file(path: Path, *, whole: bool = True) -> None:
     """Refuse a file that has not what it declares, needs too much memory, or leads to others.
 
-    Those that it names as members of a series, or as its blocks, are looked into as well. A file is
-    looked into once for each of its times of change.
-
-    Parameters
-    ----------
-    path
-        The file, or a folder of Zarr; another folder is left alone.
-    whole
-        Whether its arrays are read whole, as those of meshes; of others, parts are.
-
-    Raises
-    ------
-    FieldError
-        With what is wrong, and of a member its name.
+    Those that it names as members of a series, or as its blocks, are looked into as well, each once
+    for each of its times of change. Of folders those of Zarr are. Arrays are read ``whole``, as
+    those of meshes, or parts of them are.
     """
     if path.is_dir() and any((path / name).is_file() for name in DOCUMENTS):
         check_zarr(path)

@@ -20,17 +20,7 @@ MAGIC = b"\x89HDF\r\n\x1a\n"
 def check_hdf5(path: Path, *, whole: bool) -> None:
     """Refuse a file that leads to others, is cut, or has arrays that do not fit into memory.
 
-    Parameters
-    ----------
-    path
-        The file.
-    whole
-        Whether its arrays are read whole, one time of each; else coordinates and chunks alone are.
-
-    Raises
-    ------
-    FieldError
-        With the name of what leads to another file, or what is missing.
+    Arrays are read ``whole``, one time of each, or coordinates and chunks alone are.
     """
     import h5py
 
