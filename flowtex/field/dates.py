@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from datetime import timedelta
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flowtex._util.arguments import is_number
+from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
 if TYPE_CHECKING:
@@ -85,6 +86,27 @@ def seconds_since(start: Any, date: Any) -> float:
     except (TypeError, ValueError, AttributeError) as error:
         msg = f"time is {date!r}; expected a number, or a date such as {start:%Y-%m-%d %H:%M}"
         raise FieldError(msg) from error
+
+
+def written_date(start: Any) -> list[Any] | None:
+    """Return a date as JSON holds it: numbers, and its calendar unless it is ``datetime``'s."""
+    if start is None:
+        return None
+    parts = ("year", "month", "day", "hour", "minute", "second", "microsecond")
+    return [[int(getattr(start, part)) for part in parts], getattr(start, "calendar", "")]
+
+
+def date_of(written: Any) -> Any:
+    """Return the date of :func:`written_date`."""
+    if written is None:
+        return None
+    numbers, calendar = written
+    if not calendar:
+        return datetime(*numbers)
+    # Not all calendars have a year 0, which climatologies begin with.
+    zero = True if numbers[0] == 0 else None
+    cftime = import_extra("cftime", "xarray")
+    return cftime.datetime(*numbers, calendar=calendar, has_year_zero=zero)
 
 
 def _at_midnight(date: Any) -> bool:

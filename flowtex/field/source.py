@@ -44,43 +44,28 @@ OUTER = "outer"
 class Source:
     """What can be chosen of a file, a mesh or a field, from which one field after another is made.
 
-    Attributes
-    ----------
-    name
-        A word for captions.
-    vectors
-        Names of the arrays that may be the velocity; empty where there is no choice.
-    dimensions
-        Number of nodes (I, J, K) of a structured mesh; ``None`` for others, and for a field.
-    blocks, block_vectors
-        Names of the meshes, where there are several that are no time steps, and of the arrays that
-        may be the velocity in each.
-    block_word
-        What a person calls one of the blocks.
-    default_plane
-        The plane that is drawn where none is chosen; empty for a surface.
-    ends
-        Ends of a volume along the axes across which it can be cut.
-    axes
-        Other axes along which there is a choice, and words for each place.
-    reads_late
-        Whether a part of the file is read when a field is asked for.
-    nbytes
-        Size in memory.
-    identity
-        State of the files when they were opened; empty where there is none.
+    ``name`` is a word for captions, ``nbytes`` the size in memory, and ``identity`` the state of
+    the files when they were opened; empty where there is none.
     """
 
     def __init__(self, name: str = "") -> None:
         self.name = name
+        #: Names of the arrays that may be the velocity; empty where there is no choice.
         self.vectors: tuple[str, ...] = ()
+        #: Number of nodes (I, J, K) of a structured mesh; ``None`` for others, and for a field.
         self.dimensions: tuple[int, int, int] | None = None
+        #: Names of the meshes, where there are several that are no time steps, of the arrays that
+        #: may be the velocity in each, and what a person calls one of them.
         self.blocks: tuple[str, ...] = ()
         self.block_vectors: dict[str, tuple[str, ...]] = {}
         self.block_word = "Grid"
+        #: The plane that is drawn where none is chosen; empty for a surface.
         self.default_plane = ""
+        #: Ends of a volume along the axes across which it can be cut.
         self.ends: dict[str, tuple[float, float]] = {}
+        #: Other axes along which there is a choice, and words for each place.
         self.axes: dict[str, tuple[str, ...]] = {}
+        #: Whether a part of the file is read when a field is asked for.
         self.reads_late = False
         self.nbytes = 0
         self.identity: Identity = ()
@@ -133,13 +118,7 @@ class Source:
         return "outer surface" if axis == OUTER else plane.replace("=", " = ")
 
     def plane_of(self, level: float | str) -> str:
-        """Return the plane of a level, as :attr:`default_plane` has it.
-
-        Raises
-        ------
-        FieldError
-            When there is no such level.
-        """
+        """Return the plane of a level, as :attr:`default_plane` has it."""
         msg = f"level is {level!r}; expected data of the Earth, and this is a mesh"
         raise FieldError(msg)
 
@@ -151,31 +130,23 @@ class Source:
         block: str | None = None,
         **options: Any,
     ) -> FlowField:
-        """Make a field.
+        """Make a field of one of :attr:`vectors`, the first by default, and of one plane.
 
-        Parameters
-        ----------
-        vectors
-            Name of the velocity; the first of :attr:`vectors` by default.
-        plane
-            Such as ``"k=20"``, ``"x=0.25"`` or ``"outer=0"``; :attr:`default_plane` by default.
-        block
-            As for :meth:`part`.
-        **options
-            Further arguments of what makes the field, as :meth:`FlowField.from_pyvista`.
-
-        Raises
-        ------
-        FieldError
-            When what is asked for is not there, or makes no field.
+        The plane is such as ``"k=20"``, ``"x=0.25"`` or ``"outer=0"``, by default
+        :attr:`default_plane`, and the block as for :meth:`part`. Options are further arguments of
+        what makes the field, as :meth:`FlowField.from_pyvista`.
         """
+        return self._field(vectors, plane, block, options)
+
+    def _field(
+        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
+    ) -> FlowField:
         raise NotImplementedError
 
     def part(self, block: str | None = None) -> Source:
         """Return the source of one of the :attr:`blocks`; this one itself where there are none.
 
-        The block is named, or numbered; it is the first by default. Raises a FieldError when there
-        is no such block.
+        The block is named, or numbered; it is the first by default.
         """
         raise NotImplementedError
 
@@ -183,23 +154,10 @@ class Source:
 class FlowSource(Source):
     """A mesh, a series or a field, from which one field after another is made.
 
-    Parameters
-    ----------
-    mesh
-        What :meth:`FlowField.from_pyvista` takes, or a field.
-    name
-        A word for captions.
-    velocity
-        Name of the velocity where the format of a file fixes it.
-    path
-        The file that it comes from, which errors then name.
-    block
-        Path of the block to take of a reader that has several at each time.
-
-    Raises
-    ------
-    FieldError
-        When nothing in it can be drawn.
+    The ``mesh`` is what :meth:`FlowField.from_pyvista` takes, or a field. ``velocity`` is the name
+    of the velocity where the format of a file fixes it, ``path`` the file that it comes from, which
+    errors then name, and ``block`` the path of the block to take of a reader that has several at
+    each time.
     """
 
     def __init__(
@@ -226,32 +184,20 @@ class FlowSource(Source):
 
     @classmethod
     def from_file(cls, path: str | Path) -> FlowSource:
-        """Open a file, as for :meth:`FlowField.from_file`.
-
-        Raises
-        ------
-        FieldError
-            When it cannot be read; the text starts with the path.
-        """
+        """Open a file, as for :meth:`FlowField.from_file`; errors start with the path."""
         with errors_of_file(path):
             file = open_file(path)
             if file.problem:
                 raise FieldError(file.problem)
             return cls(file.source, name=file.path.stem, velocity=file.velocity, path=file.path)
 
-    def field(
-        self,
-        *,
-        vectors: str | None = None,
-        plane: str | None = None,
-        block: str | None = None,
-        **options: Any,
+    def _field(
+        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
     ) -> FlowField:
-        """Make a field; :meth:`Source.field` has the parameters."""
         if isinstance(self._mesh, FlowField):
             return self._mesh
         if self.blocks:
-            return self.part(block).field(vectors=vectors, plane=plane, **options)
+            return self.part(block)._field(vectors, plane, None, options)
         if not {"slice", "contour"} & set(options):
             options |= _plane_options(plane or self.default_plane)
         chosen = vectors or (self.vectors[0] if self.vectors else None)

@@ -31,7 +31,6 @@ which field it is.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from datetime import datetime
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,6 +40,7 @@ from flowtex._util.extras import import_extra
 from flowtex._version import __version__
 from flowtex.earth import Projection
 from flowtex.field import FlowField
+from flowtex.field.dates import date_of, written_date
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.places import FORMAT
 from flowtex.pyramid.source import Source
@@ -117,7 +117,7 @@ def value_names(about: Mapping[str, Any]) -> tuple[str, ...]:
 
 def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
     """Return what is told of a field and its pyramid, as it is kept in the store."""
-    field, projection = source.field, source.field.projection
+    field = source.field
     depth = root_level(source.shape)
     corner = source.points(np.array([0]), np.array([0]))
     return {
@@ -127,10 +127,8 @@ def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
         "length_unit": field.length_unit,
         "time_unit": field.time_unit,
         "times": field.times.tolist(),
-        "start": _date_words(field.start),
-        "projection": None
-        if projection is None
-        else [projection.name, list(projection.center), projection.half_height],
+        "start": written_date(field.start),
+        "projection": field.projection and field.projection.written,
         "nodes": list(source.shape),
         "periodic": list(field.periodic),
         "periods": [some.tolist() for some in source.periods],
@@ -275,7 +273,6 @@ def to_write(group: Any, name: str) -> Any:
 
 def empty_field(about: Mapping[str, Any]) -> FlowField:
     """Return a field that has all but its nodes."""
-    projection = about["projection"]
     return FlowField(
         points=np.zeros((1, 1, 3)),
         velocity=np.zeros((1, 1, 1, 3)),
@@ -287,26 +284,6 @@ def empty_field(about: Mapping[str, Any]) -> FlowField:
         time_unit=about["time_unit"],
         units=about["units"],
         long_names=about["long_names"],
-        start=_date_of(about["start"]),
-        projection=None
-        if projection is None
-        else Projection(
-            projection[0], (projection[1][0], projection[1][1]), half_height=projection[2]
-        ),
+        start=date_of(about["start"]),
+        projection=Projection.of(about["projection"]),
     )
-
-
-def _date_words(start: Any) -> list[Any] | None:
-    """Return a date as numbers, and its calendar where it is not that of ``datetime``."""
-    if start is None:
-        return None
-    parts = ("year", "month", "day", "hour", "minute", "second", "microsecond")
-    return [[int(getattr(start, part)) for part in parts], getattr(start, "calendar", "")]
-
-
-def _date_of(words: list[Any] | None) -> Any:
-    if words is None:
-        return None
-    if not words[1]:
-        return datetime(*words[0])
-    return import_extra("cftime", "xarray").datetime(*words[0], calendar=words[1])

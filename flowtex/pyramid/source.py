@@ -168,7 +168,7 @@ class RegionSource(Source):
         first = self.regions.nodes(0, rows, columns)
 
         def velocity(step: int) -> Floats:
-            return self.regions.nodes(step, rows, columns, first.valid).velocity
+            return np.asarray(self.regions.nodes(step, rows, columns, first.valid).velocity)
 
         some = FlowField(
             points=first.points,

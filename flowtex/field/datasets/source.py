@@ -55,15 +55,9 @@ class DatasetSource(FlowSource):
             raise FieldError(msg)
         return self
 
-    def field(
-        self,
-        *,
-        vectors: str | None = None,
-        plane: str | None = None,
-        block: str | None = None,
-        **options: Any,
+    def _field(
+        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
     ) -> FlowField:
-        """Make a field, as :meth:`FlowSource.field` does; a plane is such as ``"level=2"``."""
         names: dict[str, Any] = two_names(vectors or self.vectors[0])
         axis, _, number = (plane or self.default_plane).partition("=")
         array = next((ds[names["u"]] for ds in self._datasets if names["u"] in ds), None)
