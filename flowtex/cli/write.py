@@ -11,13 +11,11 @@ from cyclopts import Parameter
 
 from flowtex._util.whole_file import whole_file
 from flowtex.cli.checks import (
-    begin_opengl,
     check_lines,
     check_movie_file,
     check_page_file,
     check_picture_file,
     drawing,
-    require_opengl,
     writing,
 )
 from flowtex.cli.console import describe, say
@@ -57,13 +55,15 @@ def render(
     start = time.perf_counter()
     choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_picture_file(output)
-    begin_opengl()
+    from flowtex import diagnostics
+
+    diagnostics.begin_trial()
     shown: dict[str, Any] = {"clock": clock}
     if options.get("lines") == "pathlines" and "time" in choice:
         # Pathlines of a moment go through the times around it.
         shown["time"] = choice.pop("time")
     field = load_field(files, choice)
-    require_opengl()
+    diagnostics.require_opengl()
     from PIL import Image
 
     from flowtex import render as draw
@@ -110,9 +110,11 @@ def movie(
     choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_movie_file(output, options["size"], fps, quality)
     check_lines(choice, options)
-    begin_opengl()
+    from flowtex import diagnostics
+
+    diagnostics.begin_trial()
     field = load_field(files, choice)
-    require_opengl()
+    diagnostics.require_opengl()
     from flowtex import movie as write_movie
 
     with writing(output):
