@@ -35,7 +35,7 @@ from flowtex._util.written import (
 from flowtex.camera import Camera
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
-from flowtex.field.datasets.detect import is_dataset
+from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.pairs import two_names
 from flowtex.settings import TABLE, Settings, SettingsError, setting
 

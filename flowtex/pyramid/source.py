@@ -14,7 +14,7 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.cache import digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.datasets.detect import is_dataset
+from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.files import dataset_paths
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions

@@ -21,7 +21,7 @@ from flowtex._util.cache import ByteCache
 from flowtex.app.server.validation import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.datasets.detect import is_dataset
+from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.files import SUFFIXES as EARTH_SUFFIXES
 from flowtex.field.datasets.files import common_name, is_dataset_file
 from flowtex.field.datasets.source import DatasetSource

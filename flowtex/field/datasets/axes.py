@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flowtex._util.arguments import near_names
-from flowtex._util.array_types import AnyArray
+from flowtex._util.array_types import AnyArray, Bools
 from flowtex.errors import FieldError
 
 if TYPE_CHECKING:
@@ -34,6 +34,11 @@ SECONDS |= {"hr": 3600.0, "hour": 3600.0, "d": 86400.0, "day": 86400.0}
 FROM_THE_TOP = re.compile(r"generalized.height", re.IGNORECASE)
 #: Names of the dimensions of nodes and of faces, where there is a mesh.
 NODES, FACES = "mesh_nodes", "mesh_faces"
+#: Variables that tell which of these are under water, and what they have there.
+WET = {
+    **dict.fromkeys(("wet_nodes", "wet_cells"), 1),
+    **dict.fromkeys(("wetdry_node", "wetdry_elem", "dryFlagNode", "dryFlagElement"), 0),
+}
 #: Words by which a person may choose along an axis whose own name is another.
 LEVEL, TIME = "level", "time"
 
@@ -141,6 +146,20 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
     if times is None:
         times = _time_beside(arrays[0])
     return [Section(array, times, tuple(notes), level, numbers) for array in done]
+
+
+def wet_at(
+    section: Section, dim: str, datasets: Sequence[Any], choice: Choice
+) -> Callable[[int], Bools] | None:
+    """Return what tells which nodes or faces are under water at a step of a velocity."""
+    plain = Choice(choice.sel, choice.isel, {*choice.sel, *choice.isel})
+    for ds in datasets:
+        for name, water in WET.items():
+            if name in ds.data_vars and dim in ds[name].dims:
+                (flags,) = sections([ds[name]], plain)
+                if flags.is_series == section.is_series:
+                    return lambda number: np.asarray(flags.step(number).values) == water
+    return None
 
 
 def drawn_steps(section: Section, array: xr.DataArray) -> tuple[Any, list[int]]:

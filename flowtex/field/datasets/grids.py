@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
+from flowtex.earth import GLOBE, Projection
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import horizontal_dims
 from flowtex.field.datasets.pairs import Pair
-from flowtex.field.datasets.places import Places, find_places, over_sphere
+from flowtex.field.datasets.places import Places, find_places
 from flowtex.field.datasets.staggered import Sides, centred, first_side
 
 #: Names of masks in the middle of cells, 1 at sea.
@@ -94,9 +95,7 @@ def _moved(places: Places, sides: Sides) -> Places:
     """Return places between sides along a row; those that are not known are NaN."""
     shape = (places.a.shape[0], sides.cells)
     if places.is_earth:
-        middle = centred(over_sphere(places), 1, sides)
-        x, y, z = np.moveaxis(middle, -1, 0)
-        found = np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+        found = Projection(GLOBE).lonlat(centred(places.on_sphere, 1, sides))
     else:
         found = centred(places.a, 1, sides), centred(places.b, 1, sides)
     a, b = np.full(shape, np.nan), np.full(shape, np.nan)
@@ -137,7 +136,7 @@ def _wraps(places: Places) -> bool:
     """Whether the last column is followed by the first one."""
     if not places.is_earth:
         return False
-    p = over_sphere(places)
+    p = places.on_sphere
     step, gap = (np.linalg.norm(a, axis=-1) for a in (p[:, 1] - p[:, 0], p[:, 0] - p[:, -1]))
     with np.errstate(invalid="ignore"):
         near = gap <= 1.5 * step
@@ -152,7 +151,7 @@ def unrepeated(places: Places) -> tuple[slice, slice]:
     """
     if not places.is_earth or places.is_line:
         return slice(None), slice(None)
-    p = over_sphere(places)
+    p = places.on_sphere
     rows, columns = p.shape[:2]
 
     def same(one: Floats, other: Floats) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -31,7 +31,39 @@ LARGEST = 4.0
 TORN = 8.0
 
 
-@dataclass(frozen=True, eq=False)
+class Nodes(Protocol):
+    """Where nodes are drawn, (..., 3), and what data and components have there."""
+
+    points: Floats
+
+    @property
+    def projection(self) -> Projection | None:
+        """The map; ``None`` in a plane."""
+
+    def at(self, values: Floats) -> Floats:
+        """Return values at the nodes."""
+
+    def vectors(self, east: Floats, north: Floats) -> Floats:
+        """Return vectors (..., 3) of components at the nodes in m/s."""
+
+
+@dataclass(eq=False)
+class PlaneNodes:
+    """Nodes in a plane, whose components are along x and y."""
+
+    points: Floats
+    projection: Projection | None = None
+
+    def at(self, values: Floats) -> Floats:
+        """Return values as they are."""
+        return values
+
+    def vectors(self, u: Floats, v: Floats) -> Floats:
+        """Return vectors of components along x and y."""
+        return np.stack([u, v, np.zeros_like(u)], axis=-1)
+
+
+@dataclass(eq=False)
 class MapNodes:
     """Nodes on a map.
 
@@ -46,6 +78,10 @@ class MapNodes:
     periodic: str | None
     lon: Floats
     lat: Floats
+
+    def at(self, values: Floats) -> Floats:
+        """Return values in the order of the map."""
+        return np.asarray(values[self.lines])
 
     def vectors(self, east: Floats, north: Floats) -> Floats:
         """Return vectors (J, I, 3) of components in m/s, in the order of the map."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex._util.extras import import_extra
+from flowtex.earth import GLOBE, Projection
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import values_in
 
@@ -55,6 +56,23 @@ class Places:
         """What a is in each column, (I,), and b in each row, (J,), where these are lines."""
         return self.a[0], self.b[:, 0]
 
+    @property
+    def on_sphere(self) -> Floats:
+        """Positions of longitudes and latitudes on the globe, (J, I, 3)."""
+        return Projection(GLOBE).positions(self.a, self.b)
+
+    def turned(self, ahead: tuple[int, int], u: Floats, v: Floats) -> tuple[Floats, Floats]:
+        """Return components eastward and northward, or along x and y, of those along the grid.
+
+        ``ahead`` tells the ways of (rows, columns), 1 or -1.
+        """
+        p = self.on_sphere if self.is_earth else np.stack([self.a, self.b], axis=-1)
+        along_j, along_i = (way * _directions(p, axis) for axis, way in enumerate(ahead))
+        vector = u[..., None] * along_i + v[..., None] * along_j
+        if self.is_earth:
+            return Projection(GLOBE).components(self.a, self.b, vector)
+        return vector[..., 0], vector[..., 1]
+
 
 def find_places(
     array: xr.DataArray, dims: tuple[str, ...], datasets: Sequence[xr.Dataset]
@@ -95,10 +113,14 @@ def find_places(
     raise FieldError(msg)
 
 
-def over_sphere(a: Places) -> Floats:
-    """Return unit vectors, (J, I, 3), of longitudes and latitudes."""
-    lon, lat = np.radians(a.a), np.radians(a.b)
-    return np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+def _directions(p: Floats, axis: int) -> Floats:
+    """Return unit differences of positions along an axis, one-sided beside what is not known."""
+    p = np.swapaxes(p, 0, axis)
+    ahead, behind = np.full_like(p, np.nan), np.full_like(p, np.nan)
+    behind[1:] = ahead[:-1] = p[1:] - p[:-1]
+    both = np.where(np.isnan(ahead), behind, np.where(np.isnan(behind), ahead, ahead + behind))
+    length = np.linalg.norm(both, axis=-1, keepdims=True)
+    return np.swapaxes(both / np.where(length > 0, length, 1.0), 0, axis)
 
 
 def _size(dim: str, array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> int:

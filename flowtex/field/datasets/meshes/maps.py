@@ -22,7 +22,7 @@ INSIDE = 1e-9
 NEAREST_NODE = 1e-5
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class MeshMap:
     """Nodes and triangles on a map.
 
@@ -46,8 +46,8 @@ class MeshMap:
         return np.asarray((1 - self.share) * one + self.share * other)
 
     def vectors(self, east: Floats, north: Floats) -> Floats:
-        """Return vectors (P, 3) of components (N,) in m/s at the nodes of the mesh."""
-        return self.projection.vectors(self.lon, self.lat, self.at(east), self.at(north))
+        """Return vectors (P, 3) of components (P,) in m/s."""
+        return self.projection.vectors(self.lon, self.lat, east, north)
 
 
 def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:

@@ -11,10 +11,12 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import FACES, NODES
 from flowtex.field.datasets.places import DEGREES, LENGTHS
 from flowtex.field.io.inspection.limits import values_in
+from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
 
 #: Decimals of degrees to which bounds of neighbours agree.
@@ -125,12 +127,10 @@ class Mesh:
 
     @cached_property
     def positions(self) -> Floats:
-        """Positions of the nodes, (N, 3): on the unit sphere, or in the plane."""
+        """Positions of the nodes, (N, 3): on the globe, or in the plane."""
         if not self.is_earth:
             return np.stack([self.a, self.b, np.zeros_like(self.a)], axis=-1)
-        lon, lat = np.radians(self.a), np.radians(self.b)
-        parts = (np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat))
-        return np.stack(parts, axis=-1)
+        return Projection(GLOBE).positions(self.a, self.b)
 
     @cached_property
     def middles(self) -> tuple[Floats, Floats]:
@@ -138,10 +138,7 @@ class Mesh:
         there = (self.faces >= 0)[..., None]
         with np.errstate(invalid="ignore"):
             p = (self.positions[self.faces] * there).sum(axis=1) / there.sum(axis=1)
-        if not self.is_earth:
-            return p[:, 0], p[:, 1]
-        x, y, z = p.T
-        return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+        return Projection(GLOBE).lonlat(p) if self.is_earth else (p[:, 0], p[:, 1])
 
     @cached_property
     def _split(self) -> tuple[Indices, Indices]:
@@ -173,6 +170,28 @@ class Mesh:
         triangles, numbers = self._split
         doubled = np.nan_to_num(np.linalg.norm(triangle_normals(self.positions, triangles), axis=1))
         return np.asarray(np.bincount(numbers, doubled / 2, len(self.faces)))
+
+    def at_nodes(self, values: Floats, dim: str) -> Floats:
+        """Return values (N, ...) at the nodes; those in faces become means by area."""
+        if dim == NODES:
+            return values
+        (step,) = nodal_means(values[None], self.faces, self.areas, len(self.a))
+        return np.asarray(step)
+
+    def vectors_at_nodes(self, u: Floats, v: Floats, dim: str) -> tuple[Floats, Floats]:
+        """Return components (N,) eastward and northward, or along x and y.
+
+        On the Earth these directions are others in each face, so that vectors in space are
+        averaged.
+        """
+        if dim == NODES:
+            return u, v
+        if not self.is_earth:
+            x, y = self.at_nodes(np.stack([u, v], axis=-1), dim).T
+            return x, y
+        globe = Projection(GLOBE)
+        means = self.at_nodes(globe.vectors(*self.middles, u, v), dim)
+        return globe.components(self.a, self.b, means)
 
     @property
     def words(self) -> str:
@@ -226,8 +245,7 @@ def _numbers(mesh: Mesh, count: int) -> Indices:
 def _from_bounds(a: Floats, b: Floats) -> tuple[Floats, Floats, Indices]:
     """Return nodes where corners of cells, (F, K) each, are at one place."""
     there = np.isfinite(a) & np.isfinite(b)
-    lon, lat = np.radians(a[there]), np.radians(b[there])
-    p = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    p = Projection(GLOBE).positions(a[there], b[there]) / EARTH_RADIUS
     _, first, at = np.unique(
         np.round(np.degrees(p), SAME_DEGREES), axis=0, return_index=True, return_inverse=True
     )
