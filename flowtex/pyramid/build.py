@@ -18,6 +18,7 @@ from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.pyramid.checks import check_about, is_scalar_name, sealed
 from flowtex.pyramid.layout import (
+    DIGESTS,
     FLOW,
     MOST_HELD,
     VALUES,
@@ -37,9 +38,11 @@ from flowtex.pyramid.places import (
     PyramidError,
     check_room,
     is_store,
+    listed,
     place_text,
     plain_faults,
     store_at,
+    sync,
 )
 from flowtex.pyramid.samples import SAMPLES, create_samples, ranges_of
 from flowtex.pyramid.source import Source, source_of
@@ -174,7 +177,7 @@ def build(
         raise FieldError(msg)
     place = place_text(store)
     with plain_faults():
-        check_room(place, _names(store_at(place, read_only=False)))
+        check_room(place, listed(store_at(place, read_only=False).list_dir("")))
     given = source_of(source, **options)
     about = about_source(given, parameter, given.chosen_lines(lines))
     wrong = [name for name in about["scalars"] if not is_scalar_name(name)]
@@ -300,26 +303,14 @@ def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
         for name in sorted([name async for name in described.list()], key=lambda n: n.count("/")):
             await store.set(name, await described.get(name, kind))
 
-    zarr.core.sync.sync(copy())
+    sync(copy())
     arrays = (array for _, array in group.members(max_depth=None) if isinstance(array, zarr.Array))
     return {array.path: array.metadata.dimension_names for array in arrays}
 
 
-def _names(store: Any) -> list[str]:
-    """Return the names of what lies at a place."""
-    sync = import_extra("zarr.core.sync", "store").sync
-
-    async def listed() -> list[str]:
-        return [name async for name in store.list_dir("")]
-
-    names: list[str] = sync(listed())
-    return names
-
-
 def _remove(store: Any) -> None:
     """Remove a pyramid, what was made of a level before that; others know it to the end."""
-    sync = import_extra("zarr.core.sync", "store").sync
-    levels = sorted(filter(str.isdecimal, _names(store)), key=int, reverse=True)
+    levels = sorted(filter(str.isdecimal, listed(store.list_dir(""))), key=int, reverse=True)
     for name in (*levels, SAMPLES):
         sync(store.delete_dir(name))
     sync(store.delete(DOCUMENT))
@@ -351,16 +342,11 @@ class _Run:
 
     def there(self, name: str) -> set[tuple[int, ...]]:
         """Return the numbers of the shards of an array that are in the store."""
-        from zarr.core.sync import sync
-
         array = self.group[name]
         prefix = f"{array.path}/c/"
-
-        async def keys() -> list[str]:
-            return [key async for key in array.store.list_prefix(prefix)]
-
         # A file that is being written is no shard yet.
-        numbers = (key.removeprefix(prefix).split("/") for key in sync(keys()))
+        keys = listed(array.store.list_prefix(prefix))
+        numbers = (key.removeprefix(prefix).split("/") for key in keys)
         return {tuple(map(int, some)) for some in numbers if all(map(str.isdecimal, some))}
 
     def work(
@@ -440,7 +426,7 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
         raise ChangedError(msg)
     levels = Levels(run.place)
     if not run.about["ranges"]:
-        ranges = ranges_of(levels.samples(), run.about)
+        ranges = ranges_of(levels.whole(SAMPLES), run.about)
         if not ranges:
             msg = (
                 f"none of the {math.prod(source.shape):,} nodes has data; check the variables that "
@@ -448,7 +434,7 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
             )
             raise FieldError(msg)
         run.tell(ranges=ranges)
-    fingerprint = digest(levels.digests(), words=run.about["times"]).hex()
+    fingerprint = digest(levels.whole(f"0/{DIGESTS}"), words=run.about["times"]).hex()
     if run.about["fingerprint"] not in ("", fingerprint):
         msg = (
             f"{run.place} was built from an earlier state of the field; build with fresh=True to "

@@ -16,6 +16,7 @@ from flowtex._util.blocks import even_runs
 from flowtex._util.extras import import_extra
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
+from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.checks import check_about, part_digest
 from flowtex.pyramid.layout import (
@@ -26,9 +27,10 @@ from flowtex.pyramid.layout import (
     VALUES,
     Part,
     create_level,
+    empty_field,
     value_names,
 )
-from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at
+from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at, sync
 from flowtex.pyramid.samples import SAMPLES, create_samples
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.tiles import TileKey
@@ -105,21 +107,15 @@ class Levels:
         """Return the number of nodes (J, I) of a level."""
         return level_shape((self.about["nodes"][0], self.about["nodes"][1]), level)
 
-    def digests(self, level: int = 0) -> AnyArray:
-        """Return the digests of the parts of a level, (time, part row, part column, 16)."""
-        (digests,) = self._read(_Piece(f"{level}/{DIGESTS}", (), f"{level}/{DIGESTS}"))
-        return digests
+    @property
+    def template(self) -> FlowField:
+        """A field that has all but its nodes."""
+        return empty_field(self.about)
 
-    def digest(self, part: Part) -> bytes:
-        """Return the digest of a part."""
-        level, *at = part
-        (told,) = self._read(_Piece(f"{level}/{DIGESTS}", tuple(at), f"{level}/{DIGESTS}"))
-        return told.tobytes()
-
-    def samples(self) -> AnyArray:
-        """Return the samples of the values at level 0."""
-        (samples,) = self._read(_Piece(SAMPLES, (), SAMPLES))
-        return samples
+    def whole(self, name: str, at: tuple[int, ...] = ()) -> AnyArray:
+        """Return an array, or what it has at some numbers of its first axes."""
+        (values,) = self._read(_Piece(name, at, name))
+        return values
 
     def valid(self, level: int, rows: Indices, columns: Indices) -> Bools:
         """Return which nodes are valid, (J, I)."""
@@ -368,7 +364,6 @@ def _format_of(array: Any) -> dict[str, Any]:
 
 def _wait(reading: Coroutine[Any, Any, Any]) -> Any:
     """Return what is read; it is given up where the work around it was cancelled."""
-    sync = import_extra("zarr.core.sync", "store").sync
 
     async def watched() -> Any:
         task = asyncio.ensure_future(reading)

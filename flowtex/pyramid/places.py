@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import AsyncIterator, Coroutine, Iterable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
@@ -157,6 +157,21 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Any:
         msg = f"{text} can only be read; build in a folder or in object storage such as s3://"
         raise PyramidError(msg)
     return storage.ObjectStore(objects_at(text, patient=True))
+
+
+def sync(doing: Coroutine[Any, Any, Any]) -> Any:
+    """Return what a method of a store of Zarr's gives."""
+    return import_extra("zarr.core.sync", "store").sync(doing)
+
+
+def listed(names: AsyncIterator[str]) -> list[str]:
+    """Return the names that a store of Zarr's gives one after the other."""
+
+    async def gathered() -> list[str]:
+        return [name async for name in names]
+
+    result: list[str] = sync(gathered())
+    return result
 
 
 def is_store(place: Any) -> bool:

@@ -14,7 +14,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.field import WHOLE_SHAPE
 from flowtex.field.steps import Nodes
-from flowtex.pyramid.layout import VELOCITY_BITS, empty_field
+from flowtex.pyramid.layout import VELOCITY_BITS
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.others import OtherLevels, levels_of_others
 from flowtex.pyramid.places import PyramidError, is_store, place_text
@@ -65,7 +65,7 @@ def open_store(store: str | Path, **options: Any) -> FlowField:
     """
     if not is_store(store):
         found = levels_of_others(place_text(store), options)
-        return found if isinstance(found, FlowField) else _field_of(found, found.template)
+        return found if isinstance(found, FlowField) else _field_of(found)
     if options:
         msg = f"{', '.join(options)} is for what a pyramid is built from; leave it out"
         raise FieldError(msg)
@@ -76,12 +76,12 @@ def open_store(store: str | Path, **options: Any) -> FlowField:
             "flowtex.pyramid.build again, which makes what is missing"
         )
         raise PyramidError(msg)
-    return _field_of(levels, empty_field(levels.about))
+    return _field_of(levels)
 
 
-def _field_of(levels: Levels | OtherLevels, template: FlowField) -> FlowField:
+def _field_of(levels: Levels | OtherLevels) -> FlowField:
     """Return the coarsest level as a field that has the others."""
-    root = _root(levels, template)
+    root = root_of(levels)
 
     def pyramid(field: FlowField, parameter: str, lines: str) -> Pyramid:
         return StoredPyramid(levels, field, parameter, lines)
@@ -91,13 +91,9 @@ def _field_of(levels: Levels | OtherLevels, template: FlowField) -> FlowField:
     return root
 
 
-def root_of(levels: Levels) -> FlowField:
+def root_of(levels: Levels | OtherLevels) -> FlowField:
     """Return the coarsest level as a field."""
-    return _root(levels, empty_field(levels.about))
-
-
-def _root(levels: Levels | OtherLevels, template: FlowField) -> FlowField:
-    pyramid = StoredPyramid(levels, template)
+    pyramid = StoredPyramid(levels, levels.template)
     return pyramid.at_level(pyramid.depth)
 
 
