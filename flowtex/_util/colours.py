@@ -65,7 +65,7 @@ def colour_table(cmap: Any | None) -> Bytes:
         return _resampled(np.asarray(values))
     name = cmap or DEFAULT_CMAP
     if isinstance(name, str) and name in CMAPS:  # which each tile asks for
-        return _known_table(name).copy()
+        return _cached_table(name).copy()
     return _named_table(name)
 
 
@@ -86,9 +86,7 @@ def _named_table(name: Any) -> Bytes:
         raise FieldError(msg) from error
 
 
-@cache
-def _known_table(name: str) -> Bytes:
-    return _named_table(name)
+_cached_table = cache(_named_table)
 
 
 def is_diverging(cmap: Any) -> bool:

@@ -62,7 +62,8 @@ def date_text(start: Any, time: float, step: float) -> str:
 
     It is the day, or the minute, or the second.
     """
-    whole_days = step % DAY_S == 0 and time % DAY_S == 0 and _at_midnight(start)
+    at_midnight = not (start.hour or start.minute or start.second or start.microsecond)
+    whole_days = step % DAY_S == 0 and time % DAY_S == 0 and at_midnight
     form = "%Y-%m-%d" if whole_days else "%Y-%m-%d %H:%M" if step >= 60 else "%Y-%m-%d %H:%M:%S"
     return str((start + timedelta(seconds=time)).strftime(form))
 
@@ -107,7 +108,3 @@ def date_of(written: Any) -> Any:
     zero = True if numbers[0] == 0 else None
     cftime = import_extra("cftime", "xarray")
     return cftime.datetime(*numbers, calendar=calendar, has_year_zero=zero)
-
-
-def _at_midnight(date: Any) -> bool:
-    return not (date.hour or date.minute or date.second or date.microsecond)

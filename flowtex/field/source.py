@@ -199,7 +199,10 @@ class FlowSource(Source):
         if self.blocks:
             return self.part(block)._field(vectors, plane, None, options)
         if not {"slice", "contour"} & set(options):
-            options |= _plane_options(plane or self.default_plane)
+            plane = plane or self.default_plane
+            axis = plane.partition("=")[0].strip().lower()
+            if axis not in ("", OUTER):
+                options["slice" if axis in "xyz" else "plane"] = plane
         chosen = vectors or (self.vectors[0] if self.vectors else None)
         if self._block is not None:
             options = {**options, "block": self._block}
@@ -293,14 +296,6 @@ class FlowSource(Source):
         self._mesh = steps[0].grid if len(steps) == 1 else steps
         self._block = None
         return steps
-
-
-def _plane_options(plane: str) -> dict[str, str]:
-    """Return the arguments of :meth:`FlowField.from_pyvista` for a plane."""
-    axis = plane.partition("=")[0].strip().lower()
-    if not axis or axis == OUTER:
-        return {}
-    return {"slice" if axis in "xyz" else "plane": plane}
 
 
 def _choices(mesh: Any, *, series: bool) -> dict[str, Any]:

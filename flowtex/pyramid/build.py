@@ -190,7 +190,9 @@ def build(
         group, arrays, about, new = _prepared(place, about, given, fresh=fresh)
         run, depth = _Run(group, arrays, about, lease, known, progress), about["depth"]
         if not new:
-            _look_through(run, workers)
+            # What is corrupt of what is there goes, and what lacks a part of it.
+            begun = sorted({unit for name in run.arrays for unit in _begun(run, name)}, key=repr)
+            run.work(workers, mend, begun, "Checking what is there", TILE_BYTES, new=False)
         _write_finest(run, given, workers if given.travels else threads)
         for level in range(1, depth + 1):
             parts = _missing_parts(run, level, level_shape(given.shape, level))
@@ -388,12 +390,6 @@ class _Run:
             raise PyramidError(msg) from first
 
 
-def _look_through(run: _Run, workers: Threads) -> None:
-    """Remove what is corrupt of what is there, and what lacks a part of it."""
-    units = sorted({unit for name in run.arrays for unit in _begun(run, name)}, key=repr)
-    run.work(workers, mend, units, "Checking what is there", TILE_BYTES, new=False)
-
-
 def _begun(run: _Run, name: str) -> Iterator[Part | TileTask]:
     """Give the parts, or the tiles at a step, of which an array has an object."""
     axes, (top, _, kind) = run.arrays[name], name.partition("/")
@@ -411,15 +407,19 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
     there, parts = _parts_there(run, 0), _missing_parts(run, 0, source.shape)
     if parts and run.about.get("levels_done"):
         run.tell(levels_done=False)
-    first, later = [p for p in parts if p.step == 0], [p for p in parts if p.step > 0]
-    run.work(workers, make_finest, first, "Level 0", PART_BYTES, source)
+    begin, later = [p for p in parts if p.step == 0], [p for p in parts if p.step > 0]
+    run.work(workers, make_finest, begin, "Level 0", PART_BYTES, source)
     if not run.source or run.source != run.about["source"]:
         text = "Comparing with the source"
         run.work(workers, compare_finest, there, text, PART_BYTES, source, new=False)
         run.tell(source=run.source)
     run.work(workers, make_finest, later, "Level 0", PART_BYTES, source)
     if run.about["axes"]:
-        _write_axes(run, source)
+        first = np.array([0])
+        for level in range(run.about["depth"] + 1):
+            rows, columns = (level_lines(n, level) for n in source.shape)
+            run.group[f"{level}/x"][:] = source.points(first, columns)[0, :, 0]
+            run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
     if source.identity() != run.source:
         run.tell(source="")
         msg = f"the source of {run.place} has changed while it was read; build again"
@@ -442,14 +442,6 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
         )
         raise ChangedError(msg)
     run.tell(fingerprint=fingerprint)
-
-
-def _write_axes(run: _Run, source: Source) -> None:
-    first = np.array([0])
-    for level in range(run.about["depth"] + 1):
-        rows, columns = (level_lines(n, level) for n in source.shape)
-        run.group[f"{level}/x"][:] = source.points(first, columns)[0, :, 0]
-        run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
 
 
 def _parts_there(run: _Run, level: int) -> list[Part]:

@@ -192,16 +192,13 @@ def is_store(place: Any) -> bool:
         return False
     text = place_text(place)
     try:
-        read = _remote_document if is_remote(text) else _local_document
-        return "flowtex" in json.loads(read(text))["attributes"]
+        is_url = is_remote(text)
+        told = _remote_document(text) if is_url else (Path(text) / DOCUMENT).read_bytes()
+        return "flowtex" in json.loads(told)["attributes"]
     except (OSError, ValueError, KeyError, TypeError) as error:
         if isinstance(error, PyramidError):
             raise
         return False
-
-
-def _local_document(text: str) -> bytes:
-    return (Path(text) / DOCUMENT).read_bytes()
 
 
 def _remote_document(text: str) -> bytes:

@@ -72,7 +72,11 @@ class Clusters:
             triangles[turned] = triangles[turned, ::-1]
         if not surface.cells.all():
             triangles = triangles[surface.cells]
-        normals = surface.normals[0] if surface.frame is None else _common(surface, triangles)
+        if surface.frame is None:
+            normals = surface.normals[0]
+        else:  # all are one, which is quicker to have
+            normal = triangle_normals(surface.points[0], triangles).sum(axis=0)
+            normals = np.broadcast_to(normal / np.linalg.norm(normal), surface.points.shape[1:])
         return cls(
             field,
             field,
@@ -190,12 +194,6 @@ def _sides(points: Floats, triangles: Indices, extent: float) -> Floats:
     typical = max(float(np.median(nodal[share > 0])), least)
     steps = np.rint(np.log2(np.maximum(nodal, least) / typical))
     return np.asarray(FIRST_EDGES * typical * 2.0**steps)
-
-
-def _common(surface: TriangleSurface, triangles: Indices) -> Floats:
-    """Return the one normal of a flat surface for each node, (N, 3)."""
-    normal = triangle_normals(surface.points[0], triangles).sum(axis=0)
-    return np.broadcast_to(normal / np.linalg.norm(normal), surface.points.shape[1:])
 
 
 def _once(corners: Indices) -> Indices:

@@ -34,7 +34,7 @@ from flowtex.field.datasets.axes import (
     wet_at,
 )
 from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
-from flowtex.field.datasets.maps import Nodes, PlaneNodes, on_map, projection_of
+from flowtex.field.datasets.maps import Nodes, PlaneNodes, on_map
 from flowtex.field.datasets.meshes.conventions import find_mesh
 from flowtex.field.datasets.meshes.maps import mesh_on_map
 from flowtex.field.datasets.meshes.mesh import Mesh
@@ -96,11 +96,6 @@ class Recognised:
     kept: tuple[slice, ...] = ()
     trimmed: tuple[slice, ...] = ()
     mesh: Mesh | None = None
-
-    @property
-    def map_name(self) -> str:
-        """The flat map that suits the places."""
-        return projection_of(self.places, None)[0].name
 
     def turned(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Return components eastward and northward, or along x and y."""
@@ -442,9 +437,10 @@ def _scalars(known: Recognised, datasets: Sequence[Any], choice: Choice) -> dict
     # What a velocity has no level for may still have a value.
     choice.used.update(choice.sel, choice.isel)
     for ds in datasets:
-        if aside and any(name in ds for name in used):
+        has_velocity = any(name in ds for name in used)
+        if aside and has_velocity:
             continue
-        alone = known.mesh is not None and known.mesh.is_alone_in(ds, used)
+        alone = known.mesh is not None and known.mesh.names[0] in ds and not has_velocity
         for name, array in ds.data_vars.items():
             surface = _surface(known, array)
             numbers = array.dtype.kind in "fiu" and not OF_GRIDS.match(str(name))

@@ -11,6 +11,7 @@ from flowtex.earth import GLOBE, NAMES
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import LEVEL, Choice, axis_values, sections
 from flowtex.field.datasets.files import common_name, dataset_paths, open_datasets
+from flowtex.field.datasets.maps import projection_of
 from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.field.datasets.pairs import find_pairs, two_names
 from flowtex.field.datasets.read import as_datasets, recognise
@@ -33,7 +34,7 @@ class DatasetSource(FlowSource):
         found = (f"{pair.u.name},{pair.v.name}" for pair in (known.pair, *pairs))
         self.vectors = tuple(dict.fromkeys(found))
         if known.places.is_earth:
-            flat = known.map_name
+            flat = projection_of(known.places, None)[0].name
             self.blocks = tuple(dict.fromkeys((flat, GLOBE, *NAMES)))
             self.block_vectors = dict.fromkeys(self.blocks, self.vectors)
         self.block_word, self.reads_late = "Map", True

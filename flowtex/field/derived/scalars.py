@@ -14,29 +14,12 @@ from flowtex.field.derived.gradient import node_gradient, true_velocity
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.surface import Surface
 
-
-def _vorticity(a: Floats) -> Floats:
-    return np.asarray(a[1, 0] - a[0, 1])
-
-
-def _divergence(a: Floats) -> Floats:
-    return np.asarray(a[0, 0] + a[1, 1])
-
-
-def _shear(a: Floats) -> Floats:
-    return np.asarray(np.hypot(a[0, 0] - a[1, 1], a[0, 1] + a[1, 0]))
-
-
-def _okubo_weiss(a: Floats) -> Floats:
-    return np.asarray((a[0, 0] - a[1, 1]) ** 2 + 4 * a[0, 1] * a[1, 0])
-
-
 #: What is computed of the gradient a[m, n], the change of component m along direction n.
 DERIVED: dict[str, Callable[[Floats], Floats]] = {
-    "vorticity": _vorticity,
-    "divergence": _divergence,
-    "shear": _shear,
-    "okubo_weiss": _okubo_weiss,
+    "vorticity": lambda a: a[1, 0] - a[0, 1],
+    "divergence": lambda a: a[0, 0] + a[1, 1],
+    "shear": lambda a: np.hypot(a[0, 0] - a[1, 1], a[0, 1] + a[1, 0]),
+    "okubo_weiss": lambda a: (a[0, 0] - a[1, 1]) ** 2 + 4 * a[0, 1] * a[1, 0],
 }
 #: Those for which particles are followed over a horizon, from a field; the tracer adds them.
 FOLLOWED: dict[str, Callable[[Any, float], Steps]] = {}

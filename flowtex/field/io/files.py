@@ -90,7 +90,11 @@ def open_file(path: str | Path) -> OpenFile:
     except ValueError as error:
         if "does not support a file" not in str(error):
             raise
-        raise FieldError(_unknown_format(file)) from error
+        what = repr(file.suffix) if file.suffix else "no suffix"
+        if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
+            what = "no PLOT3D grid of any layout"
+        msg = f"the format is not known ({what}); expected {_KNOWN_FORMATS}"
+        raise FieldError(msg) from error
 
 
 def _check_path(file: Path) -> None:
@@ -123,14 +127,6 @@ def _check_path(file: Path) -> None:
             problem = f"cannot be opened ({error.strerror}); check its permissions"
     if problem:
         raise FieldError(problem)
-
-
-def _unknown_format(file: Path) -> str:
-    """Return the fault of a file that no reader takes."""
-    what = repr(file.suffix) if file.suffix else "no suffix"
-    if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
-        what = "no PLOT3D grid of any layout"
-    return f"the format is not known ({what}); expected {_KNOWN_FORMATS}"
 
 
 def _at_time(source: Any, time: float) -> Any:

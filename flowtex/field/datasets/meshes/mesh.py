@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -47,7 +46,7 @@ class Mesh:
         """Names of the dimensions of nodes and of faces in the files."""
         if self.corners is None:
             return "", str(self.x.dims[0])
-        return str(_node_dim(self.x)), _face_dim(self.corners)
+        return _dim(self.x, NODES), _dim(self.corners, FACES)
 
     @property
     def coordinates(self) -> str:
@@ -60,10 +59,6 @@ class Mesh:
         """Names of the variables that it is made of."""
         parts = (self.x, self.y, self.corners, self.counts)
         return tuple(str(part.name) for part in parts if part is not None)
-
-    def is_alone_in(self, ds: Any, velocity: Sequence[Any]) -> bool:
-        """Whether a dataset has this mesh and no velocity."""
-        return self.names[0] in ds and not any(name in ds for name in velocity)
 
     @property
     def is_earth(self) -> bool:
@@ -202,16 +197,8 @@ class Mesh:
         return f"{self.kind}, {len(self.a):,} nodes, {len(self.faces):,} {what}"
 
 
-def _node_dim(x: Any) -> str:
-    if NODES in x.dims:
-        return NODES
-    return str(max(x.dims, key=lambda d: x.sizes[d]))
-
-
-def _face_dim(corners: Any) -> str:
-    if FACES in corners.dims:
-        return FACES
-    return str(max(corners.dims, key=lambda d: corners.sizes[d]))
+def _dim(array: Any, ours: str) -> str:
+    return ours if ours in array.dims else str(max(array.dims, key=lambda d: array.sizes[d]))
 
 
 def _numbers(mesh: Mesh, count: int) -> Indices:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import BinaryIO
@@ -61,7 +61,7 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
     """Look into one file, and return those that it names."""
     with path.open("rb") as stream:
         head = stream.read(HEAD_BYTES)
-        is_hdf5 = any(_has_at(stream, at, hdf5.MAGIC) for at in _hdf5_starts(size))
+        is_hdf5 = _is_hdf5(stream, size)
     suffix = path.suffix.lower()
     if is_hdf5:
         hdf5.check_hdf5(path, whole=whole)
@@ -75,14 +75,12 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
     return tuple(vtk_xml.check_vtk_xml(path)) if is_xml else ()
 
 
-def _hdf5_starts(size: int) -> Iterator[int]:
-    """Yield where HDF5 may begin: what is before it is the user's."""
+def _is_hdf5(stream: BinaryIO, size: int) -> bool:
+    """Whether HDF5 begins somewhere: what is before it is the user's."""
     at = 0
     while at < size:
-        yield at
+        stream.seek(at)
+        if stream.read(len(hdf5.MAGIC)) == hdf5.MAGIC:
+            return True
         at = 2 * at or 512
-
-
-def _has_at(stream: BinaryIO, at: int, magic: bytes) -> bool:
-    stream.seek(at)
-    return stream.read(len(magic)) == magic
+    return False
