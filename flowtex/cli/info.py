@@ -6,8 +6,7 @@ import math
 from typing import TYPE_CHECKING, Annotated
 
 from flowtex._util.terminal.console import terminal
-from flowtex.cli.console import in_flags
-from flowtex.cli.load import load_field
+from flowtex.cli.console import in_flags, load_field
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
 
 if TYPE_CHECKING:

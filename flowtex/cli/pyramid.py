@@ -11,8 +11,7 @@ from cyclopts import Parameter
 
 from flowtex._util.progress import waiting
 from flowtex.cli.checks import writing
-from flowtex.cli.console import complain, say
-from flowtex.cli.load import notices
+from flowtex.cli.console import complain, notices, say
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
 
 

@@ -18,8 +18,7 @@ from flowtex.cli.checks import (
     drawing,
     writing,
 )
-from flowtex.cli.console import describe, say
-from flowtex.cli.load import load_field
+from flowtex.cli.console import describe, load_field, say
 from flowtex.cli.options import (
     FILE,
     FLAT,

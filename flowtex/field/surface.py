@@ -18,6 +18,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.blocks import bounds, row_blocks
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
+from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.poles import Pole, Poles, find_poles
 from flowtex.field.validation import finite_nodes
 
@@ -180,6 +181,10 @@ class Surface:
         """
         i, j = index.reshape(-1, 2).T
         return self._positions.at(i, j).T.reshape(*index.shape[:-1], 3)
+
+    def express(self, velocity: Floats) -> IndexVelocity:
+        """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space."""
+        return to_index_space(self.tangents, self.valid, self.poles, velocity)
 
     @cached_property
     def plane_size(self) -> Floats:

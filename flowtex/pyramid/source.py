@@ -19,7 +19,7 @@ from flowtex.field.datasets.files import dataset_paths
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
 from flowtex.field.io.arrays import FieldArrays
-from flowtex.field.io.file_fields import errors_of, read_files
+from flowtex.field.io.files import errors_of, read_files
 from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.places import is_store
 from flowtex.tiles import Pyramid, drawn_speeds, ends_of

@@ -1,4 +1,4 @@
-"""How triangles are joined: shared points, neighbours across edges, and which way they face."""
+"""How triangles are joined: shared points, neighbours across edges, which way they face."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ SAME_NODE_SHARE = 1e-9
 #: Edges of a triangle without area that are shorter than this share of the longest are a point.
 #: Sections have them beside nodes that lie in the plane but for the rounding of single precision.
 NEEDLE_SHARE = 1e-4
+#: Cosine of the angle between the normals of a node and a triangle below which there is an edge.
+SHARP = 0.86
 #: Numbers of which three have room in one of 64 bits.
 MOST_CUBED = 2**21
 
@@ -165,3 +167,18 @@ def flipped(triangles: Indices, beside: Indices) -> Bools:
                     side[there] = 1 - side[here]
                     waiting.append(there)
     return np.asarray(side[patch] == 1)
+
+
+def normals_at_corners(points: Floats, normals: Floats) -> Floats:
+    """Return normals at the corners of triangles, (..., 3, 3), as light and views are to have them.
+
+    They are those of the nodes there, (..., 3, 3) as the ``points`` are, and where these belong to
+    a sharp edge that of the triangle, so that every face is even up to its end.
+    """
+    across = np.cross(points[..., 1, :] - points[..., 0, :], points[..., 2, :] - points[..., 0, :])
+    alike = np.einsum("...c,...kc->...k", across, normals)
+    length = np.linalg.norm(across, axis=-1)[..., None]
+    sharp = np.abs(alike) < SHARP * length
+    own = across / np.maximum(length, np.finfo(float).tiny)
+    faced = np.where(alike < 0, -1.0, 1.0)[..., None] * own[..., None, :]
+    return np.where(sharp[..., None], faced, normals)
