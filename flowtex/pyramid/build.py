@@ -177,7 +177,7 @@ def build(
         raise FieldError(msg)
     place = place_text(store)
     with plain_faults():
-        check_room(place, listed(store_at(place, read_only=False).list_dir("")))
+        check_room(place, listed(store_at(place, read_only=False).list_dir))
     given = source_of(source, **options)
     about = about_source(given, parameter, given.chosen_lines(lines))
     wrong = [name for name in about["scalars"] if not is_scalar_name(name)]
@@ -312,7 +312,7 @@ def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
 
 def _remove(store: Any) -> None:
     """Remove a pyramid, what was made of a level before that; others know it to the end."""
-    levels = sorted(filter(str.isdecimal, listed(store.list_dir(""))), key=int, reverse=True)
+    levels = sorted(filter(str.isdecimal, listed(store.list_dir)), key=int, reverse=True)
     for name in (*levels, SAMPLES):
         sync(store.delete_dir(name))
     sync(store.delete(DOCUMENT))
@@ -347,7 +347,7 @@ class _Run:
         array = self.group[name]
         prefix = f"{array.path}/c/"
         # A file that is being written is no shard yet.
-        keys = listed(array.store.list_prefix(prefix))
+        keys = listed(array.store.list_prefix, prefix)
         numbers = (key.removeprefix(prefix).split("/") for key in keys)
         return {tuple(map(int, some)) for some in numbers if all(map(str.isdecimal, some))}
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import AsyncIterator, Coroutine, Iterable, Iterator
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
@@ -164,11 +164,11 @@ def sync(doing: Coroutine[Any, Any, Any]) -> Any:
     return import_extra("zarr.core.sync", "store").sync(doing)
 
 
-def listed(names: AsyncIterator[str]) -> list[str]:
-    """Return the names that a store of Zarr's gives one after the other."""
+def listed(names: Callable[[str], AsyncIterator[str]], prefix: str = "") -> list[str]:
+    """Return the names that a method of a store of Zarr's gives one after the other."""
 
     async def gathered() -> list[str]:
-        return [name async for name in names]
+        return [name async for name in names(prefix)]
 
     result: list[str] = sync(gathered())
     return result
