@@ -33,17 +33,15 @@ from flowtex.field.datasets.axes import (
     way_ahead,
     wet_at,
 )
-from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
+from flowtex.field.datasets.grids import centred, find_grid, sea_mask, unrepeated
 from flowtex.field.datasets.maps import Nodes, PlaneNodes, on_map
-from flowtex.field.datasets.meshes.conventions import find_mesh
+from flowtex.field.datasets.meshes.conventions import find_mesh, with_mesh_axes
 from flowtex.field.datasets.meshes.maps import mesh_on_map
 from flowtex.field.datasets.meshes.mesh import Mesh
-from flowtex.field.datasets.meshes.preparation import with_mesh_axes
 from flowtex.field.datasets.notices import notify
 from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
 from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places
 from flowtex.field.datasets.regions import Regions, Words, numbers_in, region_lines
-from flowtex.field.datasets.staggered import centred
 from flowtex.field.dates import as_seconds
 from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.steps import LazySteps

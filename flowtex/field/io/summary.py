@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -40,14 +40,8 @@ from flowtex.field.io.vectors import (
 )
 
 
-@dataclass(frozen=True)
-class ArraySummary:
-    """One array of a file.
-
-    ``components`` is the count of numbers at each point or cell; ``low`` and ``high`` are the range
-    of the finite values, of the lengths where there are several components, NaN where there are
-    none. ``parts`` are the names of the arrays that make a vector together.
-    """
+class ArraySummary(NamedTuple):
+    """One array, its finite range, of lengths where it is a vector, and what it is made of."""
 
     name: str
     where: Literal["points", "cells"]
@@ -57,13 +51,8 @@ class ArraySummary:
     parts: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class BlockSummary:
-    """One block of a file.
-
-    ``name`` is its path, ``number`` what counts those with cells, ``None`` for the others,
-    ``size`` words for how large it is.
-    """
+class BlockSummary(NamedTuple):
+    """One block: its path, and the number that counts those with cells; ``None`` for others."""
 
     name: str
     number: int | None
