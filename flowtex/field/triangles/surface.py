@@ -16,6 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.errors import FieldError
 from flowtex.field.metric import IndexVelocity
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.topology import SHARP, flipped, neighbours, triangle_normals
@@ -108,6 +109,46 @@ class TriangleSurface(Surface):
         size = total / np.maximum(count, 1)
         typical = float(np.median(size[self.valid[0]])) or 1.0
         return np.asarray(np.maximum(size, 1e-4 * typical)[None])
+
+    @cached_property
+    def drawn(self) -> Indices:
+        """Numbers of the triangles that are drawn."""
+        return np.flatnonzero(self.cells)
+
+    def is_drawn(self, number: Indices) -> Bools:
+        """Whether triangles (N,) are drawn."""
+        return np.asarray(self.cells[number])
+
+    def corners_of(self, number: Indices) -> Indices:
+        """Nodes (N, 3) at the corners of triangles (N,)."""
+        return np.asarray(self.triangles[number])
+
+    def beside(self, number: Indices, corner: int) -> Indices:
+        """Triangles (N,) across the edges opposite to a corner, -1 at a border."""
+        return np.asarray(self.neighbours[number, corner])
+
+    def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
+        """Return a position (j, i), its triangle, and shares of the corners, (3,)."""
+        j, i = map(float, index)
+        count = len(self.triangles)
+        if not (0 <= j < count and 0 <= i <= 1):
+            msg = (
+                f"(j, i) is ({j:g}, {i:g}), outside the surface; expected a j from 0 to {count}, "
+                "the number of the triangle plus the share of its second corner, and the share of "
+                "its third as i"
+            )
+            raise FieldError(msg)
+        if not self.cells[int(j)]:
+            msg = f"(j, i) is ({j:g}, {i:g}), in a triangle with a blanked node; expected another"
+            raise FieldError(msg)
+        return index, int(j), self.corners_at(index[::-1])[1]
+
+    @cached_property
+    def apart(self) -> Bools:
+        """Nodes of what is drawn, (1, N); those at one place are one."""
+        used = np.zeros(self.shape, dtype=bool)
+        used[0, self.triangles[self.cells]] = True
+        return used
 
     def wrap(self, index: Floats) -> Floats:
         """Return positions (..., 2) as (i, j) as they are: nothing repeats."""
