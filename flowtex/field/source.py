@@ -178,9 +178,8 @@ class FlowSource(Source):
         if isinstance(mesh, FlowField):
             self.name, self.nbytes = name or mesh.name, mesh.nbytes
             return
-        if mesh is not None:
-            self._describe(self._series(mesh)[0].grid)
-            self.reads_late = is_reader(self._mesh)
+        self._describe(self._series(mesh)[0].grid)
+        self.reads_late = is_reader(self._mesh)
 
     @classmethod
     def from_file(cls, path: str | Path) -> FlowSource:

@@ -7,7 +7,6 @@ import os
 import select
 import signal
 import subprocess
-import sys
 import threading
 import time
 import weakref
@@ -20,7 +19,7 @@ from typing import IO, Any
 from flowtex._util.array_types import AnyArray
 from flowtex._util.child.forkserver import FORKS, STATUS_BYTES, fork_server
 from flowtex._util.child.messages import MessageError, read_message, write_message
-from flowtex._util.child.worker import PROGRAM, start_text
+from flowtex._util.child.worker import command, spawned
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import Stopped, check
 
@@ -258,7 +257,7 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...]) -> _Process:
 def _spawned(entry: str, memory: int, _preload: tuple[str, ...]) -> _Process:
     """Start a child from nothing."""
     process = subprocess.Popen(
-        [sys.executable, "-I", "-c", PROGRAM, start_text(entry, memory)],
+        command(spawned, entry=entry, memory=memory),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,

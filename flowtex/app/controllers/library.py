@@ -328,7 +328,7 @@ def _is_folder(path: str | Path) -> bool:
     return Path(path).is_dir() and not is_dataset_file(Path(path))
 
 
-def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
+def _source_of(flow: Any, options: dict[str, Any]) -> Source:
     """Take a mesh as it is where nothing is chosen about it, else the field that is meant."""
     options = {key: value for key, value in options.items() if value is not None}
     if is_dataset(flow) and not options:

@@ -17,14 +17,14 @@ from flowtex.field.datasets.pairs import find_pairs, two_names
 from flowtex.field.datasets.read import as_datasets, recognise
 from flowtex.field.field import FlowField
 from flowtex.field.io.reader_errors import errors_of_file
-from flowtex.field.source import FlowSource
+from flowtex.field.source import FlowSource, Source
 
 
-class DatasetSource(FlowSource):
+class DatasetSource(Source):
     """Datasets of xarray's that belong together; blocks are the maps they can be drawn on."""
 
-    def __init__(self, datasets: Any, *, name: str = "", path: Path | None = None) -> None:
-        super().__init__(None, name=name, path=path)
+    def __init__(self, datasets: Any, *, name: str = "") -> None:
+        super().__init__(name)
         self._datasets = as_datasets(datasets)
         pairs = find_pairs(self._datasets)
         likely = [pair for pair in pairs if pair.rank == pairs[0].rank]
@@ -49,7 +49,7 @@ class DatasetSource(FlowSource):
         (section,) = sections([array], Choice({LEVEL: level}))
         return f"{LEVEL}={section.numbers.get(LEVEL, 0)}"
 
-    def part(self, block: str | None = None) -> FlowSource:
+    def part(self, block: str | None = None) -> Source:
         """Return this source, which draws on any of the maps."""
         if block is not None and block not in self.blocks:
             msg = f"block is {block!r}; there are {', '.join(self.blocks)}"
@@ -64,7 +64,7 @@ class DatasetSource(FlowSource):
         array = next((ds[names["u"]] for ds in self._datasets if names["u"] in ds), None)
         if array is not None and axis in axis_values(array):
             options["isel"] = {**(options.get("isel") or {}), axis: int(number)}
-        with warnings.catch_warnings(), self._errors():
+        with warnings.catch_warnings():
             # The page shows what is chosen.
             warnings.simplefilter("ignore", DatasetNotice)
             return FlowField.from_xarray(
@@ -72,7 +72,7 @@ class DatasetSource(FlowSource):
             )
 
 
-def open_source(path: str | Path | Sequence[str | Path]) -> FlowSource:
+def open_source(path: str | Path | Sequence[str | Path]) -> Source:
     """Open a file, or several of data of the Earth; errors start with the path."""
     paths = dataset_paths(path)
     if not paths:
@@ -81,4 +81,4 @@ def open_source(path: str | Path | Sequence[str | Path]) -> FlowSource:
             raise FieldError(msg)
         return FlowSource.from_file(path)
     with errors_of_file(paths[0]):
-        return DatasetSource(open_datasets(paths), name=common_name(paths), path=paths[0])
+        return DatasetSource(open_datasets(paths), name=common_name(paths))
