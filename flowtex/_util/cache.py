@@ -106,10 +106,7 @@ class ByteCache(Generic[K, S]):
             return self._size()
 
     def get(self, key: K, make: Callable[[], S]) -> S:
-        """Return the value of a key, computing it where it is missing.
-
-        Threads that ask for the same key meanwhile wait for the value; other keys do not wait.
-        """
+        """Return the value of a key, computed once: threads that ask meanwhile wait for it."""
         gate = self._gates.of(key)
         with gate:
             value = self.peek(key)

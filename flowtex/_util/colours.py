@@ -31,10 +31,7 @@ DIVERGING = frozenset(
 
 
 def rgb(colour: Any) -> tuple[float, float, float]:
-    """Return a colour of any form that PyVista takes as red, green and blue from 0 to 1.
-
-    Raises a FieldError when there is no such colour.
-    """
+    """Return a colour of any form that PyVista takes as red, green and blue from 0 to 1."""
     if isinstance(colour, str):
         from matplotlib.colors import is_color_like, to_rgb
 

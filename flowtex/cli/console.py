@@ -27,10 +27,7 @@ def complain(error: Exception, colour: str = "red") -> None:
 
 
 def in_flags(text: str) -> str:
-    """Return a message with Python's arguments as flags: ``plane="k=20"`` is ``--plane k=20``.
-
-    A value with blanks keeps its quotes.
-    """
+    """Return a message with arguments as flags: ``plane="k=20"`` is ``--plane k=20``."""
     names = "|".join([*flag_names(), "fresh"])
 
     def flag(match: re.Match[str]) -> str:

@@ -18,11 +18,7 @@ DAY_S = 86_400.0
 
 
 def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
-    """Return times, their unit, and the date at time 0.
-
-    Dates become seconds since the first, and spans of time seconds. Numbers are returned as they
-    are; they have no date, and spans have none.
-    """
+    """Return times, their unit, and the date at time 0: dates and spans become seconds."""
     start = None
     try:
         given = np.asarray(times)
@@ -58,10 +54,7 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
 
 
 def date_text(start: Any, time: float, step: float) -> str:
-    """Return a time in seconds since ``start`` as a date, to tell steps of so many seconds apart.
-
-    It is the day, or the minute, or the second.
-    """
+    """Return a time in seconds since ``start`` as a day, a minute or a second, by the step."""
     at_midnight = not (start.hour or start.minute or start.second or start.microsecond)
     whole_days = step % DAY_S == 0 and time % DAY_S == 0 and at_midnight
     form = "%Y-%m-%d" if whole_days else "%Y-%m-%d %H:%M" if step >= 60 else "%Y-%m-%d %H:%M:%S"

@@ -53,11 +53,7 @@ class SurfacePoint:
 
 
 def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
-    """Return the point of a surface at (j, i) in cells; an axis that closes takes any number.
-
-    Raises a FieldError when the index is no pair of numbers, or outside the surface or in a cell
-    that is not drawn.
-    """
+    """Return the point of a surface at (j, i) in cells; an axis that closes takes any number."""
     expected = "two finite numbers (j, i), in cells"
     at = checked_array("index", index, expected=expected)
     if at.shape != (2,) or not np.isfinite(at).all():
@@ -150,10 +146,7 @@ class Locator:
 
 
 def closest(at: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats]:
-    """Shares of the corners (N, 3) at the nearest points of triangles, and how far, (N,).
-
-    A triangle without area is infinitely far: the one beside it has the same points.
-    """
+    """Shares of corners (N, 3) at nearest points of triangles, and how far; inf without area."""
     u, v, w = b - a, c - a, at - a
     uu, vv, uv, wu = (np.einsum("nc,nc->n", p, q) for p, q in ((u, u), (v, v), (u, v), (w, u)))
     # What v has across u: long triangles lose no digits by it.

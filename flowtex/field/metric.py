@@ -78,10 +78,7 @@ def to_index_space(
 def _project(
     velocity: Floats, p_i: Floats, p_j: Floats, valid: Bools, tiny: float, u: Floats, speed: Floats
 ) -> tuple[float, float]:
-    """Write components and speed of some nodes, and return squares of all and of the normal part.
-
-    Squares of tangents below ``tiny`` count as none.
-    """
+    """Write components and speed of nodes, and return squares of all and of the normal part."""
     g_ii, g_jj, g_ij = (
         np.einsum("jic,jic->ji", a, b) for a, b in ((p_i, p_i), (p_j, p_j), (p_i, p_j))
     )

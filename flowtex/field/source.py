@@ -72,10 +72,7 @@ class Source:
 
     @property
     def planes(self) -> dict[str, int]:
-        """Axes along which planes can be chosen, and how many there are; empty for a surface.
-
-        Those of the index come before those in space, which cut any volume.
-        """
+        """Axes of planes, those of the index first, and how many; empty for a surface."""
         named = {name: len(words) for name, words in self.axes.items()}
         if not self.ends:
             return named
@@ -144,10 +141,7 @@ class Source:
         raise NotImplementedError
 
     def part(self, block: str | None = None) -> Source:
-        """Return the source of one of the :attr:`blocks`; this one itself where there are none.
-
-        The block is named, or numbered; it is the first by default.
-        """
+        """Return the source of one of the :attr:`blocks`, named or numbered, or this one itself."""
         raise NotImplementedError
 
 
@@ -270,10 +264,7 @@ class FlowSource(Source):
         return tuple(dict.fromkeys(names))
 
     def _series(self, mesh: Any) -> list[TimeStep]:
-        """Return the time steps of a mesh, in memory where they fit; of several blocks the first.
-
-        Of a reader with times and several blocks each block is a series, read when it is asked for.
-        """
+        """Return the steps of a mesh, in memory where they fit; of several blocks the first."""
         series = len(times_of(mesh)) > 1
         first = mesh.read() if is_reader(mesh) else mesh
         several = {} if self._block is not None else _choices(first, series=series)

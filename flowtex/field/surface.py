@@ -134,10 +134,7 @@ class Surface:
         return np.asarray(place + np.stack(np.divmod(number >> 1, self.shape[1] - 1), -1))[:, ::-1]
 
     def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
-        """Return a position (j, i) within one period, its triangle, and shares of the corners (3,).
-
-        Raises a FieldError where it is outside the surface or in a cell that is not drawn.
-        """
+        """Return a position (j, i) within one period, its triangle, and shares of corners (3,)."""
         j, i = (float(x) for x in self.wrap(index[::-1])[::-1])
         rows, columns = self.shape
         if not (0 <= j <= rows - 1 and 0 <= i <= columns - 1):
@@ -334,10 +331,7 @@ class CubicMap:
     def at(
         self, i: AnyArray, j: AnyArray, start: tuple[Any, Any] = (0, 0), error: float = 0.0
     ) -> AnyArray:
-        """Positions (C, N) of (N,) each in index space, counted in cells from the nodes ``start``.
-
-        An error is allowed in each coordinate of what is left out; :meth:`Surface.at` has the rest.
-        """
+        """Positions (C, N) of (N,) each in cells from the nodes ``start``, but for some error."""
         rows, columns = self._shape
         closed_j, closed_i = self._periodic
         if self._poles is not None:

@@ -286,10 +286,7 @@ def _prepared(
 
 
 def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
-    """Write what tells of the pyramid and its arrays, and return the axes of these by name.
-
-    All of it follows from ``about``.
-    """
+    """Write what follows from ``about``, and return the axes of the arrays by name."""
     zarr = import_extra("zarr", "store")
     described = zarr.storage.MemoryStore()
     group = zarr.group(described, zarr_format=3, attributes=attributes_of(about))

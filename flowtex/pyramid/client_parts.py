@@ -33,10 +33,7 @@ RATE_STEPS = 512
 
 
 def write_tile(here: Any, pyramid: StoredPyramid, key: TileKey, steps: Sequence[int]) -> None:
-    """Write what a browser is handed of a tile at some times into the group of its level.
-
-    That of the first step has the surface as well.
-    """
+    """Write what a browser is handed of a tile at some times; at the first its surface too."""
     of = pyramid.about["fingerprint"]
     textures = _textures(pyramid, key)
     data, at = None, key[1:]

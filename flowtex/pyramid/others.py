@@ -72,10 +72,7 @@ def _json(path: Path) -> dict[str, Any]:
 
 
 def levels_of_others(place: str, options: Mapping[str, Any]) -> OtherLevels | FlowField:
-    """Open a store that others wrote; one that is small, or on curved lines, is a whole field.
-
-    Options are those of :meth:`FlowField.from_xarray`.
-    """
+    """Open a store of others; one that is small, or on curved lines, is a whole field."""
     datasets = _datasets(place)
     named = {"name": Path(place).stem, **options}
     arrays = read_datasets(datasets[0], regions=True, **named)

@@ -109,10 +109,7 @@ def is_remote(place: str | Path) -> bool:
 
 
 def objects_at(place: str | Path, *, patient: bool = False) -> Any:
-    """Return the store of obstore's at a place; to read from it, it needs no listing.
-
-    A patient one asks for minutes where the other gives up: many workers tire a server.
-    """
+    """Return the store of obstore's at a place; a patient one asks a tired server for minutes."""
     text = place_text(place)
     objects = import_extra("obstore.store", "store")
     if not is_remote(text):

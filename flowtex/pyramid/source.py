@@ -121,11 +121,7 @@ class FieldSource(Source):
 
 
 class RegionSource(Source):
-    """A dataset of which each task reads a region, wherever it runs.
-
-    ``files`` are what it was opened from, and ``choice`` is what was chosen of it; empty for a
-    dataset that was given.
-    """
+    """A dataset of which each task reads a region; ``files`` and ``choice`` if it was opened."""
 
     travels = True
     files: Sequence[Path] = ()
@@ -193,10 +189,7 @@ class RegionSource(Source):
 
 
 def source_of(given: Any, **options: Any) -> Source:
-    """Return what a pyramid is built from: a field, a dataset of xarray's, or files.
-
-    Options are those of :meth:`FlowField.from_xarray` or :meth:`FlowField.from_file`.
-    """
+    """Return what a pyramid is built from: a field, a dataset, or files with such options."""
     if isinstance(given, (FlowField, Source)):
         if options:
             msg = f"{', '.join(options)} is for what a field is made of; leave it out"

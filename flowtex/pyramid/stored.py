@@ -98,10 +98,7 @@ def root_of(levels: Levels | OtherLevels) -> FlowField:
 
 
 class StoredPyramid(Pyramid):
-    """The levels of a pyramid in a store, whose ``field`` is the coarsest of them.
-
-    Tiles are traced in what the store has of their surroundings.
-    """
+    """The levels of a pyramid in a store, whose ``field`` is the coarsest of them."""
 
     def __init__(
         self,
@@ -150,10 +147,7 @@ class StoredPyramid(Pyramid):
     def _check_nodes(
         self, stored: Levels, key: TileKey, textures: TextureSet, steps: Sequence[int]
     ) -> None:
-        """Raise a PyramidError where the nodes of a tile are not those of the level above it.
-
-        That has every other line of them, and means of their velocities.
-        """
+        """Raise a PyramidError where nodes of a tile are not those of the level above."""
         field, drawn = textures.geometry.field, textures.grid.drawn
         valid = field.valid[drawn]
         first = [at * self.about["tile_cells"] for at in key[1:]]

@@ -64,11 +64,7 @@ class Threads:
         need: int,
         *given: Any,
     ) -> Generator[Exception | None]:
-        """Yield what became of each task, in the order in which they end.
-
-        The arguments of the function are what is ``given`` and those of the task, which needs so
-        many bytes.
-        """
+        """Yield what became of tasks as they end; arguments are ``given`` and those of a task."""
         if not tasks:
             return
 

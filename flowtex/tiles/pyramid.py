@@ -276,10 +276,7 @@ class Pyramid:
     def _part(
         self, level: int, rows: Indices, columns: Indices, periodic: tuple[bool, bool]
     ) -> FlowField:
-        """Return some lines of a level, by their numbers, which may lie beyond a period.
-
-        Axes that are ``periodic`` have one whole period.
-        """
+        """Return some lines of a level, which may lie beyond a period on axes not ``periodic``."""
         (turns_j, rows), (turns_i, columns) = (
             np.divmod(some, count - 1) if closed else (np.zeros_like(some), some)
             for some, count, closed in zip(
@@ -379,10 +376,7 @@ def is_cut(textures: TextureSet, step: int) -> bool:
 
 
 def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
-    """Return centre, radius, and longest side of a cell of each block, (rows, columns, 5).
-
-    Blocks have so many cells a side of a surface with nodes (J, I, 3).
-    """
+    """Return centre, radius, and longest side of a cell of blocks, (rows, columns, 5)."""
     firsts = [np.arange(0, max(n - 1, 1), cells) for n in points.shape[:2]]
     lasts = [np.minimum(f + cells, n - 1) for f, n in zip(firsts, points.shape, strict=False)]
     center = np.zeros((len(firsts[0]), len(firsts[1]), 3))
@@ -501,9 +495,6 @@ def averaged(velocity: Floats, valid: Bools, rows: Indices, columns: Indices) ->
 
 
 def beside(lines: Indices, count: int, *, closed: bool) -> Indices:
-    """Numbers of the lines before some of so many, of these, and of those after them, (3, N).
-
-    A border repeats itself, or the next period begins.
-    """
+    """Numbers of lines before some, of these, and after, (3, N); a border repeats itself."""
     around = lines + np.array([[-1], [0], [1]])
     return np.asarray(np.mod(around, count - 1) if closed else np.clip(around, 0, count - 1))

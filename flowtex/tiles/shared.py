@@ -68,9 +68,6 @@ def widened(ends: tuple[float, float] | None) -> tuple[float, float]:
 
 
 def drawn_speeds(field: FlowField, root: FlowField) -> Floats:
-    """Return the speeds of the valid nodes of a field whose coarsest level is the root, (T, N).
-
-    Those in space are quicker to have, and the same where hardly any flow leaves the surface.
-    """
+    """Return speeds of valid nodes, (T, N); in space, where hardly any flow leaves the surface."""
     steps = field.speed if root.leaves_surface else np.linalg.norm(field.velocity, axis=-1)
     return np.asarray(np.asarray(steps)[:, field.valid])

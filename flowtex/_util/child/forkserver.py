@@ -37,13 +37,7 @@ _lock = threading.Lock()
 
 
 class ForkServer:
-    """The process that is forked, as seen by the one that asks for children.
-
-    Parameters
-    ----------
-    preload
-        Modules that it loads, one after another; what is not installed is left out.
-    """
+    """The process with modules loaded that is forked, as seen by who asks for children."""
 
     def __init__(self, preload: tuple[str, ...]) -> None:
         self._control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

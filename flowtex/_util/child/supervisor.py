@@ -110,14 +110,9 @@ class Child:
     def request(self, value: Any, *, timeout: float) -> tuple[Any, list[AnyArray]]:
         """Return the answer to a request: a value of JSON, and arrays.
 
-        Raises
-        ------
-        ChildError
-            When the child is dead, dies meanwhile, needs more memory than it may have, does not
-            answer in ``timeout`` seconds, after which it is ended, or raises an error.
-        Stopped
-            When the work was cancelled, as :func:`flowtex._util.progress.stoppable` says. The child
-            is told, and goes on to live.
+        A ChildError tells that the child is dead, dies, needs more memory than it may have, does
+        not answer in ``timeout`` seconds, after which it is ended, or raises an error. Where the
+        work was cancelled, it is told, and goes on to live.
         """
         while not self._asking.acquire(timeout=CHECK_INTERVAL_S):
             check()

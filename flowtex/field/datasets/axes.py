@@ -163,10 +163,7 @@ def wet_at(
 
 
 def drawn_steps(section: Section, array: xr.DataArray) -> tuple[Any, list[int]]:
-    """Return dates or seconds of the steps that are drawn, and their numbers in the section.
-
-    ``array`` is the variable before anything was chosen of it.
-    """
+    """Return dates or seconds of the steps that are drawn, and their numbers in the section."""
     times = section.times
     count = section.array.shape[0] if section.is_series else 1
     numbers = list(range(count))
@@ -189,10 +186,7 @@ def drawn_steps(section: Section, array: xr.DataArray) -> tuple[Any, list[int]]:
 
 
 def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
-    """Return words for the values along axes other than time where there is a choice.
-
-    They are by name, that of the level first.
-    """
+    """Return words for the values along other axes than time with a choice, the level first."""
     found: dict[str, tuple[str, ...]] = {}
     surface = horizontal_dims(array)
     for dim in map(str, array.dims):
@@ -206,10 +200,7 @@ def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
 
 
 def way_ahead(array: xr.DataArray, dim: str) -> int:
-    """Return the way in which the coordinate of a dimension grows: 1, or -1 against its numbers.
-
-    A component along y, say, leads to greater y.
-    """
+    """Return 1 where the coordinate of a dimension grows, or -1 against its numbers."""
     coordinate = array.coords.get(dim)
     if coordinate is None or coordinate.dtype.kind not in "fiu" or coordinate.size < 2:
         return 1

@@ -112,10 +112,7 @@ def _moved(places: Places, sides: Sides) -> Places:
 
 
 def _nemo_places(pair: Pair, cells: tuple[str, str], datasets: Sequence[Any]) -> Places | None:
-    """Return the places of NEMO's T points, where the components lie on the sides of its cells.
-
-    Its variables have dimensions of the same names, whose coordinates differ.
-    """
+    """Return the places of NEMO's T points, whose dimensions have the names of those of U and V."""
     own = [_own(array, datasets) for array in (pair.u, pair.v)]
     names = {str(n) for ds in datasets for n in ds.variables}
     if "glamt" in names and "gphit" in names and "glamu" in names:
@@ -153,10 +150,7 @@ def _wraps(places: Places) -> bool:
 
 
 def unrepeated(places: Places) -> tuple[slice, slice]:
-    """Return the lines without those that repeat others: a halo beyond the date line, and a fold.
-
-    One repeated column is kept, so that the axis closes.
-    """
+    """Return the lines without a halo beyond the date line, but for one column, and a fold."""
     if not places.is_earth or places.is_line:
         return slice(None), slice(None)
     p = places.on_sphere
@@ -221,10 +215,7 @@ class Sides:
 
 
 def centred(values: Floats, axis: int, sides: Sides) -> Floats:
-    """Return means of two sides at the known cells; a side that is missing is a wall, with zero.
-
-    ``values`` are NaN at walls. Where both sides are, the mean is NaN.
-    """
+    """Return means of two sides at the known cells; one that is missing, or NaN, is a wall."""
     cells = np.arange(sides.cells)[sides.known]
     before, after = cells + sides.first, cells + sides.first + 1
     if sides.wraps:

@@ -125,11 +125,7 @@ def on_map(places: Places, name: str | None) -> MapNodes:
 
 
 def lines_on_map(places: Places, projection: Projection, *, around: bool) -> MapLines:
-    """Return the lines of places in the order of a map.
-
-    On one that goes around the Earth the last column is the first one again, a turn further; data
-    may have it already.
-    """
+    """Return the lines of places in the order of a map; one around the Earth is closed."""
     lon, lat = places.lines
     turn = np.abs(lon - lon[0])
     step = float(np.median(np.diff(turn))) if len(turn) > 1 else 0.0
@@ -167,10 +163,7 @@ def shown_rows(points: Floats) -> slice:
 
 
 def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
-    """Return the map of a name, or one that suits the region, and whether that is around the Earth.
-
-    ``places`` are nodes in any order where they are no lines.
-    """
+    """Return the map of a name, or one that suits, and whether the region is around the Earth."""
     if name == GLOBE:
         return Projection(GLOBE), False
     lon, lat = places.lines if places.is_line else (places.a, places.b)

@@ -62,10 +62,7 @@ class Places:
         return Projection(GLOBE).positions(self.a, self.b)
 
     def turned(self, ahead: tuple[int, int], u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        """Return components eastward and northward, or along x and y, of those along the grid.
-
-        ``ahead`` tells the ways of (rows, columns), 1 or -1.
-        """
+        """Return components on the Earth, or along x and y, of those along rows and columns."""
         p = self.on_sphere if self.is_earth else np.stack([self.a, self.b], axis=-1)
         along_j, along_i = (way * _directions(p, axis) for axis, way in enumerate(ahead))
         vector = u[..., None] * along_i + v[..., None] * along_j
@@ -77,11 +74,7 @@ class Places:
 def find_places(
     array: xr.DataArray, dims: tuple[str, ...], datasets: Sequence[xr.Dataset]
 ) -> Places:
-    """Return where values on some rows and columns (``dims``) lie.
-
-    The variable's own coordinates are looked at before those of ``datasets``. A FieldError lists
-    what there is.
-    """
+    """Return where values lie, by their own coordinates, or by those of other datasets."""
     shape = tuple(_size(d, array, datasets) for d in dims)
     for lon, lat in _pairs(array, dims, datasets, (LONGITUDE, LATITUDE), ("longitude", "latitude")):
         a, b = _spread(lon, lat, dims, shape)
@@ -171,10 +164,7 @@ def _partner(name: str) -> set[str]:
 def _spread(
     a: Any, b: Any, dims: tuple[str, ...], shape: tuple[int, ...]
 ) -> tuple[Floats | None, Floats | None]:
-    """Return two coordinates at all nodes, or nothing where they belong to other nodes.
-
-    Lines are (1, I) and (J, 1).
-    """
+    """Return two coordinates at all nodes, lines as (1, I) and (J, 1); none of other nodes."""
     if a.ndim == 1 and b.ndim == 1:
         if a.dims == b.dims:
             msg = (

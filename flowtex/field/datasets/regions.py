@@ -114,10 +114,7 @@ class Regions:
         return (*self.scalars, "speed") if drawn else tuple(self.scalars)
 
     def nodes(self, step: int, rows: Any, columns: Any, valid: Bools | None = None) -> Nodes:
-        """Read some rows and columns, as slices or numbers, at a time step.
-
-        ``valid`` tells the nodes that have data in the first step, where they are known.
-        """
+        """Read some rows and columns at a step; ``valid`` where the first one has told it."""
         number = self.numbers[step]
         u, v = self._components(number, rows, columns)
         velocity = self.lines.vectors(u, v, rows, columns)
@@ -153,10 +150,7 @@ class Regions:
 
 
 def region_lines(places: Places, name: str | None) -> RegionLines | None:
-    """Return where the nodes lie on a map, or in a plane; ``None`` where regions are no islands.
-
-    That is where all nodes have to be known to tell what becomes of one of them.
-    """
+    """Return where the nodes lie; ``None`` where all have to be known to tell what one becomes."""
     if not places.is_line or not all(_is_ordered(line) for line in places.lines):
         return None
     a, b = places.lines

@@ -48,10 +48,7 @@ LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
 def derived_steps(
     name: str, surface: Surface, projection: Projection | None, velocity: Steps
 ) -> Steps:
-    """Return one of :data:`DERIVED` at each node and step, (T, J, I).
-
-    It is NaN where too few neighbours have data. Steps that are read late stay so.
-    """
+    """Return one of :data:`DERIVED`, (T, J, I); NaN where too few neighbours have data."""
     if name not in DERIVED:
         msg = f"{name!r} cannot be derived; expected one of {', '.join((*DERIVED, *FOLLOWED))}"
         raise FieldError(msg)

@@ -66,20 +66,14 @@ class NodeGradient:
     poles: tuple[Pole, ...] = ()
 
     def with_poles(self, nodal: Floats) -> Floats:
-        """Give the nodes of each pole, whose directions differ, the mean of the line beside it.
-
-        It is off by a term of second order. ``nodal`` is (J, I), and is changed.
-        """
+        """Give nodes of poles, whose directions differ, the mean beside them, in place."""
         for pole in self.poles:
             lines = pole.lines(nodal)
             lines[pole.line] = lines[pole.line + pole.inward, :-1].mean()
         return nodal
 
     def of_vectors(self, vectors: Floats) -> Floats:
-        """Return the matrix a[m, n], (2, 2, J, I): change of component m along direction n.
-
-        ``vectors`` are (J, I, 3); what of them is normal to the surface does not count.
-        """
+        """Return the change of component m along direction n, (2, 2, J, I), of (J, I, 3)."""
         one, two = self.directions
         parts = np.moveaxis(vectors, -1, 0)
         along = _dot(parts, one) * one
@@ -158,11 +152,7 @@ class _GridGradient:
 def _one_sided(
     data: Floats, valid: Bools, line: Indices, place: Indices, turn: Floats | None
 ) -> Floats:
-    """Return differences (C, N) beside a border or a gap: of second order, or first, or NaN.
-
-    ``turn`` is the change of ``data`` (C, lines, places) around a closed axis, ``None`` where it
-    does not close.
-    """
+    """Return differences (C, N) beside a border or a gap; ``turn`` is what a closed axis adds."""
     last = data.shape[1] - 1
     here, result = data[:, line, place], np.full((len(data), len(line)), np.nan)
     usable, done = valid[line, place], np.zeros(len(line), dtype=bool)
@@ -265,10 +255,7 @@ class _TriangleGradient:
 
 
 def _clockwise(one: Floats, two: Floats, points: Floats, valid: Bools) -> bool:
-    """Return whether turning from the first direction to the second is negative.
-
-    Some of the nodes tell.
-    """
+    """Return whether turning from the first direction to the second is negative, by some nodes."""
     some = tuple(slice(None, None, -(-count // MOST_JUDGED)) for count in valid.shape)
     one, two, points = (a[:, *some] for a in (one, two, points))
     normal = np.stack([one[a] * two[b] - one[b] * two[a] for a, b in ((1, 2), (2, 0), (0, 1))])

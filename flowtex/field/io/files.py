@@ -64,10 +64,7 @@ def read_file(
     vectors: str | None = None,
     **options: Any,
 ) -> GridArrays | TriangleArrays:
-    """Read what a field needs from a file, with the parameters of :meth:`FlowField.from_file`.
-
-    Whatever this raises is to be named by :func:`errors_of`.
-    """
+    """Read what a field needs from a mesh; errors are to be named by :func:`errors_of`."""
     file = open_file(path)
     if file.problem:
         raise FieldError(file.problem)
@@ -79,11 +76,7 @@ def read_file(
 
 
 def open_file(path: str | Path) -> OpenFile:
-    """Open a file, as for :meth:`FlowField.from_file`.
-
-    The FieldError for one that is missing, empty, or of an unknown format is to be named by
-    :func:`errors_of`.
-    """
+    """Open a file; errors are to be named by :func:`errors_of`."""
     file = Path(path).expanduser()
     _check_path(file)
     inspect_file(file)
@@ -166,11 +159,7 @@ def read_files(
     regions: bool = False,
     **options: Any,
 ) -> GridArrays | TriangleArrays | Regions:
-    """Read what a field needs; :meth:`FlowField.from_file` has the parameters.
-
-    ``regions`` is that of :func:`~flowtex.field.datasets.read.read_datasets`. Whatever this raises
-    is to be named by :func:`errors_of`.
-    """
+    """Read what a field needs; errors are to be named by :func:`errors_of`."""
     paths = dataset_paths(path)
     of_meshes = {name: options.pop(name) for name in OF_MESHES if name in options}
     chosen = {name: value for name, value in options.items() if value is not None}

@@ -75,11 +75,7 @@ def read_meshes(
     block: int | str | None = None,
     name: str = "",
 ) -> GridArrays | TriangleArrays:
-    """Read what a field needs from a mesh or a series of them.
-
-    Parameters and errors are those of :meth:`FlowField.from_pyvista`; the block is picked from
-    each step.
-    """
+    """Read what :meth:`FlowField.from_pyvista` needs from a mesh or a series of them."""
     cut = find_cut(slice, contour)
     if cut is not None and plane is not None:
         words = "slice" if slice is not None else "contour"

@@ -42,11 +42,7 @@ class TimeStep:
 def time_steps(
     source: Any, block: int | str | None = None, *, cut: bool = False
 ) -> Iterator[TimeStep]:
-    """Go through the time steps of a mesh, a MultiBlock, a list of either, or a reader.
-
-    With a block, by its name or number, only of that one; with a ``cut`` of all volumes together.
-    Raises a FieldError when something is met that is no mesh.
-    """
+    """Go through the time steps of a mesh, blocks, a list or a reader; of one block if named."""
     if is_reader(source):
         yield from _read(source, block, cut=cut)
     elif isinstance(source, (list, tuple)):
@@ -80,10 +76,7 @@ def times_of(source: Any) -> list[float]:
 
 
 def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Go through the meshes in a tree of blocks, with their paths; empty blocks are left out.
-
-    A block without a name is named after its number, and so are those of one name.
-    """
+    """Go through the meshes in a tree of blocks by path; those of one name get their number."""
     import pyvista as pv
 
     if not isinstance(mesh, pv.MultiBlock):
@@ -188,10 +181,7 @@ def _read(reader: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeSt
 
 
 def pick(mesh: Any, block: int | str) -> Any:
-    """Return one of the meshes in a mesh, by number or by name.
-
-    Raises a FieldError when there is none.
-    """
+    """Return one of the meshes in a mesh, by number or by name."""
     parts = parts_of(mesh)
     for number, (name, part) in enumerate(parts.items()):
         if block in (number, name):

@@ -11,10 +11,7 @@ from typing import Any
 
 
 def open_reader(file: Path) -> Any:
-    """Return the reader of a file: one of PyVista's, or one that is used alike.
-
-    Raises a ValueError for a format that is not known.
-    """
+    """Return the reader of a file; a ValueError tells of a format that is not known."""
     import pyvista as pv
 
     class DecomposedReader(pv.POpenFOAMReader):

@@ -87,11 +87,7 @@ class FileSummary:
 
 
 def describe(path: str | Path, block: int | str | None = None) -> FileSummary:
-    """Summarize a file, whether or not a flow can be drawn from it; the first step of a series.
-
-    The arrays are those of the block, by its name or number, or of the one that is meant.
-    Raises a FieldError when the file cannot be read at all, or has no such block.
-    """
+    """Summarize the first step of a file, whether or not a flow can be drawn from it."""
     with errors_of_file(path):
         file = open_file(path)
         mesh = file.source.read() if is_reader(file.source) else file.source

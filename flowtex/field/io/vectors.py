@@ -70,10 +70,7 @@ def values_of(mesh: Any, array: MeshArray) -> AnyArray:
 
 
 def candidates(mesh: Any) -> list[MeshArray]:
-    """Arrays that may be the velocity: real, two or three components, no normals or positions.
-
-    Where there are none, those that single components make by their names.
-    """
+    """Arrays that may be the velocity, or those that single components make by their names."""
     named = set()
     for data in (mesh.GetPointData(), mesh.GetCellData()):
         named |= {a.GetName() for a in (data.GetNormals(), data.GetTCoords()) if a is not None}

@@ -61,10 +61,7 @@ def pack_field(
 def unpack_field(
     value: Mapping[str, Any], arrays: Sequence[AnyArray], read: Callable[[int], Any]
 ) -> FlowField:
-    """Return a field from :func:`pack_field`; ``read`` returns what reads steps of a number.
-
-    Raises a ValueError where arrays do not fit together.
-    """
+    """Return a field from :func:`pack_field`; a ValueError where arrays do not fit together."""
 
     def unpacked(about: Any) -> Any:
         if isinstance(about, dict):

@@ -49,11 +49,7 @@ def triangle_nodes(
     valid: ArrayLike | None,
     scalars: Mapping[str, Any],
 ) -> TriangleNodes:
-    """Check arrays, join what lies at one place, and leave out what cannot be drawn, with a word.
-
-    Parameters and errors are those of :meth:`FlowField.from_triangles`. Of steps that are read late
-    the first one is looked at.
-    """
+    """Check arrays, join what lies at one place, and leave out what cannot be drawn."""
     p, masked_points = as_numbers("points", points)
     v, masked = as_numbers("velocity", first_step(velocity))
     try:
@@ -163,11 +159,7 @@ def solid_triangles(p: Floats, corners: Indices) -> Bools:
 
 
 def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
-    """Triangles with an area, each once, and pairs of nodes (n, 2) that are one; the rest is told.
-
-    Of a needle without area the sides lie upon each other: that its ends become one node closes
-    the crack that it leaves.
-    """
+    """Triangles with an area, each once, and pairs of nodes (n, 2) that needles make one."""
     finite = finite_nodes(p[None])[0]
     known = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
     good = known.copy()
@@ -205,10 +197,7 @@ def nodal_means(
 
 
 def known_means(values: Floats, matrix: scipy.sparse.csr_array) -> Floats:
-    """Means (n, ...) of values (N, ...), weighted by rows of a matrix (n, N), of what is known.
-
-    A row without any that is has NaN.
-    """
+    """Means (n, ...) of known values (N, ...), weighted by rows of a matrix; NaN without any."""
     flat = values.reshape(len(values), -1)
     known = np.asarray(np.isfinite(flat).all(axis=1))
     sums = np.asarray(matrix @ np.where(known[:, None], flat, 0.0))

@@ -48,11 +48,7 @@ def repeated(triangles: Indices) -> Bools:
 
 
 def merged_nodes(points: Floats, triangles: Indices, joined: Indices | tuple[()] = ()) -> Indices:
-    """Return for each node (N,) the one that it is the same as: the first at its place.
-
-    Only nodes on borders are compared: others are joined to their surroundings already. Pairs that
-    are ``joined`` (n, 2) are the same as well.
-    """
+    """Return for each node (N,) the first at its place; pairs that are ``joined`` are one."""
     count = len(points)
     keys = np.sort(_edge_keys(triangles))
     differs = np.diff(keys, prepend=-1, append=-1) != 0
@@ -90,10 +86,7 @@ def triangle_normals(points: Floats, triangles: Indices) -> Floats:
 
 
 def neighbours(points: Floats, triangles: Indices) -> Indices:
-    """Return the triangle across the edge opposite to each corner, (M, 3), -1 at a border.
-
-    Where more than two share an edge, the one that goes on most nearly straight is taken.
-    """
+    """Return the triangle across each edge, (M, 3), -1 at a border; of several the straightest."""
     keys = _edge_keys(triangles)
     order = np.argsort(keys)
     ordered = keys[order]
@@ -132,10 +125,7 @@ def _straightest(
 
 
 def flipped(triangles: Indices, beside: Indices) -> Bools:
-    """Return which triangles (M,) face the other way than the first one of their part.
-
-    ``beside`` is from :func:`neighbours`. On a surface with one side only some are left that do.
-    """
+    """Return which triangles (M,) face the other way than the first one of their part."""
     ahead = np.roll(triangles, -1, axis=1)  # of the edge opposite to a corner
     rows, corners = np.nonzero(beside >= 0)
     other = beside[rows, corners]

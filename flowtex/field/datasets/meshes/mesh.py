@@ -174,11 +174,7 @@ class Mesh:
         return np.asarray(step)
 
     def vectors_at_nodes(self, u: Floats, v: Floats, dim: str) -> tuple[Floats, Floats]:
-        """Return components (N,) eastward and northward, or along x and y.
-
-        On the Earth these directions are others in each face, so that vectors in space are
-        averaged.
-        """
+        """Return components (N,); those in faces are averaged in space, where directions agree."""
         if dim == NODES:
             return u, v
         if not self.is_earth:

@@ -18,10 +18,7 @@ MAGIC = b"\x89HDF\r\n\x1a\n"
 
 
 def check_hdf5(path: Path, *, whole: bool) -> None:
-    """Refuse a file that leads to others, is cut, or has arrays that do not fit into memory.
-
-    Arrays are read ``whole``, one time of each, or coordinates and chunks alone are.
-    """
+    """Refuse a file that leads to others, is cut, or has arrays too large for the memory."""
     import h5py
 
     try:

@@ -50,9 +50,6 @@ def _text(count: int) -> str:
 
 
 def values_in(array: Any) -> AnyArray:
-    """Return the values of a variable of xarray's as it is, where they fit into memory.
-
-    They are counted as numbers of 8 bytes: a small file may declare many.
-    """
+    """Return the values of a variable of xarray's, where they fit into memory as float64."""
     check_memory(8 * array.size, f"the variable {getattr(array, 'name', None) or 'without a name'}")
     return np.asarray(array.values)

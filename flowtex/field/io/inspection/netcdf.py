@@ -21,10 +21,7 @@ STREAMING = (0xFFFFFFFF, 0xFFFFFFFFFFFFFFFF)
 
 
 def check_netcdf(path: Path, *, whole: bool) -> None:
-    """Refuse a file that is shorter than it declares, or whose arrays do not fit into memory.
-
-    Arrays are read ``whole``, one time of each, or coordinates alone are.
-    """
+    """Refuse a file that is shorter than it declares, or has arrays too large for the memory."""
     with path.open("rb") as stream:
         size = path.stat().st_size
         header = _Header(stream, size)

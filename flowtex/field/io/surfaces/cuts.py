@@ -95,10 +95,7 @@ Cut = Slice | Contour
 
 
 def find_cut(slice: Any, contour: Any) -> Cut | None:
-    """Return the cut that is meant, or ``None`` for none.
-
-    Raises a FieldError when both are given, or one that cannot be understood.
-    """
+    """Return the cut that is meant, or ``None`` for none."""
     if slice is not None and contour is not None:
         msg = f"slice is {slice!r} and contour is {contour!r}; choose one of them"
         raise FieldError(msg)
@@ -244,10 +241,7 @@ def _shown_cells(mesh: Any) -> Any:
 
 
 def _exact(mesh: Any) -> Any:
-    """Return a volume with positions in double precision, of which VTK's filters give theirs.
-
-    A plane cuts slivers off the corners of cells; in single precision they face anywhere.
-    """
+    """Return a volume in double precision: in single, slivers that VTK cuts off face anywhere."""
     import pyvista as pv
 
     if isinstance(mesh, (pv.ImageData, pv.RectilinearGrid)):

@@ -58,10 +58,7 @@ class _SurfaceStep(SheetStep):
 def read_surfaces(
     steps: Iterable[TimeStep], vectors: str | None, cut: Cut | None, times: ArrayLike | None
 ) -> dict[str, Any]:
-    """Read what a field needs from meshes at one or several times.
-
-    Parameters and errors are those of :meth:`FlowField.from_pyvista`.
-    """
+    """Read what :meth:`FlowField.from_pyvista` needs from meshes at one or several times."""
     sheets: list[_SurfaceStep] = []
     chosen: MeshArray | None = None
     for step in steps:
