@@ -94,8 +94,39 @@ def shape_faults(
             f"points has {grid[0]} x {grid[1]} nodes (J x I); a surface needs at least 2 along "
             "each axis. A single row is a curve: choose another plane"
         )
-    faults += _velocity_faults(v, grid)
-    if not faults:
+    hint = ""
+    if v.ndim in (3, 4) and v.shape[-3:-1] == grid[::-1] and grid[0] != grid[1]:
+        hint = ". The two axes look swapped: arrays are (j, i), try np.swapaxes"
+    elif v.ndim in (3, 4) and v.shape[-2:] == grid:
+        hint = ". The components look first: try np.moveaxis(velocity, 0, -1)"
+    faults += nodal_faults(grid, v, steps, times, valid, scalars, hint)
+    if periodic is not None and not (isinstance(periodic, str) and set(periodic) <= {"i", "j"}):
+        faults.append(
+            f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to find out'
+        )
+    return faults
+
+
+def nodal_faults(
+    grid: tuple[int, ...],
+    v: Floats,
+    steps: int,
+    times: Floats | None,
+    valid: Any,
+    scalars: Mapping[str, Floats],
+    hint: str = "",
+) -> list[str]:
+    """Return faults in the shapes of arrays over nodes (J, I) or (N,), and in the times."""
+    faults = []
+    is_series = v.ndim == len(grid) + 2
+    fits = (v.ndim == len(grid) + 1 or is_series) and v.shape[is_series:-1] == grid
+    if not (fits and v.shape[-1] in (2, 3) and v.size):
+        series = ", ".join(map(str, ("T", *grid, 3)))
+        faults.append(
+            f"velocity has shape {v.shape}; expected {(*grid, 3)} for a steady field or "
+            f"({series}) for one that varies in time, with points {(*grid, 3)}{hint}"
+        )
+    else:
         faults += time_faults(times, steps)
     if valid is not None and np.shape(valid) != grid:
         faults.append(f"valid has shape {np.shape(valid)}; expected {grid} as points has")
@@ -106,27 +137,7 @@ def shape_faults(
                 f"scalars[{name!r}] has shape {np.shape(array)}; expected {allowed[0]} or "
                 f"{allowed[1]}, as points and velocity have"
             )
-    if periodic is not None and not (isinstance(periodic, str) and set(periodic) <= {"i", "j"}):
-        faults.append(
-            f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to find out'
-        )
     return faults
-
-
-def _velocity_faults(v: Floats, grid: tuple[int, ...]) -> list[str]:
-    good = v.ndim in (3, 4) and v.shape[-3:-1] == grid and v.shape[-1] in (2, 3)
-    if good and v.size:
-        return []
-    j, i = grid
-    hint = ""
-    if v.ndim in (3, 4) and v.shape[-3:-1] == grid[::-1] and i != j:
-        hint = ". The two axes look swapped: arrays are (j, i), try np.swapaxes"
-    elif v.ndim in (3, 4) and v.shape[-2:] == grid:
-        hint = ". The components look first: try np.moveaxis(velocity, 0, -1)"
-    return [
-        f"velocity has shape {v.shape}; expected ({j}, {i}, 3) for a steady field or "
-        f"(T, {j}, {i}, 3) for one that varies in time, with points {(*grid, 3)}{hint}"
-    ]
 
 
 def time_faults(t: Floats | None, count: int) -> list[str]:

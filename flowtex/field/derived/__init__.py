@@ -10,27 +10,9 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.earth import Projection
 from flowtex.errors import FieldError
-from flowtex.field.derived.gradient import (
-    NodeGradient,
-    node_gradient,
-    true_positions,
-    true_velocity,
-)
+from flowtex.field.derived.gradient import node_gradient, true_velocity
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.surface import Surface
-
-__all__ = [
-    "DERIVED",
-    "FOLLOWED",
-    "LONG_NAMES",
-    "NodeGradient",
-    "derived_steps",
-    "derived_unit",
-    "followed_steps",
-    "node_gradient",
-    "speed_unit",
-    "true_positions",
-]
 
 #: What is computed of the gradient a[m, n], the change of component m along direction n.
 DERIVED: dict[str, Callable[[Floats], Floats]] = {

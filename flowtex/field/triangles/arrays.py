@@ -19,10 +19,10 @@ from flowtex.field.triangles.topology import edges_of, merged_nodes, needle_edge
 from flowtex.field.validation import (
     as_numbers,
     finite_nodes,
+    nodal_faults,
     range_faults,
     scalar_steps,
     three_components,
-    time_faults,
     with_gaps,
 )
 
@@ -131,22 +131,7 @@ def _faults(
     elif corners.min() < 0 or corners.max() >= count:
         wrong = int(corners.min() if corners.min() < 0 else corners.max())
         faults.append(f"triangles has node {wrong}; expected 0 to {count - 1}, as points has rows")
-    if v.ndim not in (2, 3) or v.shape[-2] != count or v.shape[-1] not in (2, 3) or not len(v):
-        faults.append(
-            f"velocity has shape {v.shape}; expected ({count}, 3) for a steady field or "
-            f"(T, {count}, 3) for one that varies in time, with points {p.shape}"
-        )
-    else:
-        faults += time_faults(times, steps)
-    if valid is not None and valid.shape != (count,):
-        faults.append(f"valid has shape {valid.shape}; expected ({count},) as points has rows")
-    for name, array in scalars.items():
-        if array.shape not in ((count,), (steps, count)):
-            faults.append(
-                f"scalars[{name!r}] has shape {array.shape}; expected ({count},) or "
-                f"({steps}, {count}), as points and velocity have"
-            )
-    return faults
+    return faults + nodal_faults((count,), v, steps, times, valid, scalars)
 
 
 def solid_triangles(p: Floats, corners: Indices) -> Bools:
