@@ -27,7 +27,7 @@ class LazySteps:
         self, count: int, read: Callable[[int], Floats], *, kept: int = KEPT_BYTES
     ) -> None:
         self._count, self._read, self._most = count, read, kept
-        self._kept: ByteCache[int, _Step] = ByteCache(kept, max_count=MOST_KEPT)
+        self._kept: ByteCache[int, Floats] = ByteCache(kept, max_count=MOST_KEPT)
         self._shape: tuple[int, ...] | None = None
 
     def __len__(self) -> int:
@@ -42,7 +42,7 @@ class LazySteps:
             msg = f"step {number} does not exist: expected 0 to {self._count - 1}"
             raise IndexError(msg)
         number %= self._count
-        return self._kept.get(number, lambda: _Step(self._read(number))).values
+        return self._kept.get(number, lambda: self._read(number))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -101,13 +101,6 @@ class Nodes(NamedTuple):
     velocity: Steps
     scalars: Mapping[str, Steps]
     has_position: Bools | None = None
-
-
-class _Step:
-    """One step in the memory of steps."""
-
-    def __init__(self, values: Floats) -> None:
-        self.values, self.nbytes = values, values.nbytes
 
 
 def first_step(values: Any) -> Any:

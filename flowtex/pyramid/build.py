@@ -24,8 +24,7 @@ from flowtex.pyramid.layout import (
     VALUES,
     Part,
     about_source,
-    attributes_of,
-    create_level,
+    described,
     parts_of,
     tiles_of,
 )
@@ -288,19 +287,15 @@ def _prepared(
 def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
     """Write what follows from ``about``, and return the axes of the arrays by name."""
     zarr = import_extra("zarr", "store")
-    described = zarr.storage.MemoryStore()
-    group = zarr.group(described, zarr_format=3, attributes=attributes_of(about))
-    shape = (about["nodes"][0], about["nodes"][1])
-    for level in range(about["depth"] + 1):
-        create_level(group, level, level_shape(shape, level), about)
+    group = described(about)
     if not about["ranges"]:
         create_samples(group, about)
 
     async def copy() -> None:
         kind = zarr.core.buffer.default_buffer_prototype()
         # That of the group comes first: by it others know that the place is taken.
-        for name in sorted([name async for name in described.list()], key=lambda n: n.count("/")):
-            await store.set(name, await described.get(name, kind))
+        for name in sorted([name async for name in group.store.list()], key=lambda n: n.count("/")):
+            await store.set(name, await group.store.get(name, kind))
 
     sync(copy())
     arrays = (array for _, array in group.members(max_depth=None) if isinstance(array, zarr.Array))

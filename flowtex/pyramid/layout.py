@@ -30,7 +30,7 @@ which field it is.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -46,7 +46,7 @@ from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.places import FORMAT
 from flowtex.pyramid.source import Source
 from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS
-from flowtex.tiles.pyramid import root_level
+from flowtex.tiles.pyramid import level_shape, root_level
 
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.
@@ -163,8 +163,17 @@ def attributes_of(about: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[str, Any]) -> None:
-    """Describe the arrays of a level."""
+def described(about: Mapping[str, Any], levels: Iterable[int] | None = None) -> Any:
+    """Return a group in memory with the arrays of levels, by default all, as they are written."""
+    zarr = import_extra("zarr", "store")
+    group = zarr.group(zarr.storage.MemoryStore(), attributes=attributes_of(about), zarr_format=3)
+    for level in range(about["depth"] + 1) if levels is None else levels:
+        _create_level(group, level, about)
+    return group
+
+
+def _create_level(group: Any, level: int, about: Mapping[str, Any]) -> None:
+    shape = level_shape((about["nodes"][0], about["nodes"][1]), level)
     here, steps = group.require_group(str(level)), len(about["times"])
     nodes = {
         axis: (count, TILE_CELLS, many * TILE_CELLS)

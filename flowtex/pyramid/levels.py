@@ -26,7 +26,7 @@ from flowtex.pyramid.layout import (
     SURFACE,
     VALUES,
     Part,
-    create_level,
+    described,
     empty_field,
     value_names,
 )
@@ -88,15 +88,13 @@ class Levels:
 
     def _format(self, name: str) -> dict[str, Any]:
         """Return what an array has to be like: as one that is made for the same pyramid."""
-        zarr, top = import_extra("zarr", "store"), name.partition("/")[0]
+        top = name.partition("/")[0]
         with self._lock:
             if top not in self._expected:
-                group = zarr.group(store=zarr.storage.MemoryStore())
+                levels = [] if top == SAMPLES else [int(top)]
+                self._expected[top] = described(self.about, levels)
                 if top == SAMPLES:
-                    create_samples(group, self.about)
-                else:
-                    create_level(group, int(top), self.shape(int(top)), self.about)
-                self._expected[top] = group
+                    create_samples(self._expected[top], self.about)
             group = self._expected[top]
             if name not in group:
                 msg = f"{self.place} has no {name}; build it again"
