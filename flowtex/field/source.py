@@ -22,7 +22,6 @@ from flowtex.field.io.files import open_file
 from flowtex.field.io.identity import Identity
 from flowtex.field.io.meshes import (
     TimeStep,
-    cell_dimension,
     drawn_parts,
     is_reader,
     is_structured,
@@ -239,7 +238,7 @@ class FlowSource(Source):
         if is_structured(mesh):
             dimensions = tuple(int(n) for n in mesh.dimensions)
             self.dimensions = (dimensions[0], dimensions[1], dimensions[2])
-        if cell_dimension(mesh) < 3:
+        if mesh.max_cell_dimensionality < 3:
             return
         ends = np.reshape(mesh.bounds, (3, 2)).tolist()
         self.ends = {

@@ -109,9 +109,9 @@ def drawn_parts(
     """
     parts = parts_of(mesh)
     grids = {name: part for name, part in parts.items() if is_structured(part)}
-    flat = {name: part for name, part in parts.items() if cell_dimension(part) == 2}
-    solid = {name: part for name, part in parts.items() if cell_dimension(part) == 3}
-    usable = {name: grid for name, grid in grids.items() if cell_dimension(grid) > 1}
+    flat = {name: part for name, part in parts.items() if part.max_cell_dimensionality == 2}
+    solid = {name: part for name, part in parts.items() if part.max_cell_dimensionality == 3}
+    usable = {name: grid for name, grid in grids.items() if grid.max_cell_dimensionality > 1}
     meant = usable or grids or solid or flat or parts
     if cut and solid:
         meant = solid
@@ -154,7 +154,7 @@ def several_fault(parts: dict[str, Any], label: str) -> str:
         f"{number} ({name}, {part_size(part)})" for number, (name, part) in enumerate(parts.items())
     ]
     more = ", ..." if len(listed) > MOST_LISTED else ""
-    solid = any(cell_dimension(part) == 3 for part in parts.values())
+    solid = any(part.max_cell_dimensionality == 3 for part in parts.values())
     return (
         f"{label} has {len(parts)} blocks, and no time steps of one: "
         f"{', '.join(listed[:MOST_LISTED])}{more}; choose one, as in block="
@@ -230,17 +230,6 @@ def _together(parts: dict[str, Any]) -> Any:
     with_flow = {name: part for name, part in parts.items() if candidates(part)} or parts
     notify(f"{len(with_flow)} blocks are drawn together: {', '.join(with_flow)}")
     return pv.MultiBlock(list(with_flow.values())).combine()
-
-
-def cell_dimension(mesh: Any) -> int:
-    """Return the dimension of the cells of a mesh: 3 where there is any volume, 0 for points."""
-    import pyvista as pv
-
-    if isinstance(mesh, pv.UnstructuredGrid):
-        return int(cell_dimensions(mesh).max(initial=0))
-    if isinstance(mesh, pv.PolyData):
-        return 2 if mesh.GetNumberOfPolys() or mesh.n_strips else int(mesh.n_lines > 0)
-    return sum(n > 1 for n in mesh.dimensions) if is_structured(mesh) else 0
 
 
 def cell_dimensions(mesh: Any) -> Indices:

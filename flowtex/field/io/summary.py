@@ -14,7 +14,6 @@ from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.io.files import OpenFile, open_file
 from flowtex.field.io.meshes import (
-    cell_dimension,
     drawn_parts,
     hidden_nodes,
     is_reader,
@@ -114,7 +113,7 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
         size=part_size(part) if data else "",
         cells=_cells(part),
         bounds=tuple(zip(part.bounds[::2], part.bounds[1::2], strict=True)) if data else (),
-        volume=data and cell_dimension(part) == 3,
+        volume=data and part.max_cell_dimensionality == 3,
         blocks=tuple(_blocks(parts, parts_of(mesh))) if len(parts) > 1 else (),
         arrays=tuple(_array(part, a) for a in (*arrays, *(a for a in found if a.parts))),
         candidates=tuple(names),

@@ -16,7 +16,7 @@ import numpy as np
 from flowtex._util.array_types import Indices
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
-from flowtex.field.io.meshes import cell_dimension, cell_dimensions, hidden_nodes
+from flowtex.field.io.meshes import cell_dimensions, hidden_nodes
 from flowtex.field.io.vectors import BLANKING, MeshArray, catalogue
 from flowtex.field.triangles.arrays import solid_triangles
 from flowtex.field.triangles.topology import needle_edges
@@ -156,7 +156,7 @@ def _number(given: Any) -> float:
 
 def cut_faults(mesh: Any, cut: Cut | None) -> list[str]:
     """Faults in a cut of a mesh, and in a mesh that has no surface."""
-    dimension = cell_dimension(mesh)
+    dimension = mesh.max_cell_dimensionality
     if not mesh.n_cells:
         return ["the mesh is empty: check that the file or the filter that made it gave any cells"]
     if dimension < 2:
