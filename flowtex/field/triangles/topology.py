@@ -137,26 +137,19 @@ def flipped(triangles: Indices, beside: Indices) -> Bools:
     result = np.zeros(len(triangles), dtype=bool)
     if not turned.any():
         return result
-    # Triangles that face alike are one patch; patches are few and are walked one by one.
+    # Triangles that face alike are one patch; those an odd number of turns away face otherwise.
     size = (len(triangles), len(triangles))
     alike = mutual & ~turned
     graph = scipy.sparse.coo_array((np.ones(alike.sum()), (rows[alike], other[alike])), shape=size)
     count, patch = scipy.sparse.csgraph.connected_components(graph, directed=False)
-    near: dict[int, set[int]] = {}
-    for one, two in np.unique(np.stack([patch[rows[turned]], patch[other[turned]]], -1), axis=0):
-        near.setdefault(int(one), set()).add(int(two))
-    side = np.full(count, -1)
-    for start in range(count):
-        if side[start] >= 0:
-            continue
-        side[start], waiting = 0, [start]
-        while waiting:
-            here = waiting.pop()
-            for there in near.get(here, ()):
-                if side[there] < 0:
-                    side[there] = 1 - side[here]
-                    waiting.append(there)
-    return np.asarray(side[patch] == 1)
+    ends = patch[rows[turned]], patch[other[turned]]
+    turns = scipy.sparse.csr_array((np.ones(turned.sum()), ends), shape=(count, count))
+    _, part = scipy.sparse.csgraph.connected_components(turns, directed=False)
+    firsts = np.unique(part, return_index=True)[1]
+    steps = scipy.sparse.csgraph.dijkstra(
+        turns, directed=False, indices=firsts, unweighted=True, min_only=True
+    )
+    return np.asarray(steps[patch] % 2 == 1)
 
 
 def normals_at_corners(points: Floats, normals: Floats) -> Floats:
