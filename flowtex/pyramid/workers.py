@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import io
 import os
 import traceback
 import warnings
@@ -182,24 +181,18 @@ def _set_allocator() -> None:
             libc.mallopt(parameter, value)
 
 
-class _Limited(io.RawIOBase):
+class _Limited:
     """A file in memory that takes so much and no more."""
 
     def __init__(self) -> None:
-        self.parts: list[bytes] = []
-        self.size = 0
-
-    def writable(self) -> bool:
-        """Whether it is written."""
-        return True
+        self.data = bytearray()
 
     def write(self, data: Any) -> int:
         """Take some bytes."""
         size = memoryview(data).nbytes
-        self.size += size
-        if self.size > MOST_SENT:
+        if len(self.data) + size > MOST_SENT:
             raise _TooLargeError
-        self.parts.append(bytes(data))
+        self.data += data
         return size
 
 
@@ -220,7 +213,7 @@ def _packed(thing: Any) -> bytes | None:
             "from a file or a store, or build without a scheduler"
         )
         raise PyramidError(msg) from error
-    return b"".join(file.parts)
+    return bytes(file.data)
 
 
 def _unpacked(data: bytes) -> Any:
