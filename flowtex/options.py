@@ -225,9 +225,7 @@ class Appearance:
         Form(read=_read_ends, write=lambda ends: ",".join(repr(float(end)) for end in ends)),
     )
     log_scale: bool = _option(
-        default=False,
-        text="Whether colours go by the logarithm, for values above 0.",
-        form=SWITCH,
+        default=False, text="Whether colours go by the logarithm, for values above 0.", form=SWITCH
     )
     color: Any = _option(PLAIN_COLOR, "Colour of a plain surface, as PyVista takes it.")
     opacity: float = _option(1.0, "1 is opaque, 0 invisible.", NUMBER)

@@ -175,8 +175,7 @@ class ServeFlags(AddressFlags):
         ),
     ] = None
     idle: Annotated[
-        float,
-        Parameter(group=PAGE, help="Minutes for which a page that was closed can come back."),
+        float, Parameter(group=PAGE, help="Minutes for which a page that was closed can come back.")
     ] = 15.0
 
 

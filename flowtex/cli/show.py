@@ -40,10 +40,7 @@ FIELD_OPTIONS = (
 )
 
 FILE = Annotated[
-    Path,
-    Parameter(
-        help="Meshes, any files that PyVista reads or PLOT3D; or one folder of them.",
-    ),
+    Path, Parameter(help="Meshes, any files that PyVista reads or PLOT3D; or one folder of them.")
 ]
 
 

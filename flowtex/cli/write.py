@@ -39,8 +39,7 @@ NOTABLE_LOSS = 0.01
 def render(
     *files: FILE,
     output: Annotated[
-        Path,
-        Parameter(name=["--output", "-o"], help="Picture to write; its suffix is its format."),
+        Path, Parameter(name=["--output", "-o"], help="Picture to write; its suffix is its format.")
     ],
     clock: Annotated[
         float, Parameter(group=PICTURE, help="Moment of the streaming (--motion), in seconds.")

@@ -57,13 +57,7 @@ def to_index_space(
     squares = np.zeros(2)
     for rows in row_blocks(*valid.shape):
         squares += _project(
-            velocity[:, rows],
-            p_i[rows],
-            p_j[rows],
-            valid[rows],
-            tiny,
-            u[:, rows],
-            speed[:, rows],
+            velocity[:, rows], p_i[rows], p_j[rows], valid[rows], tiny, u[:, rows], speed[:, rows]
         )
     for pole in poles or ():
         _at_pole(pole, velocity, u, speed)

@@ -44,12 +44,7 @@ class Surface:
     """
 
     def __init__(
-        self,
-        points: Floats,
-        valid: Bools,
-        periodic: tuple[bool, bool],
-        *,
-        on_globe: bool = False,
+        self, points: Floats, valid: Bools, periodic: tuple[bool, bool], *, on_globe: bool = False
     ) -> None:
         self.valid = valid
         self.periodic = periodic
@@ -428,12 +423,7 @@ def _beyond(p: Floats, good: Bools) -> Floats:
 
 
 def _difference(
-    before: Floats,
-    here: Floats,
-    after: Floats,
-    good_before: Bools,
-    good_after: Bools,
-    out: Floats,
+    before: Floats, here: Floats, after: Floats, good_before: Bools, good_after: Bools, out: Floats
 ) -> None:
     """Central difference, one-sided beside a node whose coordinates cannot be trusted."""
     if good_before.all() and good_after.all():

@@ -120,7 +120,7 @@ def objects_at(place: str | Path, *, patient: bool = False) -> Any:
             "connect_timeout": timedelta(seconds=CONNECT_S),
             "read_timeout": timedelta(seconds=SILENCE_S),
             "timeout": timedelta(seconds=LONGEST_S),
-        },
+        }
     }
     if not patient:
         options["retry_config"] = {

@@ -353,10 +353,7 @@ def test_a_single_row() -> None:
     ("velocity", "hint"),
     [
         (np.ones((7, 5, 3)), ". The two axes look swapped: arrays are (j, i), try np.swapaxes"),
-        (
-            np.ones((3, 5, 7)),
-            ". The components look first: try np.moveaxis(velocity, 0, -1)",
-        ),
+        (np.ones((3, 5, 7)), ". The components look first: try np.moveaxis(velocity, 0, -1)"),
         (np.ones((5, 7)), ""),
         (np.ones((5, 7, 4)), ""),
         (np.ones((0, 5, 7, 3)), ""),

@@ -37,17 +37,13 @@ def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
     unit = like.store.unit.flat[0]
     slices = trace(field, lags=like.store.lags, unit=unit, compose=field.steady, progress=False)
     textures = TextureSet(
-        SurfaceGeometry.of(field),
-        SliceStore(field, slices=slices),
-        whole_speed=like.whole_speed,
+        SurfaceGeometry.of(field), SliceStore(field, slices=slices), whole_speed=like.whole_speed
     )
     layers = textures.layers(step).astype(np.float64)
     layers[0, ..., 3] *= textures.unit / like.unit
     rows, columns = textures.grid.rows, textures.grid.columns
     return layers[
-        :,
-        rows.before : rows.before + rows.nodes,
-        columns.before : columns.before + columns.nodes,
+        :, rows.before : rows.before + rows.nodes, columns.before : columns.before + columns.nodes
     ]
 
 
@@ -56,9 +52,7 @@ def nodal(tile: TextureSet, step: int = 0) -> Floats:
     layers, geometry = tile.layers(step), tile.grid
     rows, columns = geometry.rows, geometry.columns
     return layers[
-        :,
-        rows.before : rows.before + rows.nodes,
-        columns.before : columns.before + columns.nodes,
+        :, rows.before : rows.before + rows.nodes, columns.before : columns.before + columns.nodes
     ] * np.float64(1)
 
 

@@ -39,13 +39,7 @@ from flowtex.field.io.planes import (
 )
 from flowtex.field.io.surfaces.cuts import find_cut
 from flowtex.field.io.surfaces.steps import SheetStep, read_surfaces, stacked
-from flowtex.field.io.vectors import (
-    MeshArray,
-    catalogue,
-    choose_vectors,
-    values_of,
-    vector_faults,
-)
+from flowtex.field.io.vectors import MeshArray, catalogue, choose_vectors, values_of, vector_faults
 from flowtex.field.periodic import find_closure
 from flowtex.field.signs import axes, products
 

@@ -30,13 +30,7 @@ from flowtex.field.io.meshes import (
 from flowtex.field.io.planes import plane_faults
 from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.surfaces.cuts import cut_faults
-from flowtex.field.io.vectors import (
-    MeshArray,
-    candidates,
-    catalogue,
-    values_of,
-    vector_faults,
-)
+from flowtex.field.io.vectors import MeshArray, candidates, catalogue, values_of, vector_faults
 
 
 class ArraySummary(NamedTuple):

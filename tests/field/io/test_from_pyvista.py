@@ -156,10 +156,7 @@ def test_a_bare_vtk_mesh_is_a_mesh() -> None:
             'plane is \'z=3\'; expected "i=N", "j=N" or "k=N" with a whole number N, as in '
             'plane="k=1"',
         ),
-        (
-            3,
-            'plane is 3; expected "i=N", "j=N" or "k=N" with a whole number N, as in plane="k=1"',
-        ),
+        (3, 'plane is 3; expected "i=N", "j=N" or "k=N" with a whole number N, as in plane="k=1"'),
     ],
 )
 def test_a_plane_that_is_not_there(plane: Any, text: str) -> None:
