@@ -19,7 +19,7 @@ from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.others import OtherLevels, levels_of_others
 from flowtex.pyramid.places import PyramidError, is_store, place_text
 from flowtex.textures import TextureSet
-from flowtex.tiles import Pyramid, TileKey, have_pyramid
+from flowtex.tiles import Pyramid, TileKey, attach_pyramid
 from flowtex.tiles.pyramid import averaged
 
 
@@ -86,7 +86,7 @@ def _field_of(levels: Levels | OtherLevels) -> FlowField:
     def pyramid(field: FlowField, parameter: str, lines: str) -> Pyramid:
         return StoredPyramid(levels, field, parameter, lines)
 
-    have_pyramid(root, pyramid)
+    attach_pyramid(root, pyramid)
     root.__dict__[WHOLE_SHAPE] = tuple(levels.about["nodes"])
     return root
 

@@ -13,10 +13,10 @@ from flowtex.tiles.pyramid import (
     block_places,
 )
 from flowtex.tiles.shared import (
+    attach_pyramid,
     drawn_speeds,
     ends_of,
     has_pyramid,
-    have_pyramid,
     shared_pyramid,
     widened,
 )
@@ -31,11 +31,11 @@ __all__ = [
     "TileKey",
     "TileLoader",
     "TrianglePyramid",
+    "attach_pyramid",
     "block_places",
     "drawn_speeds",
     "ends_of",
     "has_pyramid",
-    "have_pyramid",
     "levels_of",
     "shared_pyramid",
     "widened",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -18,26 +19,26 @@ ROBUST_PERCENTILES = (2, 98)
 SAME_VALUE_SHARE = 1e-9
 #: Share of such a value by which its range is widened.
 WIDENED_SHARE = 0.05
-#: Where a field keeps what makes its pyramid; fields that are made of this one have none.
-_OWN = "_pyramid"
-
+#: What makes the pyramids of fields that do not hold all their levels.
+_attached: WeakKeyDictionary[FlowField, Callable[[FlowField, str, str], Pyramid]]
+_attached = WeakKeyDictionary()
 _pyramids: WeakCache[Pyramid] = WeakCache()
 
 
-def have_pyramid(field: FlowField, make: Callable[[FlowField, str, str], Pyramid]) -> None:
+def attach_pyramid(field: FlowField, make: Callable[[FlowField, str, str], Pyramid]) -> None:
     """Give a field levels that it does not hold itself, made for a parameter and lines."""
-    field.__dict__[_OWN] = make
+    _attached[field] = make
 
 
 def has_pyramid(field: FlowField) -> bool:
     """Whether a field has levels that it does not hold itself."""
-    return _OWN in field.__dict__
+    return field in _attached
 
 
 def shared_pyramid(field: FlowField, parameter: str, lines: str = "pathlines") -> Pyramid:
     """Return the pyramid of a field, one for all that show the field at the same time."""
     kind = Pyramid if field.triangles is None else TrianglePyramid
-    make = field.__dict__.get(_OWN, kind)
+    make = _attached.get(field, kind)
     # A pyramid keeps its field alive, so the number of the field is its own meanwhile.
     key = (id(field), parameter, lines)
     return _pyramids.get(key, lambda: make(field, parameter, lines))
