@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Bools, Floats
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field.io.vectors import MeshArray, candidates, catalogue, missing_arrays
@@ -230,20 +230,6 @@ def _together(parts: dict[str, Any]) -> Any:
     with_flow = {name: part for name, part in parts.items() if candidates(part)} or parts
     notify(f"{len(with_flow)} blocks are drawn together: {', '.join(with_flow)}")
     return pv.MultiBlock(list(with_flow.values())).combine()
-
-
-def cell_dimensions(mesh: Any) -> Indices:
-    """Return the dimension of each cell of an unstructured mesh, (M,)."""
-    from vtkmodules.vtkCommonDataModel import vtkGenericCell
-
-    # Numbers of types are small: to count them is quicker than to sort them.
-    types = np.asarray(mesh.celltypes)
-    counts = np.bincount(types)
-    cell, dimension = vtkGenericCell(), np.zeros(len(counts), dtype=np.intp)
-    for kind in np.flatnonzero(counts):
-        cell.SetCellType(int(kind))
-        dimension[kind] = cell.GetCellDimension()
-    return dimension[types]
 
 
 def check_arrays(step: TimeStep, vectors: MeshArray) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from flowtex._util.array_types import Indices
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
-from flowtex.field.io.meshes import cell_dimensions, hidden_nodes
+from flowtex.field.io.meshes import hidden_nodes
 from flowtex.field.io.vectors import BLANKING, MeshArray, catalogue
 from flowtex.field.triangles.arrays import solid_triangles
 from flowtex.field.triangles.topology import needle_edges
@@ -186,12 +186,13 @@ def surface_of(
 
     mesh = _shown_cells(mesh)
     if isinstance(mesh, pv.UnstructuredGrid):
-        dimensions = cell_dimensions(mesh)
-        flat = cut is None and 2 in dimensions
-        if tell and cut is None and 3 in dimensions:
+        kinds = mesh.distinct_cell_types
+        flat = cut is None and any(kind.dimension == 2 for kind in kinds)
+        if tell and cut is None and any(kind.dimension == 3 for kind in kinds):
             what = "cells of two dimensions are" if flat else "outer surface of the volume is"
             notify(f"the {what} drawn; to cut it: {_examples(mesh)}")
-        drawn = dimensions == (2 if flat else 3)
+        meant = [kind for kind in kinds if kind.dimension == (2 if flat else 3)]
+        drawn: Any = np.isin(mesh.celltypes, meant)
         mesh = mesh if drawn.all() else mesh.extract_cells(drawn, pass_cell_ids=False)
     if cut is not None:
         mesh = cut.of(_exact(_on_points(mesh, vectors)))
