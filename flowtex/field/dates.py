@@ -54,7 +54,7 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
 
 
 def date_text(start: Any, time: float, step: float) -> str:
-    """Return a time in seconds since ``start`` as a day, a minute or a second, by the step."""
+    """Return a time in seconds since ``start`` as a date, as exact as steps apart need it."""
     at_midnight = not (start.hour or start.minute or start.second or start.microsecond)
     whole_days = step % DAY_S == 0 and time % DAY_S == 0 and at_midnight
     form = "%Y-%m-%d" if whole_days else "%Y-%m-%d %H:%M" if step >= 60 else "%Y-%m-%d %H:%M:%S"

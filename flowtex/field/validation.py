@@ -162,7 +162,7 @@ def time_faults(t: Floats | None, count: int) -> list[str]:
 
 
 def range_faults(p: Floats, v: Floats, ok: Bools) -> list[str]:
-    """Return faults in the size of positions and velocities; where not valid these are NaN."""
+    """Return faults in the size of positions, and of velocities, NaN where not valid."""
     faults = []
     of_nodes = largest(p) if ok.all() else largest(p, ok[..., None])
     for name, most, ends in (("points", of_nodes, LENGTHS), ("velocity", largest(v), MAGNITUDES)):

@@ -112,7 +112,7 @@ def _moved(places: Places, sides: Sides) -> Places:
 
 
 def _nemo_places(pair: Pair, cells: tuple[str, str], datasets: Sequence[Any]) -> Places | None:
-    """Return the places of NEMO's T points, whose dimensions have the names of those of U and V."""
+    """Return the places of NEMO's T points, where the components lie on the sides of cells."""
     own = [_own(array, datasets) for array in (pair.u, pair.v)]
     names = {str(n) for ds in datasets for n in ds.variables}
     if "glamt" in names and "gphit" in names and "glamu" in names:
@@ -150,7 +150,7 @@ def _wraps(places: Places) -> bool:
 
 
 def unrepeated(places: Places) -> tuple[slice, slice]:
-    """Return the lines without a halo beyond the date line, but for one column, and a fold."""
+    """Return rows and columns without those that repeat others; one repeated column is kept."""
     if not places.is_earth or places.is_line:
         return slice(None), slice(None)
     p = places.on_sphere

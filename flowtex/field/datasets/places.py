@@ -164,7 +164,7 @@ def _partner(name: str) -> set[str]:
 def _spread(
     a: Any, b: Any, dims: tuple[str, ...], shape: tuple[int, ...]
 ) -> tuple[Floats | None, Floats | None]:
-    """Return two coordinates at all nodes, lines as (1, I) and (J, 1); none of other nodes."""
+    """Return two coordinates at the nodes, of lines (1, I) and (J, 1); none for other nodes."""
     if a.ndim == 1 and b.ndim == 1:
         if a.dims == b.dims:
             msg = (

@@ -115,7 +115,7 @@ def read_datasets(
     regions: bool = False,
     **selection: Any,
 ) -> GridArrays | TriangleArrays | Regions:
-    """Read what a field needs; with ``regions`` no nodes where any part is read by itself."""
+    """Read what a field needs; with ``regions`` no nodes, if any part can be read by itself."""
     if globe and projection not in (None, GLOBE):
         msg = f"globe=True and projection={projection!r} are given; leave out one of them"
         raise FieldError(msg)

@@ -114,7 +114,7 @@ class Regions:
         return (*self.scalars, "speed") if drawn else tuple(self.scalars)
 
     def nodes(self, step: int, rows: Any, columns: Any, valid: Bools | None = None) -> Nodes:
-        """Read some rows and columns at a step; ``valid`` where the first one has told it."""
+        """Read some rows and columns at a time step; ``valid`` is that of the first, if known."""
         number = self.numbers[step]
         u, v = self._components(number, rows, columns)
         velocity = self.lines.vectors(u, v, rows, columns)
@@ -150,7 +150,7 @@ class Regions:
 
 
 def region_lines(places: Places, name: str | None) -> RegionLines | None:
-    """Return where the nodes lie; ``None`` where all have to be known to tell what one becomes."""
+    """Return where the nodes lie; ``None`` where no region can be read without the others."""
     if not places.is_line or not all(_is_ordered(line) for line in places.lines):
         return None
     a, b = places.lines
