@@ -16,6 +16,8 @@ from flowtex.field import FlowField
 if TYPE_CHECKING:
     from flowtex.widget import FlowWidget
 
+__all__ = ["FlowtexAccessor"]
+
 
 @xr.register_dataset_accessor("flowtex")  # type: ignore[no-untyped-call]
 class FlowtexAccessor:
