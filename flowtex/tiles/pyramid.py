@@ -329,24 +329,16 @@ class Pyramid:
     def _level(self, level: int) -> _Level:
         """Return a level, making those before it first."""
         with self._lock:
-            return self._made(level)
-
-    def _made(self, level: int) -> _Level:
-        while len(self._levels) <= level:
-            fine, depth = self._levels[-1], len(self._levels)
-            rows, columns = self.line_numbers(depth)
-            valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
-            around = [
-                beside(np.searchsorted(lines, some), len(lines), closed=closed)
-                for lines, some, closed in zip(
-                    (fine.rows, fine.columns), (rows, columns), self.field.periodic, strict=True
+            while len(self._levels) <= level:
+                fine, some = self._levels[-1], self.line_numbers(len(self._levels))
+                valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
+                rows, columns = (
+                    beside(np.searchsorted(lines, own), len(lines), closed=closed)
+                    for lines, own, closed in zip(fine[:2], some, self.field.periodic, strict=True)
                 )
-            ]
-            velocity = map_steps(
-                fine.velocity, partial(averaged, valid=valid, rows=around[0], columns=around[1])
-            )
-            self._levels.append(_Level(rows, columns, velocity))
-        return self._levels[level]
+                mean = partial(averaged, valid=valid, rows=rows, columns=columns)
+                self._levels.append(_Level(*some, map_steps(fine.velocity, mean)))
+            return self._levels[level]
 
 
 def is_cut(textures: TextureSet, step: int) -> bool:
