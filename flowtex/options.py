@@ -35,7 +35,7 @@ from flowtex._util.written import (
 from flowtex.camera import Camera
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
-from flowtex.field.datasets.detect import is_dataset
+from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.pairs import two_names
 from flowtex.settings import TABLE, Settings, SettingsError, setting
 
@@ -145,14 +145,7 @@ class FieldOptions:
     )
 
     def field(self, mesh: Any, time: float | str | None = None) -> FlowField:
-        """Return the field of a mesh or of a file, or a field as it is; of a file at one time.
-
-        Raises
-        ------
-        FieldError
-            When the mesh does not make a field.
-            When something is chosen of a field that is made already, or the times of a file.
-        """
+        """Return the field of a mesh or of a file, or a field as it is; of a file at one time."""
         choices = {name: value for name, value in vars(self).items() if value is not None}
         if (stored := self._of_store(mesh, choices, time)) is not None:
             return stored
@@ -209,13 +202,7 @@ def _are_paths(mesh: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays are not compared
 class Appearance:
-    """How the surface looks under the texture.
-
-    Raises
-    ------
-    FieldError
-        When there is no such colour map or colour, or the opacity or the range is none.
-    """
+    """How the surface looks under the texture."""
 
     scalars: str | bool | None = _option(
         None,
@@ -238,9 +225,7 @@ class Appearance:
         Form(read=_read_ends, write=lambda ends: ",".join(repr(float(end)) for end in ends)),
     )
     log_scale: bool = _option(
-        default=False,
-        text="Whether colours go by the logarithm, for values above 0.",
-        form=SWITCH,
+        default=False, text="Whether colours go by the logarithm, for values above 0.", form=SWITCH
     )
     color: Any = _option(PLAIN_COLOR, "Colour of a plain surface, as PyVista takes it.")
     opacity: float = _option(1.0, "1 is opaque, 0 invisible.", NUMBER)
@@ -366,15 +351,7 @@ class ViewOptions:
             raise FieldError(msg)
 
     def first_camera(self, surface: Surface, aspect: float = 1.5) -> Camera:
-        """Return the camera that the view begins with, for a picture of some width over height.
-
-        Raises
-        ------
-        CameraError
-            When ``camera`` is none.
-        FieldError
-            When ``zoom`` or ``focus`` is none.
-        """
+        """Return the camera that the view begins with, for a picture of some width over height."""
         whole = Camera.fit(surface, aspect, zoom=self.zoom, focus=self.focus)
         if self.camera is None or isinstance(self.camera, Camera):
             return self.camera or whole
@@ -393,13 +370,7 @@ class Options:
     settings: Mapping[str, Any]
 
     def make_settings(self, **defaults: Any) -> Settings:
-        """Return all settings; an image has its colours alone, unless it is asked to be mixed.
-
-        Raises
-        ------
-        SettingsError
-            When one does not fit, or both an image and another noise are asked for.
-        """
+        """Return all settings; an image has its colours alone, unless it is asked to be mixed."""
         values = {**defaults, **self.settings}
         if self.appearance.image is not None:
             noise = values.setdefault("noise", "image")
@@ -414,13 +385,7 @@ class Options:
         """Sort fields of the option classes, and settings, by name.
 
         Classes that are accepted are ``"field"``, ``"appearance"`` and ``"view"``, all by default.
-
-        Raises
-        ------
-        SettingsError
-            When there is no argument of a name; the text has the nearest one.
-        FieldError
-            When the opacity or the range of the colours is none.
+        A SettingsError tells of an argument that there is not, with the nearest one.
         """
         accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
         parts = {

@@ -93,13 +93,7 @@ class Setting:
     choices: tuple[str, ...] = ()
 
     def check(self, value: Any) -> Any:
-        """Return the value in the setting's own type.
-
-        Raises
-        ------
-        SettingsError
-            When it does not fit; the text names the value, what was expected and the default.
-        """
+        """Return the value in the setting's own type; a SettingsError says what was expected."""
         if self.kind is bool:
             fits = isinstance(value, bool) or type(value).__name__ == "bool"
         elif self.kind is str:
@@ -353,13 +347,7 @@ class Settings:
 
 
 def setting(name: str) -> Setting:
-    """Return a row of the table.
-
-    Raises
-    ------
-    SettingsError
-        When there is none of that name; the text lists the nearest names, or all.
-    """
+    """Return a row of the table; a SettingsError lists the nearest names, or all."""
     if name in TABLE:
         return TABLE[name]
     msg = f"there is no setting {name!r}; {near_names(name, TABLE)}"

@@ -46,10 +46,7 @@ def bounds(points: Floats) -> Floats:
 
 
 def block_means(data: AnyArray, factor: int, axis: int = 0) -> AnyArray:
-    """Average blocks of ``factor`` x ``factor`` entries of (..., J, I, ...), with J on ``axis``.
-
-    Lines that do not fill a block are dropped.
-    """
+    """Average blocks of ``factor`` x ``factor`` whole entries of (..., J, I, ...)."""
     rows, columns = (n // factor for n in data.shape[axis : axis + 2])
     whole = (*(slice(None),) * axis, slice(rows * factor), slice(columns * factor))
     before, after = data.shape[:axis], data.shape[axis + 2 :]

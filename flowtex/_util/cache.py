@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import threading
 import weakref
 from collections import OrderedDict
@@ -85,7 +86,7 @@ class ByteCache(Generic[K, S]):
     from any thread.
     """
 
-    def __init__(self, max_bytes: int, *, min_count: int = 1, max_count: int | None = None) -> None:
+    def __init__(self, max_bytes: int, *, min_count: int = 1, max_count: float = math.inf) -> None:
         self.max_bytes = max_bytes
         self.min_count = min_count
         self.max_count = max_count
@@ -106,10 +107,7 @@ class ByteCache(Generic[K, S]):
             return self._size()
 
     def get(self, key: K, make: Callable[[], S]) -> S:
-        """Return the value of a key, computing it where it is missing.
-
-        Threads that ask for the same key meanwhile wait for the value; other keys do not wait.
-        """
+        """Return the value of a key, computed once: threads that ask meanwhile wait for it."""
         gate = self._gates.of(key)
         with gate:
             value = self.peek(key)
@@ -132,7 +130,9 @@ class ByteCache(Generic[K, S]):
             self._values[key] = value
             self._values.move_to_end(key)
             # Sizes are added up anew: a value may have grown since it was put here.
-            while len(self._values) > self.min_count and not self._fits():
+            while len(self._values) > self.min_count and (
+                len(self._values) > self.max_count or self._size() > self.max_bytes
+            ):
                 self._values.popitem(last=False)
 
     def values(self) -> list[S]:
@@ -144,10 +144,6 @@ class ByteCache(Generic[K, S]):
         """Drop all values."""
         with self._lock:
             self._values.clear()
-
-    def _fits(self) -> bool:
-        few = self.max_count is None or len(self._values) <= self.max_count
-        return few and self._size() <= self.max_bytes
 
     def _size(self) -> int:
         return sum(value.nbytes for value in self._values.values())

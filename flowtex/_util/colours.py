@@ -31,10 +31,7 @@ DIVERGING = frozenset(
 
 
 def rgb(colour: Any) -> tuple[float, float, float]:
-    """Return a colour of any form that PyVista takes as red, green and blue from 0 to 1.
-
-    Raises a FieldError when there is no such colour.
-    """
+    """Return a colour of any form that PyVista takes as red, green and blue from 0 to 1."""
     if isinstance(colour, str):
         from matplotlib.colors import is_color_like, to_rgb
 
@@ -65,7 +62,7 @@ def colour_table(cmap: Any | None) -> Bytes:
         return _resampled(np.asarray(values))
     name = cmap or DEFAULT_CMAP
     if isinstance(name, str) and name in CMAPS:  # which each tile asks for
-        return _known_table(name).copy()
+        return _cached_table(name).copy()
     return _named_table(name)
 
 
@@ -86,9 +83,7 @@ def _named_table(name: Any) -> Bytes:
         raise FieldError(msg) from error
 
 
-@cache
-def _known_table(name: str) -> Bytes:
-    return _named_table(name)
+_cached_table = cache(_named_table)
 
 
 def is_diverging(cmap: Any) -> bool:

@@ -24,10 +24,7 @@ class Ended(SystemExit):
 
 
 def announce_end(number: int) -> None:
-    """Print the name of a signal on stderr.
-
-    It is printed at once: VTK exits where the error of a signal passes through it.
-    """
+    """Print the name of a signal at once: VTK exits where its error passes through."""
     with suppress(OSError):  # the terminal may be gone
         os.write(2, f"flowtex: ended by {signal.Signals(number).name}\n".encode())
 

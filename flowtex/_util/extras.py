@@ -19,10 +19,7 @@ def import_extra(module: str, extra: str) -> Any:
 
 
 def install_extra(extra: str) -> str:
-    """Return the command that installs an extra such as ``"app"``.
-
-    In a checkout that is an editable install of it, to be typed in its folder.
-    """
+    """Return the command that installs an extra, in a checkout an editable one."""
     if (_CHECKOUT / "pyproject.toml").is_file():
         return f'python -m pip install -e ".[{extra}]"'
     return f'python -m pip install "flowtex[{extra}]"'

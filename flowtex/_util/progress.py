@@ -33,10 +33,7 @@ class Stopped(Exception):
 
 @contextmanager
 def stoppable(cancelled: Callable[[], bool]) -> Iterator[None]:
-    """Cancel the work inside, in this thread, once ``cancelled()`` is true.
-
-    It raises :class:`Stopped` where it was stopped.
-    """
+    """Raise :class:`Stopped` in the work inside, in this thread, once ``cancelled()`` is true."""
     token = _cancelled.set(cancelled)
     try:
         yield
@@ -67,10 +64,7 @@ def waiting(text: str) -> Iterator[Callable[[], None]]:
 
 
 def track(items: Iterable[T], total: int, text: str, *, show: bool = True) -> Iterator[T]:
-    """Yield the items, with a progress bar once they have taken a second.
-
-    Raises :class:`Stopped` when the work is cancelled.
-    """
+    """Yield the items, with a progress bar once they have taken a second."""
     start = time.monotonic()
     bar = task = None
     try:

@@ -60,11 +60,6 @@ class TemporaryFolder:
     """A folder that its owner alone can read, removed by :meth:`close` or with this object.
 
     When it is made, folders of processes that were killed are removed.
-
-    Attributes
-    ----------
-    path
-        Where it lies.
     """
 
     def __init__(self) -> None:

@@ -31,24 +31,9 @@ class WholeFile:
     """A new file that replaces ``path`` once it is complete.
 
     A symbolic link is followed. A file that is replaced keeps its mode, and its owner where that is
-    allowed.
-
-    Parameters
-    ----------
-    path
-        File to write.
-
-    Attributes
-    ----------
-    part
-        Path of the new file, with the suffix of ``path``, for libraries that open files by name.
-    file
-        The new file, empty and open for reading and writing.
-
-    Raises
-    ------
-    OSError
-        When the folder does not exist, writing is not permitted, or ``path`` is no regular file.
+    allowed. ``part`` is the path of the new file, with the suffix of ``path``, for libraries that
+    open files by name; ``file`` is that file, empty and open for reading and writing. An OSError
+    tells that the folder does not exist, writing is not permitted, or ``path`` is no regular file.
     """
 
     def __init__(self, path: str | Path) -> None:

@@ -19,16 +19,10 @@ class UnreadableError(FieldError):
 class Form:
     """How the values of an argument are written.
 
-    Attributes
-    ----------
-    words
-        What a shell says that the argument is for, where that is not what Python says.
-    read
-        Returns the value of a text; an UnreadableError says what was expected.
-    write
-        Returns the text of a value.
-    repeated
-        Whether it may be given several times; ``read`` then takes all the texts.
+    ``words`` are what a shell says that the argument is for, where that is not what Python says.
+    ``read`` returns the value of a text; an UnreadableError says what was expected. ``write``
+    returns the text of a value. An argument that is ``repeated`` may be given several times;
+    ``read`` then takes all the texts.
     """
 
     words: str = ""

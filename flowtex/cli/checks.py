@@ -72,20 +72,6 @@ def check_lines(choice: Mapping[str, Any], values: Mapping[str, Any]) -> None:
         raise UsageError(msg)
 
 
-def begin_opengl() -> None:
-    """Begin to try OpenGL, beside what is read and imported before it is needed."""
-    from flowtex import diagnostics
-
-    diagnostics.begin_trial()
-
-
-def require_opengl() -> None:
-    """Refuse to go on where nothing can draw."""
-    from flowtex import diagnostics
-
-    diagnostics.require_opengl()
-
-
 def require_app() -> None:
     """Refuse to serve a page where what it needs is not installed."""
     packages = ("trame", "trame_vuetify", "trame_rca")

@@ -84,10 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _unknown(error: UnknownOptionError) -> UsageError:
-    """Return the error for a flag that a command has not, with those of it that may be meant.
-
-    A word that is meant is near without ``--no-``, which every switch has.
-    """
+    """Return the error for a flag that a command has not, with one that may be meant."""
     flag = (error.token.keyword or error.token.value).partition("=")[0]
     off = "--no-" if flag.startswith("--no-") else "--"
     names = [name for argument in error.argument_collection or () for name in argument.names]

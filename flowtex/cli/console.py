@@ -1,13 +1,20 @@
-"""Messages of the command line: results on stdout, errors on stderr."""
+"""What the command line reads and says: files as flows, results on stdout, errors on stderr."""
 
 from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from flowtex._util.notices import Notice
+from flowtex._util.progress import waiting
 from flowtex._util.terminal.console import terminal
+from flowtex.cli.options import UsageError, flag_names
+from flowtex.options import FieldOptions
 
 if TYPE_CHECKING:
     from flowtex.field import FlowField
@@ -20,12 +27,7 @@ def complain(error: Exception, colour: str = "red") -> None:
 
 
 def in_flags(text: str) -> str:
-    """Return a message with Python's arguments as flags: ``plane="k=20"`` is ``--plane k=20``.
-
-    A value with blanks keeps its quotes.
-    """
-    from flowtex.cli.options import flag_names
-
+    """Return a message with arguments as flags: ``plane="k=20"`` is ``--plane k=20``."""
     names = "|".join([*flag_names(), "fresh"])
 
     def flag(match: re.Match[str]) -> str:
@@ -74,3 +76,29 @@ def describe(field: FlowField) -> str:
     """Return name and size of a field in words."""
     times = "" if field.steady else f", {len(field.times)} times"
     return f"{field.name or 'flow'}, {field.short_size}{times}"
+
+
+def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
+    """Return the flow of a file, or of several that belong together."""
+    if not files:
+        msg = "there is no file; name one"
+        raise UsageError(msg)
+    options, whole = dict(choice), files[0] if len(files) == 1 else files
+    time = options.pop("time", None)
+    with waiting(f"Reading {files[0].name}"), notices():
+        return FieldOptions(**options).field(whole, time)
+
+
+@contextmanager
+def notices() -> Iterator[None]:
+    """Say what was chosen of the data in plain words, and pass on all other warnings."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", Notice)
+        yield
+    for warning in caught:
+        if issubclass(warning.category, Notice):
+            say((in_flags(str(warning.message)), "dim"))
+        elif not warning.category.__module__.startswith("xarray."):  # how a file was written
+            warnings.warn_explicit(
+                warning.message, warning.category, warning.filename, warning.lineno
+            )

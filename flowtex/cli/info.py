@@ -6,8 +6,7 @@ import math
 from typing import TYPE_CHECKING, Annotated
 
 from flowtex._util.terminal.console import terminal
-from flowtex.cli.console import in_flags
-from flowtex.cli.load import load_field
+from flowtex.cli.console import in_flags, load_field
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
 
 if TYPE_CHECKING:
@@ -61,13 +60,19 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     return 0
 
 
-def _pairs(title: str) -> Table:
+def _table(*titles: str, right: tuple[str, ...] = ()) -> Table:
     from rich.table import Table
 
-    table = Table(title=title or None, title_justify="left", title_style="bold", box=None)
-    table.show_header = False
-    table.add_column(style="dim")
-    table.add_column()
+    table = Table(box=None, header_style="dim")
+    for title in titles:
+        table.add_column(title, justify="right" if title in right else "left")
+    return table
+
+
+def _pairs(title: str = "") -> Table:
+    table = _table("", "")
+    table.title, table.title_justify, table.title_style = title or None, "left", "bold"
+    table.show_header, table.columns[0].style = False, "dim"
     return table
 
 
@@ -76,7 +81,7 @@ def _store_table(place: Path) -> Table:
     from flowtex.pyramid.levels import Levels
 
     about = Levels(place).about
-    table = _pairs("")
+    table = _pairs()
     rows, columns = about["nodes"]
     table.add_row("pyramid", f"{columns} × {rows} nodes, {about['depth'] + 1} levels")
     table.add_row("times", str(len(about["times"])))
@@ -94,7 +99,7 @@ def _recognised_table(paths: list[Path]) -> Table:
     from flowtex.field.datasets.read import as_datasets, recognise
     from flowtex.field.io.reader_errors import errors_of_file
 
-    table = _pairs("")
+    table = _pairs()
     with errors_of_file(paths[0]):
         datasets = as_datasets(open_datasets(paths))
         pairs = find_pairs(datasets)
@@ -116,7 +121,7 @@ def _recognised_table(paths: list[Path]) -> Table:
 
 
 def _file_table(summary: FileSummary) -> Table:
-    table = _pairs("")
+    table = _pairs()
     size = summary.size.replace(" x ", " × ")
     table.add_row("grid", f"{summary.grid}{f', {size}' if size else ''}")
     if summary.cells:
@@ -142,11 +147,7 @@ def _file_table(summary: FileSummary) -> Table:
 
 
 def _block_table(summary: FileSummary) -> Table:
-    from rich.table import Table
-
-    table = Table(box=None, header_style="dim")
-    for title in ("block", "name", "grid", "size"):
-        table.add_column(title)
+    table = _table("block", "name", "grid", "size")
     for block in summary.blocks[:MOST_BLOCKS]:
         number = "" if block.number is None else str(block.number)
         size = block.size.removesuffix(" nodes").replace(" x ", " × ")
@@ -157,11 +158,8 @@ def _block_table(summary: FileSummary) -> Table:
 
 
 def _array_table(summary: FileSummary) -> Table:
-    from rich.table import Table
-
-    table = Table(box=None, header_style="dim")
-    for title in ("array", "on", "numbers", "from", "to"):
-        table.add_column(title, justify="left" if title in ("array", "on") else "right")
+    numbers = ("numbers", "from", "to")
+    table = _table("array", "on", *numbers, right=numbers)
     for array in summary.arrays:
         made = f" = {', '.join(array.parts)}" if array.parts else ""
         table.add_row(f"{array.name}{made}", array.where, str(array.components), *_span(array))

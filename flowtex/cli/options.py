@@ -20,27 +20,6 @@ from flowtex.errors import FieldError
 from flowtex.options import Appearance, FieldOptions, ViewOptions
 from flowtex.settings import TABLE, Setting
 
-__all__ = [
-    "FILE",
-    "FLAT",
-    "HOST",
-    "HOSTS",
-    "OPEN",
-    "PAGE",
-    "PICTURE",
-    "PORT",
-    "SIZE",
-    "FieldFlags",
-    "FrameFlags",
-    "LookFlags",
-    "ServeFlags",
-    "SettingFlags",
-    "UsageError",
-    "arguments",
-    "flag_names",
-    "pixels",
-]
-
 FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)
 PAGE, SETTINGS = Group("The page", sort_key=3), Group("Settings", sort_key=4)
 
@@ -51,25 +30,6 @@ FILE = Annotated[
         help="A mesh: any file that PyVista reads, or PLOT3D; or data of the Earth: "
         "NetCDF, Zarr, GRIB or the JSON of wind maps, several files where they belong together."
     ),
-]
-PORT = Annotated[
-    int,
-    Parameter(group=PAGE, help="Port; 0 takes a free one.", validator=Number(gte=0, lt=65536)),
-]
-HOST = Annotated[
-    str, Parameter(group=PAGE, help="Address to listen on: others may reach another one.")
-]
-HOSTS = Annotated[
-    tuple[str, ...],
-    Parameter(
-        group=PAGE,
-        help="Name under which browsers may ask for the page besides localhost and --host, such as "
-        "that of a proxy before it; several times for several, '*' for any.",
-        negative=(),
-    ),
-]
-OPEN = Annotated[
-    bool, Parameter(group=PAGE, name=["--browser", "--open"], help="Open the page in the browser.")
 ]
 
 
@@ -177,12 +137,35 @@ class FrameFlags:
 
 
 @dataclass(kw_only=True)
-class ServeFlags:
-    """Where the page is served."""
+class AddressFlags:
+    """Where a page is served."""
 
-    port: PORT = 0
-    host: HOST = "127.0.0.1"
-    allow_host: HOSTS = ()
+    port: Annotated[
+        int,
+        Parameter(group=PAGE, help="Port; 0 takes a free one.", validator=Number(gte=0, lt=65536)),
+    ] = 0
+    host: Annotated[
+        str, Parameter(group=PAGE, help="Address to listen on: others may reach another one.")
+    ] = "127.0.0.1"
+    allow_host: Annotated[
+        tuple[str, ...],
+        Parameter(
+            group=PAGE,
+            help="Name under which browsers may ask for the page besides localhost and --host, "
+            "such as that of a proxy before it; several times for several, '*' for any.",
+            negative=(),
+        ),
+    ] = ()
+    browser: Annotated[
+        bool,
+        Parameter(group=PAGE, name=["--browser", "--open"], help="Open the page in the browser."),
+    ] = True
+
+
+@dataclass(kw_only=True)
+class ServeFlags(AddressFlags):
+    """Where the page is served, and for how many."""
+
     limit: Annotated[
         int | None,
         Parameter(
@@ -192,10 +175,8 @@ class ServeFlags:
         ),
     ] = None
     idle: Annotated[
-        float,
-        Parameter(group=PAGE, help="Minutes for which a page that was closed can come back."),
+        float, Parameter(group=PAGE, help="Minutes for which a page that was closed can come back.")
     ] = 15.0
-    browser: OPEN = True
 
 
 def arguments(*groups: Any) -> dict[str, Any]:

@@ -11,8 +11,7 @@ from cyclopts import Parameter
 
 from flowtex._util.progress import waiting
 from flowtex.cli.checks import writing
-from flowtex.cli.console import complain, say
-from flowtex.cli.load import notices
+from flowtex.cli.console import complain, notices, say
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
 
 
@@ -66,14 +65,7 @@ def pyramid(
         whole: Any = files[0] if len(files) == 1 else files
         source = source_of(whole, **arguments(flow))
     with writing(output):
-        built = build(
-            source,
-            output,
-            lines=lines,
-            scheduler=scheduler,
-            memory=memory,
-            fresh=fresh,
-        )
+        built = build(source, output, lines=lines, scheduler=scheduler, memory=memory, fresh=fresh)
     kept = f", {built.kept:,} were there" if built.kept else ""
     rows, columns = source.shape
     say(

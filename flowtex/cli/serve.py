@@ -15,12 +15,9 @@ from flowtex.cli.checks import drawing, require_app
 from flowtex.cli.console import announcer
 from flowtex.cli.options import (
     FLAT,
-    HOST,
-    HOSTS,
-    OPEN,
     PAGE,
     PICTURE,
-    PORT,
+    AddressFlags,
     LookFlags,
     SettingFlags,
     UsageError,
@@ -36,9 +33,7 @@ def serve(
     ],
     /,
     *,
-    port: PORT = 0,
-    host: HOST = "127.0.0.1",
-    allow_host: HOSTS = (),
+    address: Annotated[AddressFlags | None, FLAT] = None,
     token: Annotated[
         str | None,
         Parameter(
@@ -47,7 +42,6 @@ def serve(
             "be guessed.",
         ),
     ] = None,
-    browser: OPEN = True,
     title: Annotated[
         str | None, Parameter(group=PICTURE, help="Title of the page; the flow's name by default.")
     ] = None,
@@ -55,7 +49,7 @@ def serve(
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Serve a pyramid as a page that streams it."""
-    options = drawing(look, settings)
+    options, at = drawing(look, settings), address or AddressFlags()
     require_app()
     if token is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,}", token):
         msg = (
@@ -77,7 +71,7 @@ def serve(
         field = open_store(store)
         served = ServedStore(store)
         page = _page(field, title, options, f"store/{served.run}/")
-        print_address = announcer(field, host)
+        print_address = announcer(field, at.host)
 
         def announce(address: str) -> None:
             end_waiting()
@@ -86,11 +80,11 @@ def serve(
         serving = run_store(
             served,
             page,
-            (host, port),
+            (at.host, at.port),
             token=token or new_secret(),
-            hosts=known_hosts(host, allow_host),
+            hosts=known_hosts(at.host, at.allow_host),
             announce=announce,
-            open_browser=browser and has_display(),
+            open_browser=at.browser and has_display(),
         )
         with suppress(KeyboardInterrupt, asyncio.CancelledError):
             asyncio.run(serving)

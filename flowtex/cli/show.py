@@ -10,9 +10,8 @@ from cyclopts import Parameter
 
 from flowtex import examples
 from flowtex._util.progress import waiting
-from flowtex.cli.checks import begin_opengl, check_lines, drawing, require_app, require_opengl
-from flowtex.cli.console import announcer, describe
-from flowtex.cli.load import load_field, notices
+from flowtex.cli.checks import check_lines, drawing, require_app
+from flowtex.cli.console import announcer, describe, load_field, notices
 from flowtex.cli.options import (
     FLAT,
     SIZE,
@@ -41,10 +40,7 @@ FIELD_OPTIONS = (
 )
 
 FILE = Annotated[
-    Path,
-    Parameter(
-        help="Meshes, any files that PyVista reads or PLOT3D; or one folder of them.",
-    ),
+    Path, Parameter(help="Meshes, any files that PyVista reads or PLOT3D; or one folder of them.")
 ]
 
 
@@ -59,12 +55,14 @@ def demo(
         msg = f"there is no example {example!r}; there are {', '.join(NAMES)}"
         raise UsageError(msg)
     options = drawing(settings)
-    begin_opengl()
+    from flowtex import diagnostics
+
+    diagnostics.begin_trial()
     require_app()
     from flowtex.app import Library
     from flowtex.field.source import FlowSource
 
-    require_opengl()
+    diagnostics.require_opengl()
 
     def opener(name: str) -> Any:
         return lambda: FlowSource(getattr(examples, f"{name}_field")())
@@ -94,9 +92,9 @@ def show(
     """
     choice, options, window = arguments(flow), drawing(look, settings), pixels(size)
     check_lines(choice, options)
-    require_opengl()
     from flowtex import diagnostics
 
+    diagnostics.require_opengl()
     on_page = page is not None or not diagnostics.has_display()
     together = _belong_together(files)
     if on_page or not (together or len(files) == 1) or _is_folder(files[0]):

@@ -11,17 +11,14 @@ from cyclopts import Parameter
 
 from flowtex._util.whole_file import whole_file
 from flowtex.cli.checks import (
-    begin_opengl,
     check_lines,
     check_movie_file,
     check_page_file,
     check_picture_file,
     drawing,
-    require_opengl,
     writing,
 )
-from flowtex.cli.console import describe, say
-from flowtex.cli.load import load_field
+from flowtex.cli.console import describe, load_field, say
 from flowtex.cli.options import (
     FILE,
     FLAT,
@@ -42,8 +39,7 @@ NOTABLE_LOSS = 0.01
 def render(
     *files: FILE,
     output: Annotated[
-        Path,
-        Parameter(name=["--output", "-o"], help="Picture to write; its suffix is its format."),
+        Path, Parameter(name=["--output", "-o"], help="Picture to write; its suffix is its format.")
     ],
     clock: Annotated[
         float, Parameter(group=PICTURE, help="Moment of the streaming (--motion), in seconds.")
@@ -57,13 +53,15 @@ def render(
     start = time.perf_counter()
     choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_picture_file(output)
-    begin_opengl()
+    from flowtex import diagnostics
+
+    diagnostics.begin_trial()
     shown: dict[str, Any] = {"clock": clock}
     if options.get("lines") == "pathlines" and "time" in choice:
         # Pathlines of a moment go through the times around it.
         shown["time"] = choice.pop("time")
     field = load_field(files, choice)
-    require_opengl()
+    diagnostics.require_opengl()
     from PIL import Image
 
     from flowtex import render as draw
@@ -110,9 +108,11 @@ def movie(
     choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_movie_file(output, options["size"], fps, quality)
     check_lines(choice, options)
-    begin_opengl()
+    from flowtex import diagnostics
+
+    diagnostics.begin_trial()
     field = load_field(files, choice)
-    require_opengl()
+    diagnostics.require_opengl()
     from flowtex import movie as write_movie
 
     with writing(output):

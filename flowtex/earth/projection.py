@@ -96,6 +96,19 @@ class Projection:
         if not self.is_globe:
             _ = self._transforms
 
+    @classmethod
+    def of(cls, written: Any) -> Projection | None:
+        """Return the map that :meth:`written` is of; ``None`` for ``None``."""
+        if written is None:
+            return None
+        name, (lon, lat), half_height = written
+        return cls(str(name), (float(lon), float(lat)), float(half_height))
+
+    @property
+    def written(self) -> list[Any]:
+        """What JSON holds of it."""
+        return [self.name, list(self.center), self.half_height]
+
     @property
     def is_globe(self) -> bool:
         """Whether this is the sphere."""

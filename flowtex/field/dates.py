@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from datetime import timedelta
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flowtex._util.arguments import is_number
+from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
 if TYPE_CHECKING:
@@ -17,16 +18,7 @@ DAY_S = 86_400.0
 
 
 def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
-    """Return times, their unit, and the date at time 0.
-
-    Dates become seconds since the first, and spans of time seconds. Numbers are returned as they
-    are; they have no date, and spans have none.
-
-    Raises
-    ------
-    FieldError
-        When the unit of dates or spans is said to be another one, or spans are of months or years.
-    """
+    """Return times, their unit, and the date at time 0: dates and spans become seconds."""
     start = None
     try:
         given = np.asarray(times)
@@ -62,23 +54,15 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
 
 
 def date_text(start: Any, time: float, step: float) -> str:
-    """Return a time in seconds since ``start`` as a date, to tell steps of so many seconds apart.
-
-    It is the day, or the minute, or the second.
-    """
-    whole_days = step % DAY_S == 0 and time % DAY_S == 0 and _at_midnight(start)
+    """Return a time in seconds since ``start`` as a date, as exact as steps apart need it."""
+    at_midnight = not (start.hour or start.minute or start.second or start.microsecond)
+    whole_days = step % DAY_S == 0 and time % DAY_S == 0 and at_midnight
     form = "%Y-%m-%d" if whole_days else "%Y-%m-%d %H:%M" if step >= 60 else "%Y-%m-%d %H:%M:%S"
     return str((start + timedelta(seconds=time)).strftime(form))
 
 
 def seconds_since(start: Any, date: Any) -> float:
-    """Return a time in seconds since ``start``, from a number, a date, or a text such as a date.
-
-    Raises
-    ------
-    FieldError
-        When it is none.
-    """
+    """Return seconds since ``start`` of a number, a date, or a text such as a date."""
     if is_number(date) and not isinstance(date, (np.datetime64, np.timedelta64)):
         return float(date)
     if start is None:
@@ -98,5 +82,22 @@ def seconds_since(start: Any, date: Any) -> float:
         raise FieldError(msg) from error
 
 
-def _at_midnight(date: Any) -> bool:
-    return not (date.hour or date.minute or date.second or date.microsecond)
+def written_date(start: Any) -> list[Any] | None:
+    """Return a date as JSON holds it: numbers, and its calendar unless it is ``datetime``'s."""
+    if start is None:
+        return None
+    parts = ("year", "month", "day", "hour", "minute", "second", "microsecond")
+    return [[int(getattr(start, part)) for part in parts], getattr(start, "calendar", "")]
+
+
+def date_of(written: Any) -> Any:
+    """Return the date of :func:`written_date`."""
+    if written is None:
+        return None
+    numbers, calendar = written
+    if not calendar:
+        return datetime(*numbers)
+    # Not all calendars have a year 0, which climatologies begin with.
+    zero = True if numbers[0] == 0 else None
+    cftime = import_extra("cftime", "xarray")
+    return cftime.datetime(*numbers, calendar=calendar, has_year_zero=zero)

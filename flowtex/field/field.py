@@ -33,11 +33,10 @@ from flowtex.field.grids import grid_nodes
 from flowtex.field.interpolation import every_line
 from flowtex.field.io.arrays import FieldArrays, TriangleArrays
 from flowtex.field.io.constructors import FieldConstructors
-from flowtex.field.metric import IndexVelocity, to_index_space
+from flowtex.field.metric import IndexVelocity
 from flowtex.field.steps import LazySteps, Steps, typical_steps
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.arrays import triangle_nodes
-from flowtex.field.triangles.creases import velocity_on_triangles
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.validation import with_gaps
 
@@ -399,12 +398,7 @@ class FlowField(FieldConstructors):
     @cached_property
     def index_velocity(self) -> IndexVelocity:
         """The velocity in index space, in cells per unit of time, with its speed."""
-
-        def expressed(velocity: Floats) -> IndexVelocity:
-            if isinstance(self.surface, TriangleSurface):
-                return velocity_on_triangles(self.surface, velocity)
-            return to_index_space(self.surface, velocity)
-
+        expressed = self.surface.express
         if not isinstance(self.velocity, LazySteps):
             return expressed(self.velocity)
 

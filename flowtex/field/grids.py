@@ -54,11 +54,7 @@ def grid_nodes(
     sign_free: bool,
     on_globe: bool,
 ) -> GridNodes:
-    """Check arrays, and bring them into the form that a field has.
-
-    Parameters and errors are those of :meth:`FlowField.from_arrays`. Of a velocity that is read
-    late the first step is looked at, and of scalars that are, none.
-    """
+    """Check arrays, and bring them into the form of a field; of late steps the first is read."""
     if not isinstance(scalars, Mapping):
         msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
         raise FieldError(msg)

@@ -23,10 +23,7 @@ def nearest_known(known: Bools) -> tuple[Indices, Indices]:
 
 
 def fill_blanked(data: A, known: Bools, axis: int = 0) -> A:
-    """Give nodes of (..., J, I, ...) that are not known (J, I) the value of the nearest that is.
-
-    J runs along ``axis``. Returns a copy, or the data themselves where all nodes are known.
-    """
+    """Give nodes of (..., J, I, ...) that are not known, (J, I), the value of the nearest."""
     if known.all():
         return data
     before: list[Any] = [slice(None)] * axis
@@ -48,10 +45,7 @@ def bracket(
 
 
 def steps_around(times: Floats, time: float) -> tuple[int, int, float]:
-    """Return the two time steps around a time, and its share of the way between them, 0 to 1.
-
-    A steady field, with one time, has its only step twice.
-    """
+    """Return the two time steps around a time, the same where there is one, and its share."""
     if len(times) == 1:
         return 0, 0, 0.0
     step, share = bracket(times, time)
@@ -93,10 +87,7 @@ def cubic_weights(t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
 
 
 def between_nodes(nodal: AnyArray, index: Floats) -> Floats:
-    """Interpolate nodal values (J, I) linearly at positions (..., 2) as (i, j), in cells.
-
-    Beyond the border they are constant.
-    """
+    """Interpolate nodal values (J, I) linearly at (..., 2) as (i, j); constant beyond a border."""
     at = [index[..., 1], index[..., 0]]
     return np.asarray(
         scipy.ndimage.map_coordinates(nodal.astype(float), at, order=1, mode="nearest")
@@ -104,10 +95,7 @@ def between_nodes(nodal: AnyArray, index: Floats) -> Floats:
 
 
 def along_line(line: Floats, index: Floats, *, periodic: bool) -> Floats:
-    """Interpolate the increasing values of a line of nodes (N,) at any index, of any shape.
-
-    They go on straight beyond each end, or by a period, the last value less the first.
-    """
+    """Interpolate increasing values (N,) at any index; they go on straight, or by a period."""
     last = len(line) - 1
     if periodic:
         turns = np.floor(index / last)
@@ -119,10 +107,7 @@ def along_line(line: Floats, index: Floats, *, periodic: bool) -> Floats:
 
 
 def inverse_along_line(line: Floats, values: Floats, *, periodic: bool) -> Floats:
-    """Return the index at which :func:`along_line` gives these values.
-
-    The line begins at zero.
-    """
+    """Return the index at which :func:`along_line` gives these values, of a line from zero."""
     last = len(line) - 1
     turns = np.floor(values / line[-1]) if periodic else np.zeros_like(values)
     inside = np.interp(values - turns * line[-1], line, np.arange(last + 1))

@@ -21,9 +21,8 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.blocks import row_blocks
-from flowtex.field.poles import Pole
+from flowtex.field.poles import Pole, Poles
 from flowtex.field.steps import Steps
-from flowtex.field.surface import Surface
 
 #: Below this ratio of squared area to squared lengths a cell counts as collapsed.
 COLLAPSED_AREA = 1e-10
@@ -44,26 +43,23 @@ class IndexVelocity:
     normal_share: float
 
 
-def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
-    """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space."""
-    p_i, p_j = surface.tangents
-    square = np.einsum("djic,djic->ji", surface.tangents, surface.tangents)
-    tiny = COLLAPSED_AREA * float(
-        np.median(square if surface.valid.all() else square[surface.valid])
-    )
+def to_index_space(
+    tangents: Floats, valid: Bools, poles: Poles | None, velocity: Floats
+) -> IndexVelocity:
+    """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space.
+
+    The tangents of the surface are (2, J, I, 3), by i and by j.
+    """
+    p_i, p_j = tangents
+    square = np.einsum("djic,djic->ji", tangents, tangents)
+    tiny = COLLAPSED_AREA * float(np.median(square if valid.all() else square[valid]))
     u, speed = np.empty((*velocity.shape[:-1], 2)), np.empty(velocity.shape[:-1])
     squares = np.zeros(2)
-    for rows in row_blocks(*surface.shape):
+    for rows in row_blocks(*valid.shape):
         squares += _project(
-            velocity[:, rows],
-            p_i[rows],
-            p_j[rows],
-            surface.valid[rows],
-            tiny,
-            u[:, rows],
-            speed[:, rows],
+            velocity[:, rows], p_i[rows], p_j[rows], valid[rows], tiny, u[:, rows], speed[:, rows]
         )
-    for pole in surface.poles or ():
+    for pole in poles or ():
         _at_pole(pole, velocity, u, speed)
     total, normal = squares
     return IndexVelocity(
@@ -76,10 +72,7 @@ def to_index_space(surface: Surface, velocity: Floats) -> IndexVelocity:
 def _project(
     velocity: Floats, p_i: Floats, p_j: Floats, valid: Bools, tiny: float, u: Floats, speed: Floats
 ) -> tuple[float, float]:
-    """Write components and speed of some nodes, and return squares of all and of the normal part.
-
-    Squares of tangents below ``tiny`` count as none.
-    """
+    """Write components and speed of nodes, and return squares of all and of the normal part."""
     g_ii, g_jj, g_ij = (
         np.einsum("jic,jic->ji", a, b) for a, b in ((p_i, p_i), (p_j, p_j), (p_i, p_j))
     )

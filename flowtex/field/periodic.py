@@ -51,11 +51,7 @@ class NodalArrays:
 
 
 def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, tuple[bool, bool]]:
-    """Close the periodic axes: append a missing line, or give two that coincide equal values.
-
-    ``periodic`` names the axes, such as ``"ij"``, or is ``None`` to find out. Returns the closed
-    arrays, and whether the (j, i) axis closes on itself. Values are made equal in place.
-    """
+    """Close the axes that ``periodic`` names, or those found: append a line, or join two."""
     closed = [False, False]
     for axis, letter in ((0, "j"), (1, "i")):
         lines = np.swapaxes(nodal.points, 0, axis)
@@ -98,11 +94,7 @@ def find_closure(points: Floats) -> Closure:
 
 
 def _requested_closure(points: Floats, velocity: Floats) -> Closure:
-    """Close the first axis as the caller asks, appending a line where it is needed.
-
-    ``velocity`` is (T, N, M, 3): a flat map whose last line already carries the values of its
-    first one is closed as it is.
-    """
+    """Close the first axis as asked, by a line unless the last one has the values of the first."""
     closure = find_closure(points)
     if closure.periodic:
         return closure
@@ -184,10 +176,7 @@ def _repeat_first(a: A, axis: int) -> A:
 
 
 def _join_ends(nodal: NodalArrays, axis: int) -> None:
-    """Give the two coinciding lines of a closed axis one common velocity, in place.
-
-    Cell data spread to the nodes differs across a seam, because neither side sees the other.
-    """
+    """Give two coinciding lines one velocity, in place: neither side of the seam saw the other."""
     velocity, valid = nodal.velocity, nodal.valid
     v, ok = np.swapaxes(velocity, 1, axis + 1), np.swapaxes(valid, 0, axis)
     first, last = ok[0].copy(), ok[-1].copy()

@@ -124,8 +124,4 @@ def _on_earth(field: FlowField, position: Floats, velocity: Floats) -> dict[str,
         return {}
     lon, lat = field.projection.lonlat(position)
     east, north = field.projection.components(lon, lat, velocity)
-    return {
-        "lonlat": (float(lon), float(lat)),
-        "eastward": float(east),
-        "northward": float(north),
-    }
+    return {"lonlat": (float(lon), float(lat)), "eastward": float(east), "northward": float(north)}

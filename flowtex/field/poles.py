@@ -115,10 +115,7 @@ class Pole:
         return result
 
     def nearest(self, position: Floats, near: Floats) -> Floats:
-        """Return positions (2, N) in that form, before or beyond the pole, nearest to others.
-
-        A position that lies a quarter of a turn or more to the side changes its form.
-        """
+        """Return positions (2, N) in that form, before or beyond the pole, nearest to others."""
         a, c = 1 - self.component, self.component
         beyond = self.depth(near) < 0
         depth = self.depth(position) * self.inward
@@ -203,11 +200,7 @@ class Poles:
 def find_poles(
     points: Floats, usable: Bools, valid: Bools, periodic: tuple[bool, bool]
 ) -> Poles | None:
-    """Find the poles of a surface with nodes (J, I, 3).
-
-    ``usable`` marks nodes whose coordinates can be trusted, ``valid`` those that carry data, (J,
-    I): a blanked pole is a hole. ``periodic`` says whether the (j, i) axis closes on itself.
-    """
+    """Find the poles of nodes (J, I, 3); one that is not ``valid`` is a hole."""
     if periodic[0] == periodic[1]:
         return None
     axis = 0 if periodic[1] else 1

@@ -109,10 +109,7 @@ def weighted_axis(vectors: Floats, weights: Floats) -> Floats:
 
 
 def products(vectors: Floats) -> Floats:
-    """Products of vectors with themselves, over their length, (..., C) to (..., C * C).
-
-    Their mean has a meaning where that of the vectors has none; :func:`axes` brings it back.
-    """
+    """Products of vectors with themselves, over their length, whose means have a meaning."""
     length = np.linalg.norm(vectors, axis=-1)[..., None, None]
     product = vectors[..., :, None] * vectors[..., None, :]
     product = np.divide(product, length, out=np.zeros_like(product), where=length != 0)

@@ -22,7 +22,6 @@ from flowtex.field.io.files import open_file
 from flowtex.field.io.identity import Identity
 from flowtex.field.io.meshes import (
     TimeStep,
-    cell_dimension,
     drawn_parts,
     is_reader,
     is_structured,
@@ -44,53 +43,35 @@ OUTER = "outer"
 class Source:
     """What can be chosen of a file, a mesh or a field, from which one field after another is made.
 
-    Attributes
-    ----------
-    name
-        A word for captions.
-    vectors
-        Names of the arrays that may be the velocity; empty where there is no choice.
-    dimensions
-        Number of nodes (I, J, K) of a structured mesh; ``None`` for others, and for a field.
-    blocks, block_vectors
-        Names of the meshes, where there are several that are no time steps, and of the arrays that
-        may be the velocity in each.
-    block_word
-        What a person calls one of the blocks.
-    default_plane
-        The plane that is drawn where none is chosen; empty for a surface.
-    ends
-        Ends of a volume along the axes across which it can be cut.
-    axes
-        Other axes along which there is a choice, and words for each place.
-    reads_late
-        Whether a part of the file is read when a field is asked for.
-    nbytes
-        Size in memory.
-    identity
-        State of the files when they were opened; empty where there is none.
+    ``name`` is a word for captions, ``nbytes`` the size in memory, and ``identity`` the state of
+    the files when they were opened; empty where there is none.
     """
 
     def __init__(self, name: str = "") -> None:
         self.name = name
+        #: Names of the arrays that may be the velocity; empty where there is no choice.
         self.vectors: tuple[str, ...] = ()
+        #: Number of nodes (I, J, K) of a structured mesh; ``None`` for others, and for a field.
         self.dimensions: tuple[int, int, int] | None = None
+        #: Names of the meshes, where there are several that are no time steps, of the arrays that
+        #: may be the velocity in each, and what a person calls one of them.
         self.blocks: tuple[str, ...] = ()
         self.block_vectors: dict[str, tuple[str, ...]] = {}
         self.block_word = "Grid"
+        #: The plane that is drawn where none is chosen; empty for a surface.
         self.default_plane = ""
+        #: Ends of a volume along the axes across which it can be cut.
         self.ends: dict[str, tuple[float, float]] = {}
+        #: Other axes along which there is a choice, and words for each place.
         self.axes: dict[str, tuple[str, ...]] = {}
+        #: Whether a part of the file is read when a field is asked for.
         self.reads_late = False
         self.nbytes = 0
         self.identity: Identity = ()
 
     @property
     def planes(self) -> dict[str, int]:
-        """Axes along which planes can be chosen, and how many there are; empty for a surface.
-
-        Those of the index come before those in space, which cut any volume.
-        """
+        """Axes of planes, those of the index first, and how many; empty for a surface."""
         named = {name: len(words) for name, words in self.axes.items()}
         if not self.ends:
             return named
@@ -133,13 +114,7 @@ class Source:
         return "outer surface" if axis == OUTER else plane.replace("=", " = ")
 
     def plane_of(self, level: float | str) -> str:
-        """Return the plane of a level, as :attr:`default_plane` has it.
-
-        Raises
-        ------
-        FieldError
-            When there is no such level.
-        """
+        """Return the plane of a level, as :attr:`default_plane` has it."""
         msg = f"level is {level!r}; expected data of the Earth, and this is a mesh"
         raise FieldError(msg)
 
@@ -151,55 +126,31 @@ class Source:
         block: str | None = None,
         **options: Any,
     ) -> FlowField:
-        """Make a field.
+        """Make a field of one of :attr:`vectors`, the first by default, and of one plane.
 
-        Parameters
-        ----------
-        vectors
-            Name of the velocity; the first of :attr:`vectors` by default.
-        plane
-            Such as ``"k=20"``, ``"x=0.25"`` or ``"outer=0"``; :attr:`default_plane` by default.
-        block
-            As for :meth:`part`.
-        **options
-            Further arguments of what makes the field, as :meth:`FlowField.from_pyvista`.
-
-        Raises
-        ------
-        FieldError
-            When what is asked for is not there, or makes no field.
+        The plane is such as ``"k=20"``, ``"x=0.25"`` or ``"outer=0"``, by default
+        :attr:`default_plane`, and the block as for :meth:`part`. Options are further arguments of
+        what makes the field, as :meth:`FlowField.from_pyvista`.
         """
+        return self._field(vectors, plane, block, options)
+
+    def _field(
+        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
+    ) -> FlowField:
         raise NotImplementedError
 
     def part(self, block: str | None = None) -> Source:
-        """Return the source of one of the :attr:`blocks`; this one itself where there are none.
-
-        The block is named, or numbered; it is the first by default. Raises a FieldError when there
-        is no such block.
-        """
+        """Return the source of one of the :attr:`blocks`, named or numbered, or this one itself."""
         raise NotImplementedError
 
 
 class FlowSource(Source):
     """A mesh, a series or a field, from which one field after another is made.
 
-    Parameters
-    ----------
-    mesh
-        What :meth:`FlowField.from_pyvista` takes, or a field.
-    name
-        A word for captions.
-    velocity
-        Name of the velocity where the format of a file fixes it.
-    path
-        The file that it comes from, which errors then name.
-    block
-        Path of the block to take of a reader that has several at each time.
-
-    Raises
-    ------
-    FieldError
-        When nothing in it can be drawn.
+    The ``mesh`` is what :meth:`FlowField.from_pyvista` takes, or a field. ``velocity`` is the name
+    of the velocity where the format of a file fixes it, ``path`` the file that it comes from, which
+    errors then name, and ``block`` the path of the block to take of a reader that has several at
+    each time.
     """
 
     def __init__(
@@ -220,40 +171,30 @@ class FlowSource(Source):
         if isinstance(mesh, FlowField):
             self.name, self.nbytes = name or mesh.name, mesh.nbytes
             return
-        if mesh is not None:
-            self._describe(self._series(mesh)[0].grid)
-            self.reads_late = is_reader(self._mesh)
+        self._describe(self._series(mesh)[0].grid)
+        self.reads_late = is_reader(self._mesh)
 
     @classmethod
     def from_file(cls, path: str | Path) -> FlowSource:
-        """Open a file, as for :meth:`FlowField.from_file`.
-
-        Raises
-        ------
-        FieldError
-            When it cannot be read; the text starts with the path.
-        """
+        """Open a file, as for :meth:`FlowField.from_file`; errors start with the path."""
         with errors_of_file(path):
             file = open_file(path)
             if file.problem:
                 raise FieldError(file.problem)
             return cls(file.source, name=file.path.stem, velocity=file.velocity, path=file.path)
 
-    def field(
-        self,
-        *,
-        vectors: str | None = None,
-        plane: str | None = None,
-        block: str | None = None,
-        **options: Any,
+    def _field(
+        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
     ) -> FlowField:
-        """Make a field; :meth:`Source.field` has the parameters."""
         if isinstance(self._mesh, FlowField):
             return self._mesh
         if self.blocks:
-            return self.part(block).field(vectors=vectors, plane=plane, **options)
+            return self.part(block)._field(vectors, plane, None, options)
         if not {"slice", "contour"} & set(options):
-            options |= _plane_options(plane or self.default_plane)
+            plane = plane or self.default_plane
+            axis = plane.partition("=")[0].strip().lower()
+            if axis not in ("", OUTER):
+                options["slice" if axis in "xyz" else "plane"] = plane
         chosen = vectors or (self.vectors[0] if self.vectors else None)
         if self._block is not None:
             options = {**options, "block": self._block}
@@ -297,7 +238,7 @@ class FlowSource(Source):
         if is_structured(mesh):
             dimensions = tuple(int(n) for n in mesh.dimensions)
             self.dimensions = (dimensions[0], dimensions[1], dimensions[2])
-        if cell_dimension(mesh) < 3:
+        if mesh.max_cell_dimensionality < 3:
             return
         ends = np.reshape(mesh.bounds, (3, 2)).tolist()
         self.ends = {
@@ -322,10 +263,7 @@ class FlowSource(Source):
         return tuple(dict.fromkeys(names))
 
     def _series(self, mesh: Any) -> list[TimeStep]:
-        """Return the time steps of a mesh, in memory where they fit; of several blocks the first.
-
-        Of a reader with times and several blocks each block is a series, read when it is asked for.
-        """
+        """Return the steps of a mesh, in memory where they fit; of several blocks the first."""
         series = len(times_of(mesh)) > 1
         first = mesh.read() if is_reader(mesh) else mesh
         several = {} if self._block is not None else _choices(first, series=series)
@@ -347,14 +285,6 @@ class FlowSource(Source):
         self._mesh = steps[0].grid if len(steps) == 1 else steps
         self._block = None
         return steps
-
-
-def _plane_options(plane: str) -> dict[str, str]:
-    """Return the arguments of :meth:`FlowField.from_pyvista` for a plane."""
-    axis = plane.partition("=")[0].strip().lower()
-    if not axis or axis == OUTER:
-        return {}
-    return {"slice" if axis in "xyz" else "plane": plane}
 
 
 def _choices(mesh: Any, *, series: bool) -> dict[str, Any]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any, TypeAlias
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.cache import ByteCache
 
 #: Bytes of steps that are kept once they have been read, and their number.
@@ -18,24 +18,16 @@ class LazySteps:
     """An array (T, J, I, ...) of which a step is read when it is indexed.
 
     It takes an index of NumPy's whose first part chooses steps: a number gives an array, a slice or
-    a list of numbers another array of steps, read later. ``np.asarray`` reads all.
-
-    Parameters
-    ----------
-    count
-        Number of steps.
-    read
-        Returns a step, (J, I, ...), by its number from 0. It may be called by several threads.
-    kept
-        Bytes of steps that stay in memory once they have been read; as many of those that are made
-        from them.
+    a list of numbers another array of steps, read later. ``np.asarray`` reads all. ``read`` returns
+    a step, (J, I, ...), by its number from 0, and may be called by several threads; ``kept`` bytes
+    of steps stay in memory once they have been read, and as many of those that are made from them.
     """
 
     def __init__(
         self, count: int, read: Callable[[int], Floats], *, kept: int = KEPT_BYTES
     ) -> None:
         self._count, self._read, self._most = count, read, kept
-        self._kept: ByteCache[int, _Step] = ByteCache(kept, max_count=MOST_KEPT)
+        self._kept: ByteCache[int, Floats] = ByteCache(kept, max_count=MOST_KEPT)
         self._shape: tuple[int, ...] | None = None
 
     def __len__(self) -> int:
@@ -50,7 +42,7 @@ class LazySteps:
             msg = f"step {number} does not exist: expected 0 to {self._count - 1}"
             raise IndexError(msg)
         number %= self._count
-        return self._kept.get(number, lambda: _Step(self._read(number))).values
+        return self._kept.get(number, lambda: self._read(number))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -101,11 +93,14 @@ class LazySteps:
 Steps: TypeAlias = Any
 
 
-class _Step:
-    """One step in the memory of steps."""
+class Nodes(NamedTuple):
+    """What some nodes have, as in a field; at one time step its velocity is (J, I, C)."""
 
-    def __init__(self, values: Floats) -> None:
-        self.values, self.nbytes = values, values.nbytes
+    points: Floats
+    valid: Bools
+    velocity: Steps
+    scalars: Mapping[str, Steps]
+    has_position: Bools | None = None
 
 
 def first_step(values: Any) -> Any:

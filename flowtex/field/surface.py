@@ -10,17 +10,27 @@ itself, the far side of a pole, a quadratic extrapolation where the axis ends.
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
+from itertools import product
 from typing import Any
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.blocks import bounds, row_blocks
+from flowtex.errors import FieldError
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
+from flowtex.field.metric import IndexVelocity, to_index_space
 from flowtex.field.poles import Pole, Poles, find_poles
 from flowtex.field.validation import finite_nodes
 
+#: Nodes closer than this share of the surface's extent lie at one point.
+SAME_POINT_SHARE = 1e-12
+#: Corners of the two triangles of a cell, as (j, i) from its first corner, and steps (j, i) to the
+#: cells across the edges opposite to them.
+CORNERS = np.array((((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0))))
+ACROSS = np.array((((0, 1), (0, 0), (-1, 0)), ((1, 0), (0, -1), (0, 0))))
 #: Lines from a pole over which the size of the cells comes to be their length alone.
 POLE_LINES = 8
 
@@ -34,12 +44,7 @@ class Surface:
     """
 
     def __init__(
-        self,
-        points: Floats,
-        valid: Bools,
-        periodic: tuple[bool, bool],
-        *,
-        on_globe: bool = False,
+        self, points: Floats, valid: Bools, periodic: tuple[bool, bool], *, on_globe: bool = False
     ) -> None:
         self.valid = valid
         self.periodic = periodic
@@ -89,6 +94,90 @@ class Surface:
         """Cells whose four nodes are valid, (J - 1, I - 1)."""
         v = self.valid
         return np.asarray(v[:-1, :-1] & v[1:, :-1] & v[:-1, 1:] & v[1:, 1:])
+
+    @cached_property
+    def drawn(self) -> Indices:
+        """Numbers of the triangles that are drawn: two of each cell, along its first diagonal."""
+        first = 2 * np.flatnonzero(self.cells)
+        return np.stack([first, first + 1], axis=-1).ravel()
+
+    def is_drawn(self, number: Indices) -> Bools:
+        """Whether triangles (N,) are drawn."""
+        return np.asarray(self.cells.ravel()[number >> 1])
+
+    def corners_of(self, number: Indices) -> Indices:
+        """Nodes (N, 3) at the corners of triangles (N,), counted row by row."""
+        row, column = np.divmod(number >> 1, self.shape[1] - 1)
+        j, i = np.moveaxis(CORNERS[number & 1], -1, 0)
+        return np.asarray((row[:, None] + j) * self.shape[1] + column[:, None] + i)
+
+    def beside(self, number: Indices, corner: int) -> Indices:
+        """Triangles (N,) across the edges opposite to a corner, -1 at a border."""
+        lines = self.shape[0] - 1, self.shape[1] - 1
+        cell = [*np.divmod(number >> 1, lines[1])]
+        outside = np.zeros(len(number), dtype=bool)
+        for axis, count in enumerate(lines):
+            there = cell[axis] + ACROSS[number & 1, corner, axis]
+            if not self.closes[axis]:
+                outside |= (there < 0) | (there >= count)
+            cell[axis] = there % count
+        return np.where(outside, -1, 2 * (cell[0] * lines[1] + cell[1]) + 1 - (number & 1))
+
+    def index_of(self, number: Indices, weights: Floats) -> Floats:
+        """Positions (N, 2) as (i, j) of shares (N, 3) of the corners of triangles (N,)."""
+        place = np.einsum("nk,nkc->nc", weights, CORNERS[number & 1])
+        return np.asarray(place + np.stack(np.divmod(number >> 1, self.shape[1] - 1), -1))[:, ::-1]
+
+    def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
+        """Return a position (j, i) within one period, its triangle, and shares of corners (3,)."""
+        j, i = (float(x) for x in self.wrap(index[::-1])[::-1])
+        rows, columns = self.shape
+        if not (0 <= j <= rows - 1 and 0 <= i <= columns - 1):
+            msg = (
+                f"(j, i) is ({j:g}, {i:g}), outside the surface; expected j from 0 to {rows - 1} "
+                f"and i from 0 to {columns - 1}"
+            )
+            raise FieldError(msg)
+        # On a line of nodes a position belongs to two cells.
+        cells = [
+            {min(int(x), n - 2), max(math.ceil(x) - 1, 0)} for x, n in ((j, rows), (i, columns))
+        ]
+        for row, column in product(*(sorted(some, reverse=True) for some in cells)):
+            if self.cells[row, column]:
+                b, a = j - row, i - column
+                number = 2 * (row * (columns - 1) + column) + int(a < b)
+                shares = (1 - a, a - b, b) if a >= b else (1 - b, a, b - a)
+                return np.array([j, i]), number, np.array(shares)
+        msg = (
+            f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a point where the "
+            "surface is drawn"
+        )
+        raise FieldError(msg)
+
+    @cached_property
+    def closes(self) -> tuple[bool, bool]:
+        """Whether the (j, i) axis goes around in space, and is not repeated a period farther."""
+        j, i = np.linalg.norm(self.offset, axis=-1) <= 1e-6 * self.extent
+        return self.periodic[0] and bool(j), self.periodic[1] and bool(i)
+
+    @cached_property
+    def apart(self) -> Bools:
+        """Nodes of what is drawn that have a place of their own, (J, I); all where none has.
+
+        Where many nodes lie at one point, those nearest to a point beside it may be on the far
+        side; the nodes of the next line do better.
+        """
+        drawn, one = np.zeros((2, *self.shape), dtype=bool)
+        drawn.ravel()[self.corners_of(self.drawn)] = True
+        for axis in (0, 1):
+            lines, same = np.swapaxes(self.points, 0, axis), np.swapaxes(one, 0, axis)
+            steps = np.linalg.norm(np.diff(lines, axis=0), axis=-1)
+            together = steps <= SAME_POINT_SHARE * self.extent
+            same[:-1] |= together
+            same[1:] |= together
+        for pole in self.poles or ():
+            pole.lines(one)[pole.line] = True
+        return drawn & ~one if (drawn & ~one).any() else drawn
 
     @cached_property
     def padded(self) -> Floats:
@@ -181,6 +270,10 @@ class Surface:
         i, j = index.reshape(-1, 2).T
         return self._positions.at(i, j).T.reshape(*index.shape[:-1], 3)
 
+    def express(self, velocity: Floats) -> IndexVelocity:
+        """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space."""
+        return to_index_space(self.tangents, self.valid, self.poles, velocity)
+
     @cached_property
     def plane_size(self) -> Floats:
         """Width and height along the frame of a flat surface, (2,)."""
@@ -233,10 +326,7 @@ class CubicMap:
     def at(
         self, i: AnyArray, j: AnyArray, start: tuple[Any, Any] = (0, 0), error: float = 0.0
     ) -> AnyArray:
-        """Positions (C, N) of (N,) each in index space, counted in cells from the nodes ``start``.
-
-        An error is allowed in each coordinate of what is left out; :meth:`Surface.at` has the rest.
-        """
+        """Positions (C, N) of (N,) each in cells from the nodes ``start``, but for some error."""
         rows, columns = self._shape
         closed_j, closed_i = self._periodic
         if self._poles is not None:
@@ -333,12 +423,7 @@ def _beyond(p: Floats, good: Bools) -> Floats:
 
 
 def _difference(
-    before: Floats,
-    here: Floats,
-    after: Floats,
-    good_before: Bools,
-    good_after: Bools,
-    out: Floats,
+    before: Floats, here: Floats, after: Floats, good_before: Bools, good_after: Bools, out: Floats
 ) -> None:
     """Central difference, one-sided beside a node whose coordinates cannot be trusted."""
     if good_before.all() and good_after.all():

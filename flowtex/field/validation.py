@@ -25,10 +25,7 @@ FEW_LINES = 100
 
 
 def node_positions(points: Any) -> Any:
-    """Return positions (J, I, 2 or 3) of the arrays x and y, and z, of a tuple; others as they are.
-
-    Two that are (I,) and (J,) are those of a rectilinear grid.
-    """
+    """Return positions (J, I, 2 or 3) of a tuple of arrays, (I,) and (J,) too; or as they are."""
     several = isinstance(points, (tuple, list)) and len(points) in (2, 3)
     sizes = [np.ndim(part) for part in points] if several else []
     if sizes == [1, 1]:
@@ -45,10 +42,7 @@ def node_positions(points: Any) -> Any:
 
 
 def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
-    """Return values as float64, and which nodes a masked array hides: (J, I), or false.
-
-    Those that are float64 are not copied.
-    """
+    """Return values as float64, copied if need be, and the nodes (J, I) that a mask hides."""
     mask = np.ma.getmaskarray(values) if np.ma.isMaskedArray(values) else None
     try:
         array = np.asarray(np.ma.getdata(values))
@@ -71,10 +65,7 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
 
 
 def with_gaps(name: str, values: ArrayLike) -> Floats:
-    """Return values as float64, NaN where a masked array hides them.
-
-    Those that are float64, with nothing hidden, are not copied.
-    """
+    """Return values as float64, copied if need be, NaN where a masked array hides them."""
     array, _ = as_numbers(name, values)
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
         array = np.where(np.ma.getmaskarray(values), np.nan, array)
@@ -103,8 +94,39 @@ def shape_faults(
             f"points has {grid[0]} x {grid[1]} nodes (J x I); a surface needs at least 2 along "
             "each axis. A single row is a curve: choose another plane"
         )
-    faults += _velocity_faults(v, grid)
-    if not faults:
+    hint = ""
+    if v.ndim in (3, 4) and v.shape[-3:-1] == grid[::-1] and grid[0] != grid[1]:
+        hint = ". The two axes look swapped: arrays are (j, i), try np.swapaxes"
+    elif v.ndim in (3, 4) and v.shape[-2:] == grid:
+        hint = ". The components look first: try np.moveaxis(velocity, 0, -1)"
+    faults += nodal_faults(grid, v, steps, times, valid, scalars, hint)
+    if periodic is not None and not (isinstance(periodic, str) and set(periodic) <= {"i", "j"}):
+        faults.append(
+            f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to find out'
+        )
+    return faults
+
+
+def nodal_faults(
+    grid: tuple[int, ...],
+    v: Floats,
+    steps: int,
+    times: Floats | None,
+    valid: Any,
+    scalars: Mapping[str, Floats],
+    hint: str = "",
+) -> list[str]:
+    """Return faults in the shapes of arrays over nodes (J, I) or (N,), and in the times."""
+    faults = []
+    is_series = v.ndim == len(grid) + 2
+    fits = (v.ndim == len(grid) + 1 or is_series) and v.shape[is_series:-1] == grid
+    if not (fits and v.shape[-1] in (2, 3) and v.size):
+        series = ", ".join(map(str, ("T", *grid, 3)))
+        faults.append(
+            f"velocity has shape {v.shape}; expected {(*grid, 3)} for a steady field or "
+            f"({series}) for one that varies in time, with points {(*grid, 3)}{hint}"
+        )
+    else:
         faults += time_faults(times, steps)
     if valid is not None and np.shape(valid) != grid:
         faults.append(f"valid has shape {np.shape(valid)}; expected {grid} as points has")
@@ -115,27 +137,7 @@ def shape_faults(
                 f"scalars[{name!r}] has shape {np.shape(array)}; expected {allowed[0]} or "
                 f"{allowed[1]}, as points and velocity have"
             )
-    if periodic is not None and not (isinstance(periodic, str) and set(periodic) <= {"i", "j"}):
-        faults.append(
-            f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to find out'
-        )
     return faults
-
-
-def _velocity_faults(v: Floats, grid: tuple[int, ...]) -> list[str]:
-    good = v.ndim in (3, 4) and v.shape[-3:-1] == grid and v.shape[-1] in (2, 3)
-    if good and v.size:
-        return []
-    j, i = grid
-    hint = ""
-    if v.ndim in (3, 4) and v.shape[-3:-1] == grid[::-1] and i != j:
-        hint = ". The two axes look swapped: arrays are (j, i), try np.swapaxes"
-    elif v.ndim in (3, 4) and v.shape[-2:] == grid:
-        hint = ". The components look first: try np.moveaxis(velocity, 0, -1)"
-    return [
-        f"velocity has shape {v.shape}; expected ({j}, {i}, 3) for a steady field or "
-        f"(T, {j}, {i}, 3) for one that varies in time, with points {(*grid, 3)}{hint}"
-    ]
 
 
 def time_faults(t: Floats | None, count: int) -> list[str]:
@@ -160,10 +162,7 @@ def time_faults(t: Floats | None, count: int) -> list[str]:
 
 
 def range_faults(p: Floats, v: Floats, ok: Bools) -> list[str]:
-    """Return faults in the size of positions and velocities of the nodes that are valid.
-
-    Velocities of the others are NaN.
-    """
+    """Return faults in the size of positions, and of velocities, NaN where not valid."""
     faults = []
     of_nodes = largest(p) if ok.all() else largest(p, ok[..., None])
     for name, most, ends in (("points", of_nodes, LENGTHS), ("velocity", largest(v), MAGNITUDES)):
@@ -228,10 +227,7 @@ def finite_nodes(a: Floats) -> Bools:
 
 
 def largest(a: Floats, where: Bools | bool = True) -> float:  # noqa: FBT001, FBT002
-    """Greatest size of the numbers in an array, and 0 where all are NaN.
-
-    Nothing is copied: a velocity may fill much of the memory.
-    """
+    """Greatest size of the numbers in an array, without a copy; 0 where all are NaN."""
     options: dict[str, Any] = {"axis": None, "initial": 0.0, "where": where}
     return float(max(-np.fmin.reduce(a, **options), np.fmax.reduce(a, **options)))
 
@@ -244,10 +240,7 @@ def three_components(a: Floats) -> Floats:
 
 
 def scalar_steps(values: Floats, grid: tuple[int, ...]) -> Floats:
-    """Copy a nodal array, (J, I) or (T, J, I), with an axis of time, and NaN for what is no number.
-
-    Nothing is known where a number is beyond :data:`MAGNITUDES`.
-    """
+    """Copy a nodal array, with an axis of time; what is beyond :data:`MAGNITUDES` is NaN."""
     result = values.reshape(-1, *grid).copy("C")
     if largest(result) > MAGNITUDES[1]:
         result[np.abs(result) > MAGNITUDES[1]] = np.nan

@@ -24,17 +24,7 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
     """Show the flow texture of a plotter in the notebook, from the plotter's own camera.
 
     Called by ``plotter.show``; the options, its ``jupyter_kwargs``, are further arguments of the
-    :class:`flowtex.FlowWidget` that is returned.
-
-    Raises
-    ------
-    FieldError
-        When there is no flow texture on the plotter.
-
-    Warns
-    -----
-    UserWarning
-        When there is more on the plotter than the browser draws; the text names it.
+    :class:`flowtex.FlowWidget` that is returned. What the browser does not draw is warned of.
     """
     if not _asked_for():
         return _instead(plotter, screenshot, options)

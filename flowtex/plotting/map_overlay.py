@@ -74,18 +74,9 @@ OTHER, SIDE = "flowtexOther", "flowtexSide"
 
 
 class MapOverlay:
-    """What is drawn of the Earth with one flow.
+    """What is drawn of the Earth with one flow, whose field has a projection.
 
-    Parameters
-    ----------
-    actor
-        The flow's actor.
-    renderer
-        The PyVista renderer that shows it.
-    scene
-        What it shows; the field has a projection.
-    surface
-        Tells how many pixels there are for one of the settings'.
+    The ``surface`` tells how many pixels there are for one of the settings'.
     """
 
     def __init__(self, actor: pv.Actor, renderer: Any, scene: Scene, surface: FlowSurface) -> None:

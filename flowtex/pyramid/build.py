@@ -18,13 +18,13 @@ from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.pyramid.checks import check_about, is_scalar_name, sealed
 from flowtex.pyramid.layout import (
+    DIGESTS,
     FLOW,
     MOST_HELD,
     VALUES,
     Part,
     about_source,
-    attributes_of,
-    create_level,
+    described,
     parts_of,
     tiles_of,
 )
@@ -37,9 +37,11 @@ from flowtex.pyramid.places import (
     PyramidError,
     check_room,
     is_store,
+    listed,
     place_text,
     plain_faults,
     store_at,
+    sync,
 )
 from flowtex.pyramid.samples import SAMPLES, create_samples, ranges_of
 from flowtex.pyramid.source import Source, source_of
@@ -174,7 +176,7 @@ def build(
         raise FieldError(msg)
     place = place_text(store)
     with plain_faults():
-        check_room(place, _names(store_at(place, read_only=False)))
+        check_room(place, listed(store_at(place, read_only=False).list_dir))
     given = source_of(source, **options)
     about = about_source(given, parameter, given.chosen_lines(lines))
     wrong = [name for name in about["scalars"] if not is_scalar_name(name)]
@@ -187,7 +189,9 @@ def build(
         group, arrays, about, new = _prepared(place, about, given, fresh=fresh)
         run, depth = _Run(group, arrays, about, lease, known, progress), about["depth"]
         if not new:
-            _look_through(run, workers)
+            # What is corrupt of what is there goes, and what lacks a part of it.
+            begun = sorted({unit for name in run.arrays for unit in _begun(run, name)}, key=repr)
+            run.work(workers, mend, begun, "Checking what is there", TILE_BYTES, new=False)
         _write_finest(run, given, workers if given.travels else threads)
         for level in range(1, depth + 1):
             parts = _missing_parts(run, level, level_shape(given.shape, level))
@@ -265,7 +269,7 @@ def _prepared(
         _remove(store)
     there = zarr.open_group(store, mode="r").attrs["flowtex"] if is_store(place) else None
     if there is None:
-        about = {**about, "ranges": source.ranges or {}}
+        about = {**about, "ranges": source.ranges()}
     else:
         there = check_about(there, place)
         other = [name for name in IDENTITY if there.get(name) != about[name]]
@@ -281,45 +285,26 @@ def _prepared(
 
 
 def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
-    """Write what tells of the pyramid and its arrays, and return the axes of these by name.
-
-    All of it follows from ``about``.
-    """
+    """Write what follows from ``about``, and return the axes of the arrays by name."""
     zarr = import_extra("zarr", "store")
-    described = zarr.storage.MemoryStore()
-    group = zarr.group(described, zarr_format=3, attributes=attributes_of(about))
-    shape = (about["nodes"][0], about["nodes"][1])
-    for level in range(about["depth"] + 1):
-        create_level(group, level, level_shape(shape, level), about)
+    group = described(about)
     if not about["ranges"]:
         create_samples(group, about)
 
     async def copy() -> None:
         kind = zarr.core.buffer.default_buffer_prototype()
         # That of the group comes first: by it others know that the place is taken.
-        for name in sorted([name async for name in described.list()], key=lambda n: n.count("/")):
-            await store.set(name, await described.get(name, kind))
+        for name in sorted([name async for name in group.store.list()], key=lambda n: n.count("/")):
+            await store.set(name, await group.store.get(name, kind))
 
-    zarr.core.sync.sync(copy())
+    sync(copy())
     arrays = (array for _, array in group.members(max_depth=None) if isinstance(array, zarr.Array))
     return {array.path: array.metadata.dimension_names for array in arrays}
 
 
-def _names(store: Any) -> list[str]:
-    """Return the names of what lies at a place."""
-    sync = import_extra("zarr.core.sync", "store").sync
-
-    async def listed() -> list[str]:
-        return [name async for name in store.list_dir("")]
-
-    names: list[str] = sync(listed())
-    return names
-
-
 def _remove(store: Any) -> None:
     """Remove a pyramid, what was made of a level before that; others know it to the end."""
-    sync = import_extra("zarr.core.sync", "store").sync
-    levels = sorted(filter(str.isdecimal, _names(store)), key=int, reverse=True)
+    levels = sorted(filter(str.isdecimal, listed(store.list_dir)), key=int, reverse=True)
     for name in (*levels, SAMPLES):
         sync(store.delete_dir(name))
     sync(store.delete(DOCUMENT))
@@ -351,16 +336,11 @@ class _Run:
 
     def there(self, name: str) -> set[tuple[int, ...]]:
         """Return the numbers of the shards of an array that are in the store."""
-        from zarr.core.sync import sync
-
         array = self.group[name]
         prefix = f"{array.path}/c/"
-
-        async def keys() -> list[str]:
-            return [key async for key in array.store.list_prefix(prefix)]
-
         # A file that is being written is no shard yet.
-        numbers = (key.removeprefix(prefix).split("/") for key in sync(keys()))
+        keys = listed(array.store.list_prefix, prefix)
+        numbers = (key.removeprefix(prefix).split("/") for key in keys)
         return {tuple(map(int, some)) for some in numbers if all(map(str.isdecimal, some))}
 
     def work(
@@ -402,12 +382,6 @@ class _Run:
             raise PyramidError(msg) from first
 
 
-def _look_through(run: _Run, workers: Threads) -> None:
-    """Remove what is corrupt of what is there, and what lacks a part of it."""
-    units = sorted({unit for name in run.arrays for unit in _begun(run, name)}, key=repr)
-    run.work(workers, mend, units, "Checking what is there", TILE_BYTES, new=False)
-
-
 def _begun(run: _Run, name: str) -> Iterator[Part | TileTask]:
     """Give the parts, or the tiles at a step, of which an array has an object."""
     axes, (top, _, kind) = run.arrays[name], name.partition("/")
@@ -425,22 +399,26 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
     there, parts = _parts_there(run, 0), _missing_parts(run, 0, source.shape)
     if parts and run.about.get("levels_done"):
         run.tell(levels_done=False)
-    first, later = [p for p in parts if p.step == 0], [p for p in parts if p.step > 0]
-    run.work(workers, make_finest, first, "Level 0", PART_BYTES, source)
+    begin, later = [p for p in parts if p.step == 0], [p for p in parts if p.step > 0]
+    run.work(workers, make_finest, begin, "Level 0", PART_BYTES, source)
     if not run.source or run.source != run.about["source"]:
         text = "Comparing with the source"
         run.work(workers, compare_finest, there, text, PART_BYTES, source, new=False)
         run.tell(source=run.source)
     run.work(workers, make_finest, later, "Level 0", PART_BYTES, source)
     if run.about["axes"]:
-        _write_axes(run, source)
+        first = np.array([0])
+        for level in range(run.about["depth"] + 1):
+            rows, columns = (level_lines(n, level) for n in source.shape)
+            run.group[f"{level}/x"][:] = source.points(first, columns)[0, :, 0]
+            run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
     if source.identity() != run.source:
         run.tell(source="")
         msg = f"the source of {run.place} has changed while it was read; build again"
         raise ChangedError(msg)
     levels = Levels(run.place)
     if not run.about["ranges"]:
-        ranges = ranges_of(levels.samples(), run.about)
+        ranges = ranges_of(levels.whole(SAMPLES), run.about)
         if not ranges:
             msg = (
                 f"none of the {math.prod(source.shape):,} nodes has data; check the variables that "
@@ -448,7 +426,7 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
             )
             raise FieldError(msg)
         run.tell(ranges=ranges)
-    fingerprint = digest(levels.digests(), words=run.about["times"]).hex()
+    fingerprint = digest(levels.whole(f"0/{DIGESTS}"), words=run.about["times"]).hex()
     if run.about["fingerprint"] not in ("", fingerprint):
         msg = (
             f"{run.place} was built from an earlier state of the field; build with fresh=True to "
@@ -456,14 +434,6 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
         )
         raise ChangedError(msg)
     run.tell(fingerprint=fingerprint)
-
-
-def _write_axes(run: _Run, source: Source) -> None:
-    first = np.array([0])
-    for level in range(run.about["depth"] + 1):
-        rows, columns = (level_lines(n, level) for n in source.shape)
-        run.group[f"{level}/x"][:] = source.points(first, columns)[0, :, 0]
-        run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
 
 
 def _parts_there(run: _Run, level: int) -> list[Part]:

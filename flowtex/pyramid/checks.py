@@ -16,8 +16,9 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import digest
+from flowtex.field.steps import Nodes
 from flowtex.pyramid.places import FORMAT, DamageError, PyramidError
-from flowtex.tiles.pyramid import Nodes, level_shape
+from flowtex.tiles.pyramid import level_shape
 
 #: Nodes along an axis, steps, levels, characters of a text, and scalars, at most.
 MOST_NODES, MOST_STEPS, MOST_LEVELS, MOST_LETTERS, MOST_SCALARS = 10**7, 10**6, 40, 10_000, 1000
@@ -121,13 +122,7 @@ _ABOUT: dict[str, Check] = {
 
 
 def check_about(about: Any, place: str) -> dict[str, Any]:
-    """Return what is told of a pyramid, checked.
-
-    Raises
-    ------
-    PyramidError
-        When it cannot be read, or is not as it was written.
-    """
+    """Return what is told of a pyramid, if it is as it was written."""
     told = about.get("format") if isinstance(about, dict) else None
     if told != FORMAT:
         msg = (

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,12 +15,13 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Floats, Floats32
 from flowtex.field import FlowField
 from flowtex.field.steps import typical_steps
-from flowtex.pyramid.layout import FILE_BYTES, FILE_CHUNK, FLOW, SURFACE, VALUES
+from flowtex.pyramid.layout import FILE_BYTES, FILE_CHUNK, FLOW, SURFACE, VALUES, value_names
 from flowtex.pyramid.places import PyramidError
+from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl import ClientData, Colours, can_trace, single, tile_parts
 from flowtex.rendering.webgl.protocol import Parts, parts_file
 from flowtex.textures import TextureSet
-from flowtex.tiles import Pyramid, TileKey, widened
+from flowtex.tiles import TileKey, widened
 from flowtex.trace import SliceStore
 
 #: What of the slices is the same in all tiles, and told by the page.
@@ -32,27 +32,24 @@ VALUE_SHARE = 2.0**-17
 RATE_STEPS = 512
 
 
-def write_tile(here: Any, pyramid: Pyramid, key: TileKey, steps: Sequence[int], of: str) -> None:
-    """Write what a browser is handed of a tile at some times into the group of its level.
-
-    ``of`` tells of which field it is. That of the first step has the surface as well.
-    """
+def write_tile(here: Any, pyramid: StoredPyramid, key: TileKey, steps: Sequence[int]) -> None:
+    """Write what a browser is handed of a tile at some times; at the first its surface too."""
+    of = pyramid.about["fingerprint"]
     textures = _textures(pyramid, key)
     data, at = None, key[1:]
     if textures is not None:
-        data = ClientData(textures, _colours(pyramid, textures.geometry.field))
+        colours = _colours(pyramid, textures.geometry.field)
         # A page of a store may have some of its steps, which pathlines lead through.
-        data = replace(data, traces=textures.store.streamlines)
+        data = ClientData(textures, colours, traces=textures.store.streamlines)
     if 0 in steps and key.level < pyramid.depth:  # a page has the surface of the root
         _write(here[SURFACE], at, of, _surface(pyramid, key, data))
     prefix = f"tile/{key.level}/{key.row}/{key.column}"
     for step in steps:
         parts: Parts = {}
         if data is not None:
-            for number, values in enumerate(_values(pyramid, data, step)):
-                if values is not None:
-                    file = {f"{prefix}/scalars/{step}/{number}": values}
-                    _write(here[VALUES], (step, *at, number), of, file)
+            for number, values in _values(pyramid, data, step).items():
+                file = {f"{prefix}/scalars/{step}/{number}": values}
+                _write(here[VALUES], (step, *at, number), of, file)
             named = data.step(step).items()
             flow = {k: v for k, v in named if not k.startswith("scalars/")}
             parts = {
@@ -64,7 +61,7 @@ def write_tile(here: Any, pyramid: Pyramid, key: TileKey, steps: Sequence[int], 
         _write(here[FLOW], (step, *at), of, parts)
 
 
-def _textures(pyramid: Pyramid, key: TileKey) -> TextureSet | None:
+def _textures(pyramid: StoredPyramid, key: TileKey) -> TextureSet | None:
     """Return the textures of a tile, of which those that a browser traces are not traced here."""
     if key.level == pyramid.depth:
         store = SliceStore(pyramid.root, parameter=pyramid.parameter, lines=pyramid.lines)
@@ -89,7 +86,7 @@ def _write(array: Any, at: Sequence[int], of: str, parts: Parts) -> None:
     array[(*at, slice(0, size))] = np.pad(file, (0, size - len(file)))
 
 
-def _surface(pyramid: Pyramid, key: TileKey, data: ClientData | None) -> Parts:
+def _surface(pyramid: StoredPyramid, key: TileKey, data: ClientData | None) -> Parts:
     """Return the parts of a tile that are the same at all times."""
     parts = tile_parts(key, data)
     if data is not None:
@@ -98,31 +95,28 @@ def _surface(pyramid: Pyramid, key: TileKey, data: ClientData | None) -> Parts:
             "geometry": header["geometry"],
             "slices": {k: v for k, v in header["slices"].items() if k not in OF_ALL_TILES},
             # By these the errors of the colours are measured.
-            "ranges": {
-                choice["name"]: [choice["low"], choice["high"]] for choice in _choices(pyramid)
-            },
+            "ranges": _ranges(pyramid),
         }
         parts[next(iter(parts))] = np.frombuffer(json.dumps(told).encode(), np.uint8)
     return parts
 
 
-def _values(pyramid: Pyramid, data: ClientData, step: int) -> list[Floats32 | None]:
+def _values(pyramid: StoredPyramid, data: ClientData, step: int) -> dict[int, Floats32]:
     """Return the values that a tile is coloured by, rounded to what no colour shows, at a time."""
-    result: list[Floats32 | None] = []
+    result: dict[int, Floats32] = {}
     rows, columns = data.textures.grid.drawn
-    for name in _names(data.field):
+    for number, name in enumerate(value_names(pyramid.about)):
         steps = _steps_of(data.field, name)
         # The flow tells the speed.
         is_derived = data.traced and name not in data.field.scalars
         if is_derived or step >= len(steps):
-            result.append(None)
             continue
         values: Floats = np.asarray(steps[step])[rows, columns]
         low, high = pyramid.ranges.get((name, True), (0.0, 0.0))
         if 0 < (unit := 2 * VALUE_SHARE * (high - low)) < np.inf:
             unit = 2.0 ** np.floor(np.log2(unit))
             values = np.rint(values / unit) * unit
-        result.append(single(values))
+        result[number] = single(values)
     return result
 
 
@@ -134,27 +128,19 @@ def _shortened(flow: AnyArray) -> AnyArray:
     return np.asarray(result, "<f2")
 
 
-def _colours(pyramid: Pyramid, field: FlowField) -> Colours:
+def _colours(pyramid: StoredPyramid, field: FlowField) -> Colours:
     """Return colours by the speed, with all that a person may choose in its place."""
-    choices = _choices(pyramid)
-    first, *others = (_steps_of(field, choice["name"]) for choice in choices)
-    return Colours(
-        name=choices[0]["name"],
-        values=first,
-        low=choices[0]["low"],
-        high=choices[0]["high"],
-        choices=choices,
-        others=tuple(enumerate(others, start=1)),
-    )
+    ranges = _ranges(pyramid)
+    choices = tuple({"name": k, "low": low, "high": high} for k, (low, high) in ranges.items())
+    first, *others = (_steps_of(field, name) for name in ranges)
+    low, high = ranges["speed"]
+    numbered = tuple(enumerate(others, start=1))
+    return Colours("speed", values=first, low=low, high=high, choices=choices, others=numbered)
 
 
-def _choices(pyramid: Pyramid) -> tuple[dict[str, Any], ...]:
-    ranges = {name: widened(pyramid.ranges.get((name, False))) for name in _names(pyramid.root)}
-    return tuple({"name": name, "low": low, "high": high} for name, (low, high) in ranges.items())
-
-
-def _names(field: FlowField) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(("speed", *field.scalars)))
+def _ranges(pyramid: StoredPyramid) -> dict[str, tuple[float, float]]:
+    names = value_names(pyramid.about)
+    return {name: widened(pyramid.ranges.get((name, False))) for name in names}
 
 
 def _steps_of(field: FlowField, name: str) -> Any:

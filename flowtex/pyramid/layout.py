@@ -30,8 +30,8 @@ which field it is.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from datetime import datetime
+from collections.abc import Iterable, Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,11 +41,12 @@ from flowtex._util.extras import import_extra
 from flowtex._version import __version__
 from flowtex.earth import Projection
 from flowtex.field import FlowField
+from flowtex.field.dates import date_of, written_date
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.places import FORMAT
 from flowtex.pyramid.source import Source
 from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS
-from flowtex.tiles.pyramid import root_level
+from flowtex.tiles.pyramid import level_shape, root_level
 
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.
@@ -117,7 +118,7 @@ def value_names(about: Mapping[str, Any]) -> tuple[str, ...]:
 
 def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
     """Return what is told of a field and its pyramid, as it is kept in the store."""
-    field, projection = source.field, source.field.projection
+    field = source.field
     depth = root_level(source.shape)
     corner = source.points(np.array([0]), np.array([0]))
     return {
@@ -127,10 +128,8 @@ def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
         "length_unit": field.length_unit,
         "time_unit": field.time_unit,
         "times": field.times.tolist(),
-        "start": _date_words(field.start),
-        "projection": None
-        if projection is None
-        else [projection.name, list(projection.center), projection.half_height],
+        "start": written_date(field.start),
+        "projection": field.projection and field.projection.written,
         "nodes": list(source.shape),
         "periodic": list(field.periodic),
         "periods": [some.tolist() for some in source.periods],
@@ -164,94 +163,74 @@ def attributes_of(about: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def create_level(group: Any, level: int, shape: tuple[int, int], about: Mapping[str, Any]) -> None:
-    """Describe the arrays of a level."""
-    here = group.require_group(str(level))
-    steps, components = len(about["times"]), about["components"]
-    chunk = (TILE_CELLS, TILE_CELLS)
-    shard = (SHARD_CHUNKS[0] * TILE_CELLS, SHARD_CHUNKS[1] * TILE_CELLS)
+def described(about: Mapping[str, Any], levels: Iterable[int] | None = None) -> Any:
+    """Return a group in memory with the arrays of levels, by default all, as they are written."""
+    zarr = import_extra("zarr", "store")
+    group = zarr.group(zarr.storage.MemoryStore(), attributes=attributes_of(about), zarr_format=3)
+    for level in range(about["depth"] + 1) if levels is None else levels:
+        _create_level(group, level, about)
+    return group
 
-    def nodal(where: Any, name: str, steps: int, last: tuple[int, ...], kind: str) -> None:
-        before = (steps,) if steps else ()
-        ones = (1,) * len(before)
-        names = [*["time"] * len(ones), "j", "i", *["component"] * len(last)]
-        create_array(
-            where,
-            name,
-            (*before, *shape, *last),
-            (*ones, *chunk, *last),
-            (*ones, *shard, *last),
-            kind,
-            names,
-            nodal=True,
-        )
 
-    nodal(here, "velocity", steps, (components,), "float32")
-    nodal(here, "valid", 0, (), "bool")
+def _create_level(group: Any, level: int, about: Mapping[str, Any]) -> None:
+    shape = level_shape((about["nodes"][0], about["nodes"][1]), level)
+    here, steps = group.require_group(str(level)), len(about["times"])
+    nodes = {
+        axis: (count, TILE_CELLS, many * TILE_CELLS)
+        for axis, count, many in zip("ji", shape, SHARD_CHUNKS, strict=True)
+    }
+    vectors = {**nodes, "component": (about["components"],) * 3}
+    nodal = partial(create_array, nodal=True)
+    nodal(here, "velocity", "float32", {"time": (steps, 1, 1), **vectors})
+    nodal(here, "valid", "bool", nodes)
     if about["has_position"]:
-        nodal(here, "has_position", 0, (), "bool")
+        nodal(here, "has_position", "bool", nodes)
     if about["axes"]:
-        for name, count, axis in (("x", shape[1], "i"), ("y", shape[0], "j")):
-            create_array(here, name, (count,), (count,), None, "float64", [axis])
+        for name, axis, count in (("x", "i", shape[1]), ("y", "j", shape[0])):
+            create_array(here, name, "float64", {axis: (count, count)})
     else:
-        nodal(here, "points", 0, (components,), "float64")
-    create_array(
-        here,
-        DIGESTS,
-        (steps, *parts_along(shape), DIGEST_BYTES),
-        (1, 1, 1, DIGEST_BYTES),
-        None,
-        "uint8",
-        ["time", "part_row", "part_column", "digest_byte"],
-    )
+        nodal(here, "points", "float64", vectors)
+    parts = zip(("time", "part_row", "part_column"), (steps, *parts_along(shape)), strict=True)
+    digests = {**{axis: (n, 1) for axis, n in parts}, "digest_byte": (DIGEST_BYTES, DIGEST_BYTES)}
+    create_array(here, DIGESTS, "uint8", digests)
     for name, count in about["scalars"].items():
-        nodal(here.require_group("scalars"), name, count, (), "float32")
+        series = {"time": (count, 1, 1), **nodes}
+        nodal(here.require_group("scalars"), name, "float32", series)
     tiles = dict(zip(("row", "column"), tiles_of(level, shape, about), strict=True))
     at_times = {"time": steps, **tiles}
     files = {FLOW: at_times, VALUES: {**at_times, "scalar": len(value_names(about))}}
     if level < about["depth"]:  # a page holds that of the root
         files[SURFACE] = tiles
     for name, axes in files.items():
-        ones = (1,) * len(axes)
-        create_array(
-            here,
-            name,
-            (*axes.values(), FILE_BYTES),
-            (*ones, FILE_CHUNK),
-            (*ones, FILE_BYTES),
-            "uint8",
-            [*axes, "byte"],
-        )
+        one_each = {axis: (n, 1, 1) for axis, n in axes.items()}
+        byte = (FILE_BYTES, FILE_CHUNK, FILE_BYTES)
+        create_array(here, name, "uint8", {**one_each, "byte": byte})
 
 
 def create_array(
-    where: Any,
-    name: str,
-    shape: tuple[int, ...],
-    chunks: tuple[int, ...],
-    shards: tuple[int, ...] | None,
-    kind: str,
-    names: list[str],
-    *,
-    nodal: bool = False,
+    where: Any, name: str, kind: str, axes: Mapping[str, tuple[int, ...]], *, nodal: bool = False
 ) -> None:
-    """Describe an array; of ``nodal`` ones bits of equal significance lie side by side."""
+    """Describe an array by the size of each axis, those of a chunk and, if it has such, a shard.
+
+    Of ``nodal`` ones bits of equal significance lie side by side.
+    """
     codecs = import_extra("zarr.codecs", "store")
     packer = codecs.GzipCodec(level=GZIP_LEVEL)
     if nodal:
         packer = codecs.BloscCodec(cname="zstd", clevel=ZSTD_LEVEL, shuffle="bitshuffle")
-    last = len(shape) - 1
-    by_component = nodal and names[last] == "component"
+    shape, chunks, *shards = zip(*axes.values(), strict=True)
+    last = len(axes) - 1
+    by_component = nodal and "component" in axes
     where.create_array(
         name,
         shape=shape,
         chunks=chunks,
-        shards=shards,
+        shards=shards[0] if shards else None,
         dtype=kind,
         filters=[codecs.TransposeCodec(order=(last, *range(last)))] if by_component else [],
         compressors=[packer, codecs.Crc32cCodec()],
         fill_value=0,
-        dimension_names=names,
+        dimension_names=list(axes),
     )
 
 
@@ -275,7 +254,6 @@ def to_write(group: Any, name: str) -> Any:
 
 def empty_field(about: Mapping[str, Any]) -> FlowField:
     """Return a field that has all but its nodes."""
-    projection = about["projection"]
     return FlowField(
         points=np.zeros((1, 1, 3)),
         velocity=np.zeros((1, 1, 1, 3)),
@@ -287,26 +265,6 @@ def empty_field(about: Mapping[str, Any]) -> FlowField:
         time_unit=about["time_unit"],
         units=about["units"],
         long_names=about["long_names"],
-        start=_date_of(about["start"]),
-        projection=None
-        if projection is None
-        else Projection(
-            projection[0], (projection[1][0], projection[1][1]), half_height=projection[2]
-        ),
+        start=date_of(about["start"]),
+        projection=Projection.of(about["projection"]),
     )
-
-
-def _date_words(start: Any) -> list[Any] | None:
-    """Return a date as numbers, and its calendar where it is not that of ``datetime``."""
-    if start is None:
-        return None
-    parts = ("year", "month", "day", "hour", "minute", "second", "microsecond")
-    return [[int(getattr(start, part)) for part in parts], getattr(start, "calendar", "")]
-
-
-def _date_of(words: list[Any] | None) -> Any:
-    if words is None:
-        return None
-    if not words[1]:
-        return datetime(*words[0])
-    return import_extra("cftime", "xarray").datetime(*words[0], calendar=words[1])

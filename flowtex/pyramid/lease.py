@@ -18,26 +18,16 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-from flowtex.pyramid.places import LEASE, PyramidError, store_at
+from flowtex.pyramid.places import LEASE, PyramidError, store_at, sync
 
 #: Seconds between renewals, and after which a lease that was not renewed is stale.
 RENEWAL_S, STALE_S = 20.0, 120.0
 
 
 class Lease:
-    """The right to build a store, held inside a ``with``.
+    """The right to build a store, held inside a ``with``; a PyramidError when another holds it.
 
-    Parameters
-    ----------
-    place
-        A folder or a URL.
-    clock
-        The time in seconds, the same on all machines but for some seconds.
-
-    Raises
-    ------
-    PyramidError
-        On entering when somebody else holds it.
+    The ``clock`` has to be the same on all machines but for some seconds.
     """
 
     def __init__(self, place: str, clock: Callable[[], float] = time.time) -> None:
@@ -54,7 +44,7 @@ class Lease:
         if there and not self._is_stale(there):
             self._refuse(there)
         if there:
-            self._sync(self._store.delete(LEASE))
+            sync(self._store.delete(LEASE))
         self._write(create=True)
         there = self._read()
         if there.get("id") != self._own["id"]:
@@ -69,7 +59,7 @@ class Lease:
         if not self._holder:
             with suppress(Exception):  # of the work inside there may be an error already
                 if self._read().get("id") == self._own["id"]:
-                    self._sync(self._store.delete(LEASE))
+                    sync(self._store.delete(LEASE))
 
     def check(self) -> None:
         """Raise a PyramidError where somebody else has taken the lease over."""
@@ -110,7 +100,7 @@ class Lease:
         """Return what the lease tells; nothing where there is none."""
         from zarr.core.buffer import default_buffer_prototype
 
-        found = self._sync(self._store.get(LEASE, default_buffer_prototype()))
+        found = sync(self._store.get(LEASE, default_buffer_prototype()))
         if found is None:
             return {}
         with suppress(ValueError, KeyError, TypeError):
@@ -127,17 +117,11 @@ class Lease:
         data = default_buffer_prototype().buffer.from_bytes(text)
         try:
             set_ = self._store.set_if_not_exists if create else self._store.set
-            self._sync(set_(LEASE, data))
+            sync(set_(LEASE, data))
         except (OSError, NotImplementedError):
             # Not all storage has links, or writes on a condition; what is read then decides.
-            self._sync(self._store.set(LEASE, data))
+            sync(self._store.set(LEASE, data))
         self._renewed = now
-
-    @staticmethod
-    def _sync(doing: Any) -> Any:
-        from zarr.core.sync import sync
-
-        return sync(doing)
 
 
 def _words(there: dict[str, Any]) -> str:

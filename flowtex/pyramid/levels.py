@@ -16,7 +16,8 @@ from flowtex._util.blocks import even_runs
 from flowtex._util.extras import import_extra
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import check
-from flowtex.field.steps import LazySteps
+from flowtex.field import FlowField
+from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.checks import check_about, part_digest
 from flowtex.pyramid.layout import (
     DIGESTS,
@@ -25,14 +26,15 @@ from flowtex.pyramid.layout import (
     SURFACE,
     VALUES,
     Part,
-    create_level,
+    described,
+    empty_field,
     value_names,
 )
-from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at
+from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at, sync
 from flowtex.pyramid.samples import SAMPLES, create_samples
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.tiles import TileKey
-from flowtex.tiles.pyramid import Nodes, level_shape
+from flowtex.tiles.pyramid import level_shape
 
 #: What of an array's metadata decides on the meaning of its bytes.
 FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_value", "codecs")
@@ -59,23 +61,7 @@ class _Piece(NamedTuple):
 
 
 class Levels:
-    """The levels of a pyramid in a store.
-
-    Parameters
-    ----------
-    place
-        A folder or a URL.
-
-    Attributes
-    ----------
-    about
-        What is told of the field and its pyramid.
-
-    Raises
-    ------
-    PyramidError
-        When there is no pyramid, or one of another version.
-    """
+    """The levels of a pyramid in a store; ``about`` is what is told of it."""
 
     def __init__(self, place: str | Path) -> None:
         self.place = place_text(place)
@@ -102,15 +88,13 @@ class Levels:
 
     def _format(self, name: str) -> dict[str, Any]:
         """Return what an array has to be like: as one that is made for the same pyramid."""
-        zarr, top = import_extra("zarr", "store"), name.partition("/")[0]
+        top = name.partition("/")[0]
         with self._lock:
             if top not in self._expected:
-                group = zarr.group(store=zarr.storage.MemoryStore())
+                levels = [] if top == SAMPLES else [int(top)]
+                self._expected[top] = described(self.about, levels)
                 if top == SAMPLES:
-                    create_samples(group, self.about)
-                else:
-                    create_level(group, int(top), self.shape(int(top)), self.about)
-                self._expected[top] = group
+                    create_samples(self._expected[top], self.about)
             group = self._expected[top]
             if name not in group:
                 msg = f"{self.place} has no {name}; build it again"
@@ -121,21 +105,15 @@ class Levels:
         """Return the number of nodes (J, I) of a level."""
         return level_shape((self.about["nodes"][0], self.about["nodes"][1]), level)
 
-    def digests(self, level: int = 0) -> AnyArray:
-        """Return the digests of the parts of a level, (time, part row, part column, 16)."""
-        (digests,) = self._read(_Piece(f"{level}/{DIGESTS}", (), f"{level}/{DIGESTS}"))
-        return digests
+    @property
+    def template(self) -> FlowField:
+        """A field that has all but its nodes."""
+        return empty_field(self.about)
 
-    def digest(self, part: Part) -> bytes:
-        """Return the digest of a part."""
-        level, *at = part
-        (told,) = self._read(_Piece(f"{level}/{DIGESTS}", tuple(at), f"{level}/{DIGESTS}"))
-        return told.tobytes()
-
-    def samples(self) -> AnyArray:
-        """Return the samples of the values at level 0."""
-        (samples,) = self._read(_Piece(SAMPLES, (), SAMPLES))
-        return samples
+    def whole(self, name: str, at: tuple[int, ...] = ()) -> AnyArray:
+        """Return an array, or what it has at some numbers of its first axes."""
+        (values,) = self._read(_Piece(name, at, name))
+        return values
 
     def valid(self, level: int, rows: Indices, columns: Indices) -> Bools:
         """Return which nodes are valid, (J, I)."""
@@ -162,8 +140,8 @@ class Levels:
             self._points([known[k] for k in self._places()], rows, columns) if known else velocity,
             known.get("valid", velocity).astype(bool),
             velocity,
-            known["has_position"].astype(bool) if "has_position" in known else None,
             dict(zip(scalars, rest[: len(scalars)], strict=True)),
+            known["has_position"].astype(bool) if "has_position" in known else None,
         )
         if part_digest(nodes, self.about, step) != told.tobytes():
             msg = f"velocity {words} of {self.place} is not what was written there"
@@ -244,8 +222,8 @@ class Levels:
             self._points([known[name] for name in self._places()], rows, columns),
             known["valid"].astype(bool),
             velocity,
-            known["has_position"].astype(bool) if about["has_position"] else None,
             {name.removeprefix("scalars/"): values for name, values in steps.items()},
+            known["has_position"].astype(bool) if about["has_position"] else None,
         )
 
     def _later(
@@ -384,7 +362,6 @@ def _format_of(array: Any) -> dict[str, Any]:
 
 def _wait(reading: Coroutine[Any, Any, Any]) -> Any:
     """Return what is read; it is given up where the work around it was cancelled."""
-    sync = import_extra("zarr.core.sync", "store").sync
 
     async def watched() -> Any:
         task = asyncio.ensure_future(reading)

@@ -24,7 +24,7 @@ from flowtex.field import FlowField
 from flowtex.field.datasets.pairs import find_pairs
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
-from flowtex.field.steps import LazySteps
+from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.places import (
     PyramidError,
     ReadFault,
@@ -35,7 +35,7 @@ from flowtex.pyramid.places import (
     store_at,
 )
 from flowtex.pyramid.source import RegionSource
-from flowtex.tiles.pyramid import ROOT_NODES, Nodes, level_lines, root_level
+from flowtex.tiles.pyramid import ROOT_NODES, level_lines, root_level
 
 #: Nodes up to which a dataset is opened as a whole.
 WHOLE_NODES = 2_000_000
@@ -72,10 +72,7 @@ def _json(path: Path) -> dict[str, Any]:
 
 
 def levels_of_others(place: str, options: Mapping[str, Any]) -> OtherLevels | FlowField:
-    """Open a store that others wrote; one that is small, or on curved lines, is a whole field.
-
-    Options are those of :meth:`FlowField.from_xarray`.
-    """
+    """Open a store of others; one that is small, or on curved lines, is a whole field."""
     datasets = _datasets(place)
     named = {"name": Path(place).stem, **options}
     arrays = read_datasets(datasets[0], regions=True, **named)
@@ -136,15 +133,7 @@ def _level_names(told: Any) -> list[str]:
 
 
 class OtherLevels:
-    """The levels of a store of others, read as :class:`~flowtex.pyramid.levels.Levels` are.
-
-    Parameters
-    ----------
-    place
-        The store.
-    sources
-        Its levels, the finest first.
-    """
+    """The levels of a store of others, the finest first, read as those of ours are."""
 
     def __init__(self, place: str, sources: list[RegionSource]) -> None:
         self.place = place
@@ -206,7 +195,6 @@ class OtherLevels:
             points,
             valid,
             _steps(count, velocity),
-            None,
             {name: _steps(count, partial(scalar, name)) for name in finest.names},
         )
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
@@ -73,13 +73,7 @@ class ReadFault(OSError):
 
 
 def place_text(place: str | Path) -> str:
-    """Return the URL of a store, or the whole path of a local one.
-
-    Raises
-    ------
-    PyramidError
-        When it is no URL of object storage or of the web, or has a secret in it.
-    """
+    """Return the URL of a store, or the whole path of a local one; secrets are refused."""
     text = str(checked_path("store", place)) if not isinstance(place, str) else place
     if not _URL.match(text):
         checked_path("store", text)
@@ -115,10 +109,7 @@ def is_remote(place: str | Path) -> bool:
 
 
 def objects_at(place: str | Path, *, patient: bool = False) -> Any:
-    """Return the store of obstore's at a place; to read from it, it needs no listing.
-
-    A patient one asks for minutes where the other gives up: many workers tire a server.
-    """
+    """Return the store of obstore's at a place; a patient one asks a tired server for minutes."""
     text = place_text(place)
     objects = import_extra("obstore.store", "store")
     if not is_remote(text):
@@ -129,7 +120,7 @@ def objects_at(place: str | Path, *, patient: bool = False) -> Any:
             "connect_timeout": timedelta(seconds=CONNECT_S),
             "read_timeout": timedelta(seconds=SILENCE_S),
             "timeout": timedelta(seconds=LONGEST_S),
-        },
+        }
     }
     if not patient:
         options["retry_config"] = {
@@ -165,6 +156,21 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Any:
     return storage.ObjectStore(objects_at(text, patient=True))
 
 
+def sync(doing: Coroutine[Any, Any, Any]) -> Any:
+    """Return what a method of a store of Zarr's gives."""
+    return import_extra("zarr.core.sync", "store").sync(doing)
+
+
+def listed(names: Callable[[str], AsyncIterator[str]], prefix: str = "") -> list[str]:
+    """Return the names that a method of a store of Zarr's gives one after the other."""
+
+    async def gathered() -> list[str]:
+        return [name async for name in names(prefix)]
+
+    result: list[str] = sync(gathered())
+    return result
+
+
 def is_store(place: Any) -> bool:
     """Whether there is a pyramid at a place; without Zarr for a local one.
 
@@ -183,16 +189,13 @@ def is_store(place: Any) -> bool:
         return False
     text = place_text(place)
     try:
-        read = _remote_document if is_remote(text) else _local_document
-        return "flowtex" in json.loads(read(text))["attributes"]
+        is_url = is_remote(text)
+        told = _remote_document(text) if is_url else (Path(text) / DOCUMENT).read_bytes()
+        return "flowtex" in json.loads(told)["attributes"]
     except (OSError, ValueError, KeyError, TypeError) as error:
         if isinstance(error, PyramidError):
             raise
         return False
-
-
-def _local_document(text: str) -> bytes:
-    return (Path(text) / DOCUMENT).read_bytes()
 
 
 def _remote_document(text: str) -> bytes:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats
-from flowtex.field.steps import typical_steps
+from flowtex.field.steps import Nodes, typical_steps
 from flowtex.pyramid.layout import (
     SHARD_CHUNKS,
     TILE_CELLS,
@@ -24,7 +24,6 @@ from flowtex.pyramid.layout import (
     to_write,
 )
 from flowtex.tiles import ends_of
-from flowtex.tiles.pyramid import Nodes
 
 SAMPLES = "samples"
 #: Nodes of a sample of one quantity at one time.
@@ -35,15 +34,10 @@ def create_samples(group: Any, about: Mapping[str, Any]) -> None:
     """Describe the array of samples."""
     parts = parts_along((about["nodes"][0], about["nodes"][1]))
     size = (len(_quantities(about)), 2 + math.prod(_shape(about)))
-    create_array(
-        group,
-        SAMPLES,
-        (len(_steps(about)), *parts, *size),
-        (1, 1, 1, *size),
-        None,
-        "float64",
-        ["time", "row", "column", "quantity", "value"],
-    )
+    each = zip(("time", "row", "column"), (len(_steps(about)), *parts), strict=True)
+    whole = zip(("quantity", "value"), size, strict=True)
+    axes = {**{axis: (n, 1) for axis, n in each}, **{axis: (n, n) for axis, n in whole}}
+    create_array(group, SAMPLES, "float64", axes)
 
 
 def write_samples(group: Any, about: Mapping[str, Any], part: Part, nodes: Nodes) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -15,78 +14,58 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.cache import digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.datasets.detect import is_dataset
+from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.files import dataset_paths
 from flowtex.field.datasets.read import read_datasets
-from flowtex.field.datasets.regions import RegionNodes, Regions
+from flowtex.field.datasets.regions import Regions
 from flowtex.field.io.arrays import FieldArrays
-from flowtex.field.io.file_fields import errors_of, read_files
-from flowtex.field.steps import LazySteps
+from flowtex.field.io.files import errors_of, read_files
+from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.places import is_store
 from flowtex.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
 
 
-class Source(ABC):
+class Source:
     """Nodes that a pyramid is built from.
 
-    Attributes
-    ----------
-    field
-        What the field is called, its times and its map; only some sources have its nodes there.
-    shape
-        Number of nodes (J, I).
-    scalars
-        Number of time steps of each scalar, by name.
-    flat
-        Whether nodes and velocities lie in a plane of even height.
-    travels
-        Whether a worker elsewhere can read it.
+    ``field`` has what the field is called, its times and its map; only some sources have its nodes
+    there. ``shape`` is the number of nodes (J, I), ``scalars`` the number of time steps of each
+    scalar.
     """
 
     field: FlowField
     shape: tuple[int, int]
     scalars: dict[str, int]
+    #: Whether nodes and velocities lie in a plane of even height, and if two lines of coordinates
+    #: give all positions.
     flat: bool
+    rectilinear: bool
+    #: Whether a worker elsewhere can read it, and if its steps are read when they are needed.
     travels: bool
+    late: bool
+    #: Nodes whose position is known, (J, I); ``None`` for all.
+    has_position: Bools | None = None
 
-    @abstractmethod
     def points(self, rows: Any, columns: Any) -> Floats:
         """Return positions (J, I, 3) of some rows and columns, by slices or numbers."""
+        raise NotImplementedError
 
-    @abstractmethod
-    def nodes(
-        self, step: int, rows: slice, columns: slice, valid: Bools | None = None
-    ) -> RegionNodes:
+    def nodes(self, step: int, rows: slice, columns: slice, valid: Bools | None = None) -> Nodes:
         """Return what some nodes have at a time step; ``valid`` where it is known already."""
+        raise NotImplementedError
 
-    @abstractmethod
     def chosen_lines(self, lines: str) -> str:
         """Return what the textures are drawn along, as :func:`flowtex.trace.chosen_lines` does."""
+        return chosen_lines(self.field, lines)
 
     def identity(self) -> str:
         """Return a hash that changes when the source may have; empty where its values tell."""
         return ""
 
-    @property
-    def rectilinear(self) -> bool:
-        """Whether two lines of coordinates give all positions."""
-        return self.flat
-
-    @property
-    def has_position(self) -> Bools | None:
-        """Nodes whose position is known, (J, I); ``None`` for all."""
-        return None
-
-    @property
-    def ranges(self) -> dict[str, list[Any]] | None:
-        """Ends of scalars and of the speed, whole and robust; ``None`` where they are unknown."""
-        return None
-
-    @property
-    def late(self) -> bool:
-        """Whether the steps are read when they are needed."""
-        return len(self.field.times) > 1
+    def ranges(self) -> dict[str, list[Any]]:
+        """Return ends of scalars and of the speed, whole and robust, where they are known."""
+        return {}
 
     @cached_property
     def periods(self) -> tuple[Floats, Floats]:
@@ -108,44 +87,30 @@ class FieldSource(Source):
             raise FieldError(msg)
         self.field, self.shape = field, field.shape
         self.scalars = {name: len(steps) for name, steps in field.scalars.items()}
-        z = field.points[..., 2]
+        x, y, z = np.moveaxis(field.points, -1, 0)
         on_map = field.projection is not None and not field.projection.is_globe
+        self.late = isinstance(field.velocity, LazySteps)
         level = on_map if self.late else not np.any(field.velocity[..., 2])
         self.flat = bool((z == z[0, 0]).all()) and level
+        self.rectilinear = self.flat and bool((x == x[:1]).all() and (y == y[:, :1]).all())
+        known = field.has_position
+        self.has_position = None if known is None or known.all() else known
 
     def points(self, rows: Any, columns: Any) -> Floats:
         """Return positions of nodes."""
         return np.asarray(self.field.points[rows][:, columns])
 
-    def nodes(
-        self, step: int, rows: slice, columns: slice, valid: Bools | None = None
-    ) -> RegionNodes:
+    def nodes(self, step: int, rows: slice, columns: slice, valid: Bools | None = None) -> Nodes:
         """Return what nodes have."""
         del valid
         field, at = self.field, (rows, columns)
         scalars = {k: np.asarray(s[step])[at] for k, s in field.scalars.items() if step < len(s)}
         velocity = np.asarray(field.velocity[step])[at]
-        return RegionNodes(field.points[at], field.valid[at], velocity, scalars)
+        known = None if self.has_position is None else self.has_position[at]
+        return Nodes(field.points[at], field.valid[at], velocity, scalars, known)
 
-    def chosen_lines(self, lines: str) -> str:
-        """Return what the textures are drawn along."""
-        return chosen_lines(self.field, lines)
-
-    @property
-    def rectilinear(self) -> bool:
-        """Whether two lines of coordinates give all positions."""
-        x, y, _ = np.moveaxis(self.field.points, -1, 0)
-        return self.flat and bool((x == x[:1]).all() and (y == y[:, :1]).all())
-
-    @property
-    def has_position(self) -> Bools | None:
-        """Nodes whose position is known; ``None`` for all."""
-        known = self.field.has_position
-        return None if known is None or known.all() else known
-
-    @property
     def ranges(self) -> dict[str, list[Any]]:
-        """Ends of scalars and of the speed, the whole range and the robust one."""
+        """Return ends of scalars and of the speed."""
         field, some = self.field, self.field.typical
         values = {k: np.asarray(s)[:, field.valid] for k, s in some.scalars.items()}
         values.setdefault("speed", drawn_speeds(some, Pyramid(field).root))
@@ -154,20 +119,9 @@ class FieldSource(Source):
         }
         return {name: ends for name, ends in both.items() if None not in ends}
 
-    @property
-    def late(self) -> bool:
-        """Whether the steps are read when they are needed."""
-        return isinstance(self.field.velocity, LazySteps)
-
 
 class RegionSource(Source):
-    """A dataset of which each task reads a region, wherever it runs.
-
-    Attributes
-    ----------
-    files, choice
-        What it was opened from, and what was chosen of it; empty for a dataset that was given.
-    """
+    """A dataset of which each task reads a region; ``files`` and ``choice`` if it was opened."""
 
     travels = True
     files: Sequence[Path] = ()
@@ -178,6 +132,7 @@ class RegionSource(Source):
         self.regions, self.shape = regions, lines.shape
         self.scalars = dict.fromkeys(regions.names, len(words.times))
         self.flat = lines.projection is None or not lines.projection.is_globe
+        self.rectilinear, self.late = self.flat, len(words.times) > 1
         self.field = FlowField(
             points=np.zeros((1, 1, 3)),
             velocity=np.zeros((len(words.times), 1, 1, 3)),
@@ -197,9 +152,7 @@ class RegionSource(Source):
         """Return positions of nodes."""
         return self.regions.lines.points(rows, columns)
 
-    def nodes(
-        self, step: int, rows: slice, columns: slice, valid: Bools | None = None
-    ) -> RegionNodes:
+    def nodes(self, step: int, rows: slice, columns: slice, valid: Bools | None = None) -> Nodes:
         """Read what nodes have."""
         return self.regions.nodes(step, rows, columns, valid)
 
@@ -211,7 +164,7 @@ class RegionSource(Source):
         first = self.regions.nodes(0, rows, columns)
 
         def velocity(step: int) -> Floats:
-            return self.regions.nodes(step, rows, columns, first.valid).velocity
+            return np.asarray(self.regions.nodes(step, rows, columns, first.valid).velocity)
 
         some = FlowField(
             points=first.points,
@@ -236,10 +189,7 @@ class RegionSource(Source):
 
 
 def source_of(given: Any, **options: Any) -> Source:
-    """Return what a pyramid is built from: a field, a dataset of xarray's, or files.
-
-    Options are those of :meth:`FlowField.from_xarray` or :meth:`FlowField.from_file`.
-    """
+    """Return what a pyramid is built from: a field, a dataset, or files with such options."""
     if isinstance(given, (FlowField, Source)):
         if options:
             msg = f"{', '.join(options)} is for what a field is made of; leave it out"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -14,13 +13,14 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.field import WHOLE_SHAPE
-from flowtex.pyramid.layout import VELOCITY_BITS, empty_field
+from flowtex.field.steps import Nodes
+from flowtex.pyramid.layout import VELOCITY_BITS
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.others import OtherLevels, levels_of_others
 from flowtex.pyramid.places import PyramidError, is_store, place_text
 from flowtex.textures import TextureSet
-from flowtex.tiles import Pyramid, TileKey, have_pyramid
-from flowtex.tiles.pyramid import Nodes, averaged
+from flowtex.tiles import Pyramid, TileKey, attach_pyramid
+from flowtex.tiles.pyramid import averaged
 
 
 def open_store(store: str | Path, **options: Any) -> FlowField:
@@ -65,7 +65,7 @@ def open_store(store: str | Path, **options: Any) -> FlowField:
     """
     if not is_store(store):
         found = levels_of_others(place_text(store), options)
-        return found if isinstance(found, FlowField) else _field_of(found, found.template)
+        return found if isinstance(found, FlowField) else _field_of(found)
     if options:
         msg = f"{', '.join(options)} is for what a pyramid is built from; leave it out"
         raise FieldError(msg)
@@ -76,36 +76,29 @@ def open_store(store: str | Path, **options: Any) -> FlowField:
             "flowtex.pyramid.build again, which makes what is missing"
         )
         raise PyramidError(msg)
-    return _field_of(levels, empty_field(levels.about))
+    return _field_of(levels)
 
 
-def _field_of(levels: Levels | OtherLevels, template: FlowField) -> FlowField:
+def _field_of(levels: Levels | OtherLevels) -> FlowField:
     """Return the coarsest level as a field that has the others."""
-    root = _root(levels, template)
+    root = root_of(levels)
 
     def pyramid(field: FlowField, parameter: str, lines: str) -> Pyramid:
         return StoredPyramid(levels, field, parameter, lines)
 
-    have_pyramid(root, pyramid)
+    attach_pyramid(root, pyramid)
     root.__dict__[WHOLE_SHAPE] = tuple(levels.about["nodes"])
     return root
 
 
-def root_of(levels: Levels) -> FlowField:
+def root_of(levels: Levels | OtherLevels) -> FlowField:
     """Return the coarsest level as a field."""
-    return _root(levels, empty_field(levels.about))
-
-
-def _root(levels: Levels | OtherLevels, template: FlowField) -> FlowField:
-    pyramid = StoredPyramid(levels, template)
+    pyramid = StoredPyramid(levels, levels.template)
     return pyramid.at_level(pyramid.depth)
 
 
 class StoredPyramid(Pyramid):
-    """The levels of a pyramid in a store, whose ``field`` is the coarsest of them.
-
-    Tiles are traced in what the store has of their surroundings.
-    """
+    """The levels of a pyramid in a store, whose ``field`` is the coarsest of them."""
 
     def __init__(
         self,
@@ -114,19 +107,19 @@ class StoredPyramid(Pyramid):
         parameter: str | None = None,
         lines: str | None = None,
     ) -> None:
-        self.field, self._stored = field, levels
-        about = levels.about
-        self.parameter = about["parameter"] if parameter is None else parameter
-        self.lines = about["lines"] if lines is None else lines
-        self.nodes = (about["nodes"][0], about["nodes"][1])
-        self.depth = about["depth"]
+        self._stored, about = levels, levels.about
+        super().__init__(
+            field,
+            parameter or about["parameter"],
+            lines or about["lines"],
+            nodes=(about["nodes"][0], about["nodes"][1]),
+            depth=about["depth"],
+        )
         self.ranges = {
             (name, robust): (ends[0], ends[1])
             for name, both in (about.get("ranges") or {}).items()
             for robust, ends in zip((False, True), both, strict=True)
         }
-        self._lock = threading.Lock()
-        self._places = {}
 
     @property
     def about(self) -> Mapping[str, Any]:
@@ -154,10 +147,7 @@ class StoredPyramid(Pyramid):
     def _check_nodes(
         self, stored: Levels, key: TileKey, textures: TextureSet, steps: Sequence[int]
     ) -> None:
-        """Raise a PyramidError where the nodes of a tile are not those of the level above it.
-
-        That has every other line of them, and means of their velocities.
-        """
+        """Raise a PyramidError where nodes of a tile are not those of the level above."""
         field, drawn = textures.geometry.field, textures.grid.drawn
         valid = field.valid[drawn]
         first = [at * self.about["tile_cells"] for at in key[1:]]

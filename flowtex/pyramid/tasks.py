@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Indices
+from flowtex.field.steps import Nodes
 from flowtex.pyramid.checks import part_digest
 from flowtex.pyramid.client_parts import write_tile
 from flowtex.pyramid.layout import (
@@ -26,12 +27,12 @@ from flowtex.pyramid.layout import (
     value_names,
 )
 from flowtex.pyramid.levels import Levels
-from flowtex.pyramid.places import ChangedError, DamageError, store_at
+from flowtex.pyramid.places import ChangedError, DamageError, store_at, sync
 from flowtex.pyramid.samples import write_samples
 from flowtex.pyramid.source import Source
 from flowtex.pyramid.stored import StoredPyramid, root_of
 from flowtex.tiles import TileKey
-from flowtex.tiles.pyramid import Nodes, averaged, beside, level_lines
+from flowtex.tiles.pyramid import averaged, beside, level_lines
 
 
 class TileTask(NamedTuple):
@@ -55,7 +56,7 @@ def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
     levels = _levels(place, run)
     nodes = _as_written(_source_nodes(levels, source, part))
     own = part_digest(nodes, levels.about, part.step)
-    if own != levels.digest(part):
+    if own != levels.whole(f"0/{DIGESTS}", part[1:]).tobytes():
         rows, columns = (f"{s.start}-{s.stop - 1}" for s in part.lines(source.shape))
         msg = (
             f"{place} holds the pyramid of another field, or of an earlier state of this one: "
@@ -67,8 +68,6 @@ def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
 
 def mend(place: str, run: str, unit: Part | TileTask) -> None:
     """Remove a part, or a tile at its steps, of which some is missing or corrupt."""
-    from zarr.core.sync import sync
-
     levels, group = _levels(place, run), _writable(place, run)
     for one, check in checks_of(levels, unit):
         try:
@@ -114,9 +113,7 @@ def _source_nodes(levels: Levels, source: Source, part: Part) -> Nodes:
     valid = None
     if part.step and source.travels:  # others have it at hand
         valid = levels.valid(0, *(np.arange(some.start, some.stop) for some in lines))
-    nodes = source.nodes(part.step, *lines, valid)
-    known = None if source.has_position is None else source.has_position[lines]
-    return Nodes(nodes.points, nodes.valid, nodes.velocity, known, nodes.scalars)
+    return source.nodes(part.step, *lines, valid)
 
 
 def _as_written(nodes: Nodes) -> Nodes:
@@ -171,7 +168,7 @@ def write_part(
 def make_tile(place: str, run: str, task: TileTask) -> None:
     """Write what a browser is handed of a tile."""
     pyramid, here = _pyramid(place, run), _writable(place, run)[str(task.key.level)]
-    write_tile(here, pyramid, task.key, task.steps, pyramid.about["fingerprint"])
+    write_tile(here, pyramid, task.key, task.steps)
 
 
 def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indices) -> Nodes:

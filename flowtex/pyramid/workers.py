@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import io
 import os
 import traceback
 import warnings
@@ -32,14 +31,7 @@ MOST_SENT = 64_000_000
 
 
 class Threads:
-    """Threads of this process.
-
-    Parameters
-    ----------
-    memory
-        What they may take together, in bytes or such as ``"2GB"``; by default there is one for each
-        core.
-    """
+    """Threads of this process: one for each core, or as many as some memory has room for."""
 
     def __init__(self, memory: int | str | None = None) -> None:
         self._memory: int | None = None
@@ -71,11 +63,7 @@ class Threads:
         need: int,
         *given: Any,
     ) -> Generator[Exception | None]:
-        """Yield what became of each task, in the order in which they end.
-
-        The arguments of the function are what is ``given`` and those of the task, which needs so
-        many bytes.
-        """
+        """Yield what became of tasks as they end; arguments are ``given`` and those of a task."""
         if not tasks:
             return
 
@@ -193,24 +181,18 @@ def _set_allocator() -> None:
             libc.mallopt(parameter, value)
 
 
-class _Limited(io.RawIOBase):
+class _Limited:
     """A file in memory that takes so much and no more."""
 
     def __init__(self) -> None:
-        self.parts: list[bytes] = []
-        self.size = 0
-
-    def writable(self) -> bool:
-        """Whether it is written."""
-        return True
+        self.data = bytearray()
 
     def write(self, data: Any) -> int:
         """Take some bytes."""
         size = memoryview(data).nbytes
-        self.size += size
-        if self.size > MOST_SENT:
+        if len(self.data) + size > MOST_SENT:
             raise _TooLargeError
-        self.parts.append(bytes(data))
+        self.data += data
         return size
 
 
@@ -231,7 +213,7 @@ def _packed(thing: Any) -> bytes | None:
             "from a file or a store, or build without a scheduler"
         )
         raise PyramidError(msg) from error
-    return b"".join(file.parts)
+    return bytes(file.data)
 
 
 def _unpacked(data: bytes) -> Any:

@@ -12,8 +12,14 @@ from flowtex.tiles.pyramid import (
     TileKey,
     block_places,
 )
-from flowtex.tiles.ranges import drawn_speeds, ends_of, widened
-from flowtex.tiles.shared import has_pyramid, have_pyramid, shared_pyramid
+from flowtex.tiles.shared import (
+    attach_pyramid,
+    drawn_speeds,
+    ends_of,
+    has_pyramid,
+    shared_pyramid,
+    widened,
+)
 from flowtex.tiles.triangle_pyramid import TrianglePyramid
 
 __all__ = [
@@ -25,11 +31,11 @@ __all__ = [
     "TileKey",
     "TileLoader",
     "TrianglePyramid",
+    "attach_pyramid",
     "block_places",
     "drawn_speeds",
     "ends_of",
     "has_pyramid",
-    "have_pyramid",
     "levels_of",
     "shared_pyramid",
     "widened",

@@ -37,22 +37,11 @@ MOST_LEFT = 0.7
 class Clusters:
     """Nodes of a level, each of which stands for some nodes of the field.
 
-    Attributes
-    ----------
-    whole
-        The field that has all nodes.
-    field
-        The field at this level.
-    triangles
-        Its triangles that are drawn, (M, 3), which face alike.
-    number
-        Node of this level that each node of the whole field is in, (N,), or -1.
-    sides
-        Side of the bins that nodes are joined in next, (n,), a power of two times the first.
-    border
-        Nodes on the border of what is drawn, (n,).
-    normals
-        Unit normals, or sums of them, (n, 3).
+    ``whole`` is the field that has all nodes, ``field`` the one at this level, and ``triangles``
+    (M, 3) are those of it that are drawn, which face alike. ``number`` (N,) is the node of this
+    level that each node of the whole field is in, or -1. ``sides`` (n,) are those of the bins that
+    nodes are joined in next, a power of two times the first; ``border`` (n,) marks nodes on the
+    border of what is drawn, and ``normals`` (n, 3) are unit normals, or sums of them.
     """
 
     whole: FlowField
@@ -83,7 +72,11 @@ class Clusters:
             triangles[turned] = triangles[turned, ::-1]
         if not surface.cells.all():
             triangles = triangles[surface.cells]
-        normals = surface.normals[0] if surface.frame is None else _common(surface, triangles)
+        if surface.frame is None:
+            normals = surface.normals[0]
+        else:  # all are one, which is quicker to have
+            normal = triangle_normals(surface.points[0], triangles).sum(axis=0)
+            normals = np.broadcast_to(normal / np.linalg.norm(normal), surface.points.shape[1:])
         return cls(
             field,
             field,
@@ -201,12 +194,6 @@ def _sides(points: Floats, triangles: Indices, extent: float) -> Floats:
     typical = max(float(np.median(nodal[share > 0])), least)
     steps = np.rint(np.log2(np.maximum(nodal, least) / typical))
     return np.asarray(FIRST_EDGES * typical * 2.0**steps)
-
-
-def _common(surface: TriangleSurface, triangles: Indices) -> Floats:
-    """Return the one normal of a flat surface for each node, (N, 3)."""
-    normal = triangle_normals(surface.points[0], triangles).sum(axis=0)
-    return np.broadcast_to(normal / np.linalg.norm(normal), surface.points.shape[1:])
 
 
 def _once(corners: Indices) -> Indices:

@@ -28,10 +28,9 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
-from flowtex.field.steps import Steps, map_steps
+from flowtex.field.steps import Nodes, Steps, map_steps
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.geometry import SurfaceGeometry
-from flowtex.tiles.region import Region, Whole, is_cut, tile_of
 from flowtex.trace import SliceStore
 from flowtex.trace.lags import small_cell
 
@@ -53,7 +52,9 @@ MOST_RING = 1536
 #: Nodes of a window around a pole from which on its paths are not composed: all are traced then.
 MOST_COMPOSED = 500_000
 #: Widths of the halo that are tried one after the other, where paths are cut by it.
-SPARES = (1, 2, 4)
+WIDENINGS = (1, 2, 4)
+#: Share of its length up to which a path must not be cut, and of the paths of a tile that may be.
+NEEDED_SHARE, MOST_CUT_SHARE = 0.75, 5e-3
 #: Rows that are averaged together.
 ROWS = 256
 
@@ -71,16 +72,6 @@ class TileKey(NamedTuple):
         return TileKey(self.level + 1, self.row // 2, self.column // 2)
 
 
-class Nodes(NamedTuple):
-    """What nodes of a level have, as in a field."""
-
-    points: Floats
-    valid: Bools
-    velocity: Steps
-    has_position: Bools | None
-    scalars: Mapping[str, Steps]
-
-
 class _Level(NamedTuple):
     """Lines of nodes of a level, numbered as in the field, and the velocity at their nodes."""
 
@@ -92,37 +83,27 @@ class _Level(NamedTuple):
 class Pyramid:
     """The levels of a field and their tiles.
 
-    Parameters
-    ----------
-    field
-        The flow.
-    parameter
-        As for :func:`flowtex.trace`.
-    lines
-        ``"pathlines"`` or ``"streamlines"``.
-
-    Attributes
-    ----------
-    nodes
-        Number of nodes (J, I) at level 0.
-    depth
-        Level of the root; 0 where the whole field is one.
-    tile_blocks
-        Blocks along a side of a tile.
-    ranges
-        Ends of the values of scalars and of the speed at level 0, by name and whether robust,
-        where the field itself does not tell them.
+    ``parameter`` and ``lines`` are as for :class:`~flowtex.trace.SliceStore`. ``nodes`` are the
+    numbers of nodes (J, I) at level 0, and ``depth`` is the level of the root; 0 where the whole
+    field is one. ``ranges`` are the ends of scalars and of the speed at level 0, by name and
+    whether robust, where the field itself does not tell them.
     """
 
     tile_blocks = TILE_BLOCKS
     ranges: Mapping[tuple[str, bool], tuple[float, float]] = MappingProxyType({})
 
     def __init__(
-        self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
+        self,
+        field: FlowField,
+        parameter: str = "arclength",
+        lines: str = "pathlines",
+        *,
+        nodes: tuple[int, int] | None = None,
+        depth: int | None = None,
     ) -> None:
         self.field, self.parameter, self.lines = field, parameter, lines
-        self.nodes = field.shape
-        self.depth = root_level(self.nodes)
+        self.nodes = field.shape if nodes is None else nodes
+        self.depth = root_level(self.nodes) if depth is None else depth
         self._lock = threading.Lock()
         self._places: dict[int, Floats] = {}
         self._levels: list[_Level] = [
@@ -199,25 +180,11 @@ class Pyramid:
             )
         return [TileKey(level, j, i) for j in rows for i in columns]
 
-    def textures(self, key: TileKey, spare: int = 1) -> TextureSet | None:
-        """Return the textures of a tile, whose layers are traced when they are asked for.
-
-        ``None`` stands for a tile of which nothing is drawn. The halo is ``spare`` times as wide
-        as paths of even speed need; :func:`is_cut` tells whether that was enough.
-
-        Raises
-        ------
-        KeyError
-            When there is no such tile.
-        """
-        region = self.region(key, spare)
-        return None if region is None else tile_of(region, self.whole)
-
     def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
         """Trace a tile, again with a wider halo where paths were cut at some destination times."""
-        for spare in SPARES:
-            textures = self.textures(key, spare)
-            if textures is None or spare == SPARES[-1]:
+        for widening in WIDENINGS:
+            textures = self.textures(key, widening)
+            if textures is None or widening == WIDENINGS[-1]:
                 break
             steps = [step for step in steps if is_cut(textures, step)]
             if not steps:
@@ -225,15 +192,22 @@ class Pyramid:
         return textures
 
     @cached_property
-    def whole(self) -> Whole:
-        """What the tiles have from the whole surface."""
+    def whole_speed(self) -> float:
+        """Typical speed of the flow on the whole surface."""
         speed = self.root.typical.speed[:, self.root.valid]
-        typical = float(np.sqrt(np.mean(speed**2))) or 1.0
-        cell = small_cell(self.root)
-        return Whole(self.root.surface, typical, cell, self.parameter, self.lines)
+        return float(np.sqrt(np.mean(speed**2))) or 1.0
 
-    def region(self, key: TileKey, spare: int = 1) -> Region | None:
-        """Return the part of a level that a tile is made from; :meth:`textures` has the rest."""
+    @cached_property
+    def _cell(self) -> float:
+        return small_cell(self.root)
+
+    def textures(self, key: TileKey, widening: int = 1) -> TextureSet | None:
+        """Return the textures of a tile, whose layers are traced when they are asked for.
+
+        ``None`` stands for a tile of which nothing is drawn. The halo is so many times as wide as
+        paths of even speed need; :func:`is_cut` tells whether that was enough. Raises a KeyError
+        where there is no such tile.
+        """
         first = [at * TILE_CELLS for at in key[1:]]
         shape = self.shape(key.level) if 0 <= key.level < self.depth else (0, 0)
         if not all(0 <= at < n - 1 for at, n in zip(first, shape, strict=True)):
@@ -248,35 +222,48 @@ class Pyramid:
         longest, widths = _reach(points, valid)
         halo = _within_window(
             [b - a + 1 for a, b in zip(first, last, strict=True)],
-            [min(spare * width, MOST_HALO) for width in widths],
+            [min(widening * width, MOST_HALO) for width in widths],
         )
-        lines = [np.arange(a - h, b + h + 1) for a, b, h in zip(first, last, halo, strict=True)]
-        around = self._around_pole(lines, shape)
-        closed = [False, False]
-        for axis, count in enumerate(shape):
-            if axis == around:
-                # Whoever passes a pole comes out on its far side: all of the ring is needed.
-                spare = max(count - 1 - (last[axis] - first[axis]), 0) // 2
-                spare = min(spare, BLOCK_CELLS)
-                lines[axis] = (
-                    _ring(last[axis] - first[axis] + 2 * spare, count) + first[axis] - spare
-                )
-                closed[axis] = True
-            elif not self.field.periodic[axis]:
-                lines[axis] = lines[axis][(lines[axis] >= 0) & (lines[axis] < count)]
+        lines, closed, is_small = self._window(key.level, first, last, halo)
         start = [a - int(some[0]) for a, some in zip(first, lines, strict=True)]
         drawn = [slice(s, s + b - a + 1) for s, a, b in zip(start, first, last, strict=True)]
         sides = [
             (not c and (p or int(some[0]) > 0), not c and (p or int(some[-1]) < n - 1))
             for c, p, some, n in zip(closed, self.field.periodic, lines, shape, strict=True)
         ]
-        return Region(
-            self._part(key.level, lines[0], lines[1], (closed[0], closed[1])),
-            (drawn[0], drawn[1]),
-            (sides[0], sides[1]),
-            longest,
-            around is None or len(lines[0]) * len(lines[1]) <= MOST_COMPOSED,
+        field = self._part(key.level, lines[0], lines[1], closed)
+        geometry = SurfaceGeometry.of_tile(
+            field, (drawn[0], drawn[1]), self.root.surface, (sides[0], sides[1])
         )
+        nodes = np.zeros(field.shape, dtype=bool)
+        nodes[geometry.texels] = True
+        store = SliceStore(
+            field,
+            parameter=self.parameter,
+            lines=self.lines,
+            compose=(field.steady or self.lines == "streamlines") and is_small,
+            longest=longest,
+            cell=self._cell,
+            nodes=nodes,
+        )
+        return TextureSet(geometry, store, whole_speed=self.whole_speed, longest=longest)
+
+    def _window(
+        self, level: int, first: list[int], last: list[int], halo: list[int]
+    ) -> tuple[list[Indices], tuple[bool, bool], bool]:
+        """Return the lines around a tile, whether each axis closes there, and if they are few."""
+        shape = self.shape(level)
+        lines = [np.arange(a - h, b + h + 1) for a, b, h in zip(first, last, halo, strict=True)]
+        around = self._around_pole(lines, shape)
+        for axis, (count, cells) in enumerate(zip(shape, np.subtract(last, first), strict=True)):
+            if axis == around:
+                # Whoever passes a pole comes out on its far side: all of the ring is needed.
+                aside = min(max(count - 1 - cells, 0) // 2, BLOCK_CELLS)
+                lines[axis] = _ring(cells + 2 * aside, count) + first[axis] - aside
+            elif not self.field.periodic[axis]:
+                lines[axis] = lines[axis][(lines[axis] >= 0) & (lines[axis] < count)]
+        is_small = around is None or len(lines[0]) * len(lines[1]) <= MOST_COMPOSED
+        return lines, (around == 0, around == 1), is_small
 
     def _around_pole(self, lines: list[Indices], shape: tuple[int, int]) -> int | None:
         """Return the axis that goes around a pole beyond which some lines lie."""
@@ -289,10 +276,7 @@ class Pyramid:
     def _part(
         self, level: int, rows: Indices, columns: Indices, periodic: tuple[bool, bool]
     ) -> FlowField:
-        """Return some lines of a level, by their numbers, which may lie beyond a period.
-
-        Axes that are ``periodic`` have one whole period.
-        """
+        """Return some lines of a level, which may lie beyond a period on axes not ``periodic``."""
         (turns_j, rows), (turns_i, columns) = (
             np.divmod(some, count - 1) if closed else (np.zeros_like(some), some)
             for some, count, closed in zip(
@@ -329,8 +313,8 @@ class Pyramid:
             field.points[at],
             field.valid[at],
             this.velocity[:, here[0], here[1]],
-            None if field.has_position is None else field.has_position[at],
             {k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
+            None if field.has_position is None else field.has_position[at],
         )
 
     @cached_property
@@ -345,31 +329,46 @@ class Pyramid:
     def _level(self, level: int) -> _Level:
         """Return a level, making those before it first."""
         with self._lock:
-            return self._made(level)
-
-    def _made(self, level: int) -> _Level:
-        while len(self._levels) <= level:
-            fine, depth = self._levels[-1], len(self._levels)
-            rows, columns = self.line_numbers(depth)
-            valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
-            around = [
-                beside(np.searchsorted(lines, some), len(lines), closed=closed)
-                for lines, some, closed in zip(
-                    (fine.rows, fine.columns), (rows, columns), self.field.periodic, strict=True
+            while len(self._levels) <= level:
+                fine, some = self._levels[-1], self.line_numbers(len(self._levels))
+                valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
+                rows, columns = (
+                    beside(np.searchsorted(lines, own), len(lines), closed=closed)
+                    for lines, own, closed in zip(fine[:2], some, self.field.periodic, strict=True)
                 )
-            ]
-            velocity = map_steps(
-                fine.velocity, partial(averaged, valid=valid, rows=around[0], columns=around[1])
-            )
-            self._levels.append(_Level(rows, columns, velocity))
-        return self._levels[level]
+                mean = partial(averaged, valid=valid, rows=rows, columns=columns)
+                self._levels.append(_Level(*some, map_steps(fine.velocity, mean)))
+            return self._levels[level]
+
+
+def is_cut(textures: TextureSet, step: int) -> bool:
+    """Whether paths of a tile end where its window does, though the surface goes on.
+
+    Slices may have longer lags than are needed: they double. The last part of a path weighs little.
+    What lies around a tile of triangles is as wide as its paths are long.
+    """
+    if not isinstance(textures.geometry, SurfaceGeometry):
+        return False
+    slices = textures.store.at(step).part(*textures.geometry.texels)
+    needed = NEEDED_SHARE * textures.longest / (slices.unit * textures.pace)
+    for moved, reach in (
+        (slices.displacement, slices.reach),
+        (slices.forward, slices.forward_reach),
+    ):
+        if moved is None or reach is None:
+            continue
+        there = slices.nodes + moved[0, -1]
+        gone = np.zeros(reach[0].shape, dtype=bool)
+        for axis, (before, after) in enumerate(textures.grid.open_sides):
+            at, last = there[..., 1 - axis], textures.geometry.field.shape[axis] - 1
+            gone |= (before & (at < 0)) | (after & (at > last))
+        if (gone & (reach[0] < needed)).mean() > MOST_CUT_SHARE:
+            return True
+    return False
 
 
 def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
-    """Return centre, radius, and longest side of a cell of each block, (rows, columns, 5).
-
-    Blocks have so many cells a side of a surface with nodes (J, I, 3).
-    """
+    """Return centre, radius, and longest side of a cell of blocks, (rows, columns, 5)."""
     firsts = [np.arange(0, max(n - 1, 1), cells) for n in points.shape[:2]]
     lasts = [np.minimum(f + cells, n - 1) for f, n in zip(firsts, points.shape, strict=False)]
     center = np.zeros((len(firsts[0]), len(firsts[1]), 3))
@@ -488,9 +487,6 @@ def averaged(velocity: Floats, valid: Bools, rows: Indices, columns: Indices) ->
 
 
 def beside(lines: Indices, count: int, *, closed: bool) -> Indices:
-    """Numbers of the lines before some of so many, of these, and of those after them, (3, N).
-
-    A border repeats itself, or the next period begins.
-    """
+    """Numbers of lines before some, of these, and after, (3, N); a border repeats itself."""
     around = lines + np.array([[-1], [0], [1]])
     return np.asarray(np.mod(around, count - 1) if closed else np.clip(around, 0, count - 1))

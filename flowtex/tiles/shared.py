@@ -1,34 +1,74 @@
-"""The pyramid of a field, whatever its surface is made of."""
+"""The pyramid of a field of any kind, and ranges of values over a large one."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from weakref import WeakKeyDictionary
 
+import numpy as np
+
+from flowtex._util.array_types import Floats
 from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
 from flowtex.tiles.pyramid import Pyramid
 from flowtex.tiles.triangle_pyramid import TrianglePyramid
 
-#: Where a field keeps what makes its pyramid; fields that are made of this one have none.
-_OWN = "_pyramid"
-
+#: Percentiles at the ends of a range without outliers.
+ROBUST_PERCENTILES = (2, 98)
+#: Values that differ by less than this share of the greatest are the same.
+SAME_VALUE_SHARE = 1e-9
+#: Share of such a value by which its range is widened.
+WIDENED_SHARE = 0.05
+#: What makes the pyramids of fields that do not hold all their levels.
+_attached: WeakKeyDictionary[FlowField, Callable[[FlowField, str, str], Pyramid]]
+_attached = WeakKeyDictionary()
 _pyramids: WeakCache[Pyramid] = WeakCache()
 
 
-def have_pyramid(field: FlowField, make: Callable[[FlowField, str, str], Pyramid]) -> None:
+def attach_pyramid(field: FlowField, make: Callable[[FlowField, str, str], Pyramid]) -> None:
     """Give a field levels that it does not hold itself, made for a parameter and lines."""
-    field.__dict__[_OWN] = make
+    _attached[field] = make
 
 
 def has_pyramid(field: FlowField) -> bool:
     """Whether a field has levels that it does not hold itself."""
-    return _OWN in field.__dict__
+    return field in _attached
 
 
 def shared_pyramid(field: FlowField, parameter: str, lines: str = "pathlines") -> Pyramid:
     """Return the pyramid of a field, one for all that show the field at the same time."""
     kind = Pyramid if field.triangles is None else TrianglePyramid
-    make = field.__dict__.get(_OWN, kind)
+    make = _attached.get(field, kind)
     # A pyramid keeps its field alive, so the number of the field is its own meanwhile.
     key = (id(field), parameter, lines)
     return _pyramids.get(key, lambda: make(field, parameter, lines))
+
+
+def ends_of(values: Floats, *, robust: bool) -> tuple[float, float] | None:
+    """Return the least and the greatest value that is known, or those of a robust range."""
+    values = values[np.isfinite(values)]
+    if not values.size:
+        return None
+    low, high = (
+        np.percentile(values, ROBUST_PERCENTILES)
+        if robust
+        else np.array([values.min(), values.max()])
+    )
+    return float(low), float(high)
+
+
+def widened(ends: tuple[float, float] | None) -> tuple[float, float]:
+    """Return a range to colour by, where all values may be the same but for rounding, or none."""
+    if ends is None:
+        return 0.0, 1.0
+    low, high = ends
+    size = max(abs(low), abs(high))
+    if high - low > SAME_VALUE_SHARE * size:
+        return low, high
+    return (low - WIDENED_SHARE * size, high + WIDENED_SHARE * size) if size > 0 else (0.0, 1.0)
+
+
+def drawn_speeds(field: FlowField, root: FlowField) -> Floats:
+    """Return speeds of valid nodes, (T, N); in space, where hardly any flow leaves the surface."""
+    steps = field.speed if root.leaves_surface else np.linalg.norm(field.velocity, axis=-1)
+    return np.asarray(np.asarray(steps)[:, field.valid])

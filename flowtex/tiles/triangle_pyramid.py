@@ -11,7 +11,6 @@ A tile has 2 x 2 blocks, and so has the root; in each lies one tile of the next 
 
 from __future__ import annotations
 
-import threading
 from dataclasses import replace
 from functools import cached_property
 
@@ -49,10 +48,8 @@ class TrianglePyramid(Pyramid):
     def __init__(
         self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
     ) -> None:
-        self.field, self.parameter, self.lines = field, parameter, lines
-        self._lock = threading.Lock()
         self._clusters = levels_of(field, ROOT_NODES)
-        self.depth = len(self._clusters) - 1
+        super().__init__(field, parameter, lines, depth=len(self._clusters) - 1)
         self._parts: dict[int, list[Indices]] = {}
 
     def at_level(self, level: int) -> FlowField:
@@ -111,16 +108,8 @@ class TrianglePyramid(Pyramid):
             (masks, self.places(self.depth)),
         )
 
-    def textures(self, key: TileKey, spare: int = 1) -> TextureSet | None:
-        """Return the textures of a tile, whose layers are traced when they are asked for.
-
-        ``None`` stands for a tile of which nothing is drawn.
-
-        Raises
-        ------
-        KeyError
-            When there is no such tile.
-        """
+    def textures(self, key: TileKey, widening: int = 1) -> TextureSet | None:
+        """Return the textures of a tile, as for structured surfaces."""
         count = 2 ** (self._steps(key.level) - 1)
         if not (0 <= key.level < self.depth and all(0 <= at < count for at in key[1:])):
             msg = f"there is no tile {tuple(key)}; levels are 0 to {self.depth - 1}"
@@ -134,7 +123,7 @@ class TrianglePyramid(Pyramid):
         rows, columns = self.blocks_of(key)
         places = self.places(key.level)[rows, columns]
         longest = 0.99 * PATH_CELLS * float(places[..., 4].max())
-        around = self._around(key.level, nodes, spare * longest * self._haste(key.level, nodes))
+        around = self._around(key.level, nodes, widening * longest * self._haste(key.level, nodes))
         window, number = _part(level, around)
         geometry = TriangleGeometry.of_tile(
             window, number[nodes], number[triangles], self.root.surface, (masks, places)
@@ -151,7 +140,7 @@ class TrianglePyramid(Pyramid):
         )
         if store.parameter == "arclength":
             store.lags, store.unit = _lags(window.surface.cell_size, followed, longest)
-        return TextureSet(geometry, store, whole_speed=self.whole.speed, longest=longest)
+        return TextureSet(geometry, store, whole_speed=self.whole_speed, longest=longest)
 
     def _steps(self, level: int) -> int:
         """Return the steps of the k-d tree to the blocks of a level."""
@@ -213,7 +202,7 @@ class TrianglePyramid(Pyramid):
             return 1.0
         velocity = self.at_level(level).typical.velocity[:, 0, nodes]
         fast = np.percentile(np.linalg.norm(velocity, axis=-1), 99)
-        return float(np.clip(fast / self.whole.speed, 1.0, MOST_WIDE))
+        return float(np.clip(fast / self.whole_speed, 1.0, MOST_WIDE))
 
     def _around(self, level: int, nodes: Indices, width: float) -> Indices:
         """Triangles of a level that are no further from some nodes than so much, and others."""

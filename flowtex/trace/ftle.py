@@ -10,7 +10,8 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
-from flowtex.field.derived import FOLLOWED, node_gradient, true_positions
+from flowtex.field.derived import FOLLOWED
+from flowtex.field.derived.gradient import node_gradient, true_positions
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.trace.trace import trace
 

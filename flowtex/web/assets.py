@@ -8,13 +8,7 @@ _FOLDER = Path(__file__).resolve().parent
 
 
 def asset(name: str) -> Path:
-    """Return the path of one of the client's files, such as ``"client.js"``.
-
-    Raises
-    ------
-    FileNotFoundError
-        When the installation lacks it.
-    """
+    """Return the path of one of the client's files, such as ``"client.js"``."""
     path = _FOLDER / name
     if not path.is_file():
         msg = (

@@ -51,12 +51,8 @@ class _Tile:
 class TileSource:
     """Gives the parts of a scene, of which those of tiles are made when they are asked for.
 
-    All methods may be called from any thread.
-
-    Attributes
-    ----------
-    scene
-        What is handed over; the same in other colours may take its place at any time.
+    The same in other colours may take the place of the ``scene`` at any time. All methods may be
+    called from any thread.
     """
 
     def __init__(self, scene: ClientData, budget: int = BUDGET_BYTES) -> None:
@@ -67,10 +63,7 @@ class TileSource:
     def parts(self, key: TileKey | None, steps: Sequence[int]) -> Parts:
         """Return the parts of a tile at time steps, or of the whole; see the module's text.
 
-        Raises
-        ------
-        LookupError
-            When there is no such tile or step.
+        A LookupError tells that there is no such tile or step.
         """
         if key is None:
             scene = self.scene

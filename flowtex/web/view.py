@@ -22,11 +22,6 @@ class WebView:
     Of the time steps so many are handed over, evenly chosen with the first and the last among
     them; paths are traced through all of them all the same. ``own`` names the settings and what of
     the appearance are this view's alone, where it stands beside another.
-
-    Raises
-    ------
-    FieldError
-        When there is no such colour or colour map, or fewer than one time step is asked for.
     """
 
     def __init__(

@@ -171,10 +171,7 @@ def test_flow_that_leaves_the_surface_is_told(
         (("demo", "--example", "soup"), "there is no example 'soup'; there are cylinder"),
         (("show", "{tmp}/no.vts"), "no such file"),
         (("shwo",), "Unknown command"),
-        (
-            ("info", "{gyre}", "--colour"),
-            "there is no --colour of flowtex info; did you",
-        ),
+        (("info", "{gyre}", "--colour"), "there is no --colour of flowtex info; did you"),
         (("demo", "--no-opne"), "there is no --no-opne of flowtex demo; did you mean --no-open?"),
         (("demo", "--no-eyes"), "; `flowtex demo --help` lists what there is"),
         (("render", "{gyre}", "--opacty", "1"), "did you mean --opacity?"),

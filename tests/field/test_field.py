@@ -16,11 +16,6 @@ from flowtex.errors import FieldError
 Floats = NDArray[np.float64]
 
 
-def says(text: str) -> pytest.RaisesExc[FieldError]:
-    """Expect an error with exactly this text."""
-    return pytest.raises(FieldError, match=f"^{re.escape(text)}$")
-
-
 def flat(rows: int = 5, columns: int = 7, size: float = 1.0) -> Floats:
     """Nodes of a plain rectangle with cells of one size, (J, I, 3)."""
     x, y = np.meshgrid(np.arange(columns) * size, np.arange(rows) * size)
@@ -321,7 +316,7 @@ def test_coordinates_may_be_huge_or_tiny(size: float, offset: float) -> None:
 
 
 def test_a_collapsed_row_is_a_field() -> None:
-    points = ring(13, last=True) - np.array([0.0, 0, 0])
+    points = ring(13, last=True)
     points[:, 0] = 0.0
     field = FlowField.from_arrays(points, ones(points))
     assert field.periodic == (True, False)
@@ -333,143 +328,112 @@ def test_a_collapsed_row_is_a_field() -> None:
 # --- faults ---------------------------------------------------------------------------------
 
 
-def test_points_in_a_flat_list() -> None:
-    with says(
-        "points has shape (35, 3); expected (J, I, 2) or (J, I, 3). Flat lists of points need "
-        "reshape(J, I, 3)"
-    ):
-        FlowField.from_arrays(flat().reshape(-1, 3), ones(flat()))
-
-
-def test_a_single_row() -> None:
-    with says(
-        "points has 1 x 7 nodes (J x I); a surface needs at least 2 along each axis. A single row "
-        "is a curve: choose another plane"
-    ):
-        FlowField.from_arrays(flat()[:1], ones(flat()[:1]))
+PERIODIC = 'expected "", "i", "j" or "ij", or None to find out'
+UNUSABLE = (
+    "none of the 35 nodes is usable: each is blanked, masked or NaN; check the chosen vectors and "
+    "the blanking"
+)
+ORDER = "expected strictly increasing times: sort the steps, and drop those that repeat"
 
 
 @pytest.mark.parametrize(
-    ("velocity", "hint"),
+    ("given", "text"),
     [
-        (np.ones((7, 5, 3)), ". The two axes look swapped: arrays are (j, i), try np.swapaxes"),
         (
-            np.ones((3, 5, 7)),
-            ". The components look first: try np.moveaxis(velocity, 0, -1)",
+            {"points": flat().reshape(-1, 3)},
+            "points has shape (35, 3); expected (J, I, 2) or (J, I, 3). Flat lists of points need "
+            "reshape(J, I, 3)",
         ),
-        (np.ones((5, 7)), ""),
-        (np.ones((5, 7, 4)), ""),
-        (np.ones((0, 5, 7, 3)), ""),
+        (
+            {"points": flat()[:1], "velocity": ones(flat()[:1])},
+            "points has 1 x 7 nodes (J x I); a surface needs at least 2 along each axis. A single "
+            "row is a curve: choose another plane",
+        ),
+        (
+            {"points": (np.ones((4, 5)), np.ones((5, 4)))},
+            "points are arrays of shapes (4, 5), (5, 4); expected one shape (J, I)",
+        ),
+        (
+            {"points": np.ones((5, 7, 3))},
+            "all usable nodes lie at one point; expected a surface: check the coordinates",
+        ),
+        *(
+            (
+                {"points": np.arange(35.0).reshape(5, 7, 1) * [1, 2, -0.5] + offset},
+                "all usable nodes lie on one line; expected a surface: check the coordinates",
+            )
+            for offset in (0.0, 1e6)
+        ),
+        *(
+            (
+                {"velocity": np.ones(shape)},
+                f"velocity has shape {shape}; expected (5, 7, 3) for a steady field or "
+                f"(T, 5, 7, 3) for one that varies in time, with points (5, 7, 3){hint}",
+            )
+            for shape, hint in [
+                ((7, 5, 3), ". The two axes look swapped: arrays are (j, i), try np.swapaxes"),
+                ((3, 5, 7), ". The components look first: try np.moveaxis(velocity, 0, -1)"),
+                ((5, 7), ""),
+                ((5, 7, 4), ""),
+                ((0, 5, 7, 3), ""),
+            ]
+        ),
+        (
+            {"velocity": ones(flat()) * 1j},
+            "velocity holds complex128; expected real numbers: convert it with astype(float), or "
+            "take its real part",
+        ),
+        ({"velocity": np.full((5, 7, 3), np.nan)}, UNUSABLE),
+        *(
+            ({"velocity": ones(flat(), 3), "times": times}, text)
+            for times, text in [
+                ([0, 1], "times has shape (2,); expected (3,), one for each step of velocity"),
+                ([0, np.nan, 2], "times[1] is nan; expected a finite number"),
+                ([0, 2, 1], f"times[2] = 1 does not come after times[1] = 2; {ORDER}"),
+                ([0, 0, 1], f"times[1] = 0 does not come after times[0] = 0; {ORDER}"),
+            ]
+        ),
+        ({"valid": np.ones((7, 5), bool)}, "valid has shape (7, 5); expected (5, 7) as points has"),
+        (
+            {"valid": np.indices((5, 7)).sum(axis=0) % 2 == 0},
+            "18 of 35 nodes are usable, but no four of them make a cell; check the blanking",
+        ),
+        (
+            {"velocity": ones(flat(), 3), "scalars": {"p": np.ones((2, 5, 7))}},
+            "scalars['p'] has shape (2, 5, 7); expected (5, 7) or (3, 5, 7), as points and "
+            "velocity have",
+        ),
+        (
+            {"scalars": {"p": np.ones((7, 5))}},
+            "scalars['p'] has shape (7, 5); expected (5, 7) or (1, 5, 7), as points and velocity "
+            "have",
+        ),
+        ({"periodic": "x"}, f"periodic is 'x'; {PERIODIC}"),
+        (
+            {
+                "velocity": ones(flat(), 3),
+                "times": [0, 1],
+                "valid": np.ones(5, bool),
+                "scalars": {"p": np.ones(1)},
+                "periodic": "k",
+            },
+            "4 things are wrong:\n"
+            "  1. times has shape (2,); expected (3,), one for each step of velocity\n"
+            "  2. valid has shape (5,); expected (5, 7) as points has\n"
+            "  3. scalars['p'] has shape (1,); expected (5, 7) or (3, 5, 7), as points and "
+            "velocity have\n"
+            f"  4. periodic is 'k'; {PERIODIC}",
+        ),
     ],
 )
-def test_velocity_of_another_shape(velocity: Floats, hint: str) -> None:
-    with says(
-        f"velocity has shape {velocity.shape}; expected (5, 7, 3) for a steady field or "
-        f"(T, 5, 7, 3) for one that varies in time, with points (5, 7, 3){hint}"
-    ):
-        FlowField.from_arrays(flat(), velocity)
-
-
-@pytest.mark.parametrize(
-    ("times", "text"),
-    [
-        ([0, 1], "times has shape (2,); expected (3,), one for each step of velocity"),
-        ([0, np.nan, 2], "times[1] is nan; expected a finite number"),
-        (
-            [0, 2, 1],
-            "times[2] = 1 does not come after times[1] = 2; expected strictly increasing times: "
-            "sort the steps, and drop those that repeat",
-        ),
-        (
-            [0, 0, 1],
-            "times[1] = 0 does not come after times[0] = 0; expected strictly increasing times: "
-            "sort the steps, and drop those that repeat",
-        ),
-    ],
-)
-def test_times_that_cannot_be(times: list[float], text: str) -> None:
-    with says(text):
-        FlowField.from_arrays(flat(), ones(flat(), 3), times=times)
-
-
-def test_valid_of_another_shape() -> None:
-    with says("valid has shape (7, 5); expected (5, 7) as points has"):
-        FlowField.from_arrays(flat(), ones(flat()), valid=np.ones((7, 5), bool))
-
-
-def test_scalars_of_another_shape() -> None:
-    with says(
-        "scalars['p'] has shape (2, 5, 7); expected (5, 7) or (3, 5, 7), as points and velocity "
-        "have"
-    ):
-        FlowField.from_arrays(flat(), ones(flat(), 3), scalars={"p": np.ones((2, 5, 7))})
-    with says(
-        "scalars['p'] has shape (7, 5); expected (5, 7) or (1, 5, 7), as points and velocity have"
-    ):
-        FlowField.from_arrays(flat(), ones(flat()), scalars={"p": np.ones((7, 5))})
-
-
-def test_an_axis_that_does_not_exist() -> None:
-    with says('periodic is \'x\'; expected "", "i", "j" or "ij", or None to find out'):
-        FlowField.from_arrays(flat(), ones(flat()), periodic="x")
-
-
-def test_complex_numbers() -> None:
-    with says(
-        "velocity holds complex128; expected real numbers: convert it with astype(float), or take "
-        "its real part"
-    ):
-        FlowField.from_arrays(flat(), ones(flat()) * 1j)
-
-
-def test_nan_everywhere() -> None:
-    with says(
-        "none of the 35 nodes is usable: each is blanked, masked or NaN; check the chosen vectors "
-        "and the blanking"
-    ):
-        FlowField.from_arrays(flat(), np.full((5, 7, 3), np.nan))
-
-
-def test_nodes_that_make_no_cell() -> None:
-    checkers = np.indices((5, 7)).sum(axis=0) % 2 == 0
-    with says("18 of 35 nodes are usable, but no four of them make a cell; check the blanking"):
-        FlowField.from_arrays(flat(), ones(flat()), valid=checkers)
-
-
-def test_nodes_at_one_point() -> None:
-    with says("all usable nodes lie at one point; expected a surface: check the coordinates"):
-        FlowField.from_arrays(np.ones((5, 7, 3)), ones(flat()))
-
-
-@pytest.mark.parametrize("offset", [0.0, 1e6])
-def test_nodes_on_one_line(offset: float) -> None:
-    along = np.arange(35.0).reshape(5, 7, 1) * [1, 2, -0.5] + offset
-    with says("all usable nodes lie on one line; expected a surface: check the coordinates"):
-        FlowField.from_arrays(along, ones(flat()))
+def test_all_that_is_wrong_is_told(given: dict[str, Any], text: str) -> None:
+    with pytest.raises(FieldError, match=f"^{re.escape(text)}$"):
+        FlowField.from_arrays(**{"points": flat(), "velocity": ones(flat()), **given})
 
 
 def test_a_narrow_ribbon_is_a_surface() -> None:
     points = flat() * [1e3, 1e-2, 0]
     assert FlowField.from_arrays(points, ones(points)).shape == (5, 7)
-
-
-def test_all_faults_are_told_at_once() -> None:
-    with says(
-        "4 things are wrong:\n"
-        "  1. times has shape (2,); expected (3,), one for each step of velocity\n"
-        "  2. valid has shape (5,); expected (5, 7) as points has\n"
-        "  3. scalars['p'] has shape (1,); expected (5, 7) or (3, 5, 7), as points and velocity "
-        "have\n"
-        '  4. periodic is \'k\'; expected "", "i", "j" or "ij", or None to find out'
-    ):
-        FlowField.from_arrays(
-            flat(),
-            ones(flat(), 3),
-            times=[0, 1],
-            valid=np.ones(5, bool),
-            scalars={"p": np.ones(1)},
-            periodic="k",
-        )
 
 
 # --- parts of a field -----------------------------------------------------------------------
@@ -565,8 +529,3 @@ def test_hidden_coordinates_blank_a_node() -> None:
 def test_rows_of_positions_are_no_coordinates() -> None:
     points = flat(2, 3)
     assert np.array_equal(FlowField.from_arrays(points.tolist(), ones(points)).points, points)
-
-
-def test_coordinates_of_unlike_shapes_are_refused() -> None:
-    with says("points are arrays of shapes (4, 5), (5, 4); expected one shape (J, I)"):
-        FlowField.from_arrays((np.ones((4, 5)), np.ones((5, 4))), np.ones((4, 5, 2)))

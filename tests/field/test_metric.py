@@ -9,7 +9,6 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.field.metric import to_index_space
 from flowtex.field.surface import Surface
 
 Floats = NDArray[np.float64]
@@ -125,7 +124,7 @@ def test_index_velocity_converges_with_order_two() -> None:
         by_s, by_t = smooth_tangents(s, t)
         u, v = np.cos(s + t), np.sin(3 * t)
         velocity = u[..., None] * by_s + v[..., None] * by_t
-        found = to_index_space(open_surface(smooth(s, t)), velocity[None]).components[0]
+        found = open_surface(smooth(s, t)).express(velocity[None]).components[0]
         return float(np.abs(found / (n - 1) - np.stack([u, v], axis=-1)).max())
 
     assert (errors(worst) > 1.8).all()
@@ -265,7 +264,7 @@ def test_flow_along_a_sphere_is_kept() -> None:
 
 def test_flow_out_of_a_sphere_is_lost() -> None:
     surface = sphere().surface
-    found = to_index_space(surface, surface.points[None])
+    found = surface.express(surface.points[None])
     assert found.normal_share > 0.999
     assert found.speed.max() < 0.02
 
@@ -274,7 +273,7 @@ def test_half_of_the_flow_is_lost() -> None:
     surface = sphere().surface
     along = np.cross([0, 0, 1.0], surface.points)
     along /= np.linalg.norm(along, axis=-1, keepdims=True)
-    found = to_index_space(surface, (0.8 * along + 0.6 * surface.points)[None])
+    found = surface.express((0.8 * along + 0.6 * surface.points)[None])
     assert found.normal_share == pytest.approx(0.6, abs=5e-3)
     np.testing.assert_allclose(found.speed, 0.8, rtol=1e-2)
 
@@ -282,7 +281,7 @@ def test_half_of_the_flow_is_lost() -> None:
 def test_uniform_flow_over_a_cylinder_is_projected() -> None:
     surface = cylinder(97)
     velocity = np.broadcast_to([1.0, 0, 0], surface.points.shape)
-    found = to_index_space(surface, velocity[None])
+    found = surface.express(velocity[None])
     angle = np.linspace(0, 2 * np.pi, 97)
     wanted = -np.sin(angle) * 96 / (2 * np.pi)
     np.testing.assert_allclose(found.components[0, :, 2, 1], wanted, atol=0.02)
@@ -336,7 +335,7 @@ def test_blanked_nodes_do_not_move() -> None:
 
 def test_no_flow_loses_nothing() -> None:
     surface = open_surface(indices(5, 5) @ linear_map("square").T)
-    assert to_index_space(surface, np.zeros((1, 5, 5, 3))).normal_share == 0.0
+    assert surface.express(np.zeros((1, 5, 5, 3))).normal_share == 0.0
 
 
 def test_cell_size_follows_the_smaller_side() -> None:

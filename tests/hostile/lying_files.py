@@ -15,10 +15,7 @@ ROWS, COLUMNS = 6, 9
 
 def hdf5_axes(file: Any) -> None:
     """Write the coordinates of a map of ROWS by COLUMNS."""
-    for name, count, unit in (
-        ("lat", ROWS, "degrees_north"),
-        ("lon", COLUMNS, "degrees_east"),
-    ):
+    for name, count, unit in (("lat", ROWS, "degrees_north"), ("lon", COLUMNS, "degrees_east")):
         axis = file.create_dataset(name, data=np.linspace(10.0, 20.0, count))
         axis.make_scale(name)
         axis.attrs["units"] = np.bytes_(unit)
@@ -158,10 +155,7 @@ def zarr_of_a_size(path: Path, version: int, **declared: Any) -> None:
     lat, lon = np.linspace(0, 9, ROWS), np.linspace(0, 9, COLUMNS)
     wind = np.ones((ROWS, COLUMNS), "f4")
     words = [{"standard_name": f"{axis}ward_wind", "units": "m/s"} for axis in ("east", "north")]
-    data = {
-        "u": (("lat", "lon"), wind, words[0]),
-        "v": (("lat", "lon"), wind, words[1]),
-    }
+    data = {"u": (("lat", "lon"), wind, words[0]), "v": (("lat", "lon"), wind, words[1])}
     axes = {"lat": ("lat", lat, {"units": "degrees_north"})}
     axes["lon"] = ("lon", lon, {"units": "degrees_east"})
     xr.Dataset(data, axes).to_zarr(path, zarr_format=version, consolidated=version == 2)

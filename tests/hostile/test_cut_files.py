@@ -291,10 +291,7 @@ def test_a_file_that_is_cut_is_refused_or_whole(
 @property_test(1)
 @given(st.integers(0, 2**32 - 1))
 def test_a_file_with_flipped_bits_is_an_error_of_ours_or_a_flow(
-    files: Whole,
-    read: Callable[[Path], str],
-    tmp_path_factory: pytest.TempPathFactory,
-    seed: int,
+    files: Whole, read: Callable[[Path], str], tmp_path_factory: pytest.TempPathFactory, seed: int
 ) -> None:
     """A reader may crash: its process ends, and the next file is read by another."""
     rng = np.random.default_rng(seed)

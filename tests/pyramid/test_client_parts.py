@@ -38,11 +38,7 @@ def flat() -> FlowField:
     scalars = {"heat": np.stack([x, x + 1, x * y]), "depth": x * y}
     valid = np.hypot(x - 1.3, y - 1.2) > 0.4
     return FlowField.from_arrays(
-        np.stack([x, y], -1),
-        np.stack(steps),
-        times=[0, 0.1, 0.2],
-        valid=valid,
-        scalars=scalars,
+        np.stack([x, y], -1), np.stack(steps), times=[0, 0.1, 0.2], valid=valid, scalars=scalars
     )
 
 

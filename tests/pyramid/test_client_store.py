@@ -109,9 +109,8 @@ def write(folder: Path) -> None:
     group.attrs["flowtex"] = ABOUT
     level = group.require_group("0")
     for name, array in numbers().items():
-        ones = (1,) * (array.ndim - 1)
-        axes = [f"axis{n}" for n in range(array.ndim)]
-        create_array(level, name, array.shape, (*ones, CHUNK), (*ones, ROOM), "uint8", axes)
+        axes = {f"axis{n}": (count, 1, 1) for n, count in enumerate(array.shape[:-1])}
+        create_array(level, name, "uint8", {**axes, f"axis{len(axes)}": (ROOM, CHUNK, ROOM)})
         level[name][...] = array
 
 

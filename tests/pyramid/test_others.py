@@ -107,10 +107,7 @@ def test_missing_values_are_left_out_at_all_levels(tmp_path: Path) -> None:
 
 
 def test_pictures_pages_and_the_shell(
-    opengl: Any,
-    stores: dict[str, Path],
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
+    opengl: Any, stores: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     store = stores["ndpyramid"]
     view: dict[str, Any] = {"size": (200, 120), "samples": 9, "zoom": 6}

@@ -15,7 +15,8 @@ from store_contents import contents
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
-from flowtex.field.datasets.regions import RegionNodes, Regions
+from flowtex.field.datasets.regions import Regions
+from flowtex.field.steps import Nodes
 from flowtex.pyramid import build, layout, open_store, verify
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
@@ -288,7 +289,7 @@ def test_a_build_holds_as_many_parts_as_its_memory_allows(
     held: list[int] = []
     read = Regions.nodes
 
-    def noted(self: Regions, *given: Any) -> RegionNodes:
+    def noted(self: Regions, *given: Any) -> Nodes:
         nodes = read(self, *given)
         alive.append(weakref.ref(nodes.velocity))
         held.append(sum(some.nbytes for ref in alive if (some := ref()) is not None))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,7 @@ from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.textures import SurfaceGeometry, TextureSet
 from flowtex.tiles import Pyramid, TileKey, block_places
-from flowtex.tiles.pyramid import MOST_RING, _ring
-from flowtex.tiles.region import is_cut, tile_of
+from flowtex.tiles.pyramid import MOST_RING, _ring, is_cut
 from flowtex.trace import SliceStore, trace
 
 
@@ -39,17 +37,13 @@ def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
     unit = like.store.unit.flat[0]
     slices = trace(field, lags=like.store.lags, unit=unit, compose=field.steady, progress=False)
     textures = TextureSet(
-        SurfaceGeometry.of(field),
-        SliceStore(field, slices=slices),
-        whole_speed=like.whole_speed,
+        SurfaceGeometry.of(field), SliceStore(field, slices=slices), whole_speed=like.whole_speed
     )
     layers = textures.layers(step).astype(np.float64)
     layers[0, ..., 3] *= textures.unit / like.unit
     rows, columns = textures.grid.rows, textures.grid.columns
     return layers[
-        :,
-        rows.before : rows.before + rows.nodes,
-        columns.before : columns.before + columns.nodes,
+        :, rows.before : rows.before + rows.nodes, columns.before : columns.before + columns.nodes
     ]
 
 
@@ -58,9 +52,7 @@ def nodal(tile: TextureSet, step: int = 0) -> Floats:
     layers, geometry = tile.layers(step), tile.grid
     rows, columns = geometry.rows, geometry.columns
     return layers[
-        :,
-        rows.before : rows.before + rows.nodes,
-        columns.before : columns.before + columns.nodes,
+        :, rows.before : rows.before + rows.nodes, columns.before : columns.before + columns.nodes
     ] * np.float64(1)
 
 
@@ -188,8 +180,8 @@ def test_paths_that_a_halo_cuts_are_noticed_in_any_unit_of_time(speed: float) ->
     cut, layers = [], []
     for s in (1.0, speed):
         pyramid = Pyramid(FlowField.from_arrays(points, s * velocity, periodic=""), "time")
-        for spare in (1, 8):
-            tile = pyramid.textures(TileKey(0, 0, 1), spare)
+        for widening in (1, 8):
+            tile = pyramid.textures(TileKey(0, 0, 1), widening)
             assert tile is not None
             cut.append(is_cut(tile, 0))
             product = tile.store.lags[:, None, None] * tile.store.unit * tile.pace
@@ -198,20 +190,6 @@ def test_paths_that_a_halo_cuts_are_noticed_in_any_unit_of_time(speed: float) ->
         layers.append(nodal(tile))
     assert cut == [True, False] * 2
     np.testing.assert_allclose(layers[1][..., :3], layers[0][..., :3], rtol=1e-2, atol=1e-2)
-
-
-def test_a_region_is_all_that_a_tile_is_made_from() -> None:
-    pyramid, key = Pyramid(waves()), TileKey(0, 0, 0)
-    region, tile = pyramid.region(key), pyramid.tile(key, [0])
-    assert region is not None and tile is not None
-    # As in a task of another process, which knows nothing else.
-    alone = tile_of(*pickle.loads(pickle.dumps((region, pyramid.whole))))
-    np.testing.assert_array_equal(alone.layers(), tile.layers())
-    assert (alone.unit, alone.cell, alone.critical_cell) == (
-        tile.unit,
-        tile.cell,
-        tile.critical_cell,
-    )
 
 
 def test_a_ring_around_a_pole_is_complete_where_it_is_near() -> None:
@@ -242,10 +220,10 @@ def test_paths_over_a_pole_need_not_all_of_a_long_ring(monkeypatch: pytest.Monke
 
 def test_windows_have_no_more_nodes_than_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     pyramid = Pyramid(waves())
-    wide = pyramid.region(TileKey(0, 0, 0), spare=4)
+    wide = pyramid.textures(TileKey(0, 0, 0), widening=4)
     monkeypatch.setattr("flowtex.tiles.pyramid.MOST_WINDOW", 5_000)
-    region = pyramid.region(TileKey(0, 0, 0), spare=4)
-    assert wide is not None and region is not None
-    assert region.field.valid.size < 5_000 < wide.field.valid.size
-    assert region.drawn == wide.drawn
-    assert pyramid.textures(TileKey(0, 0, 0), spare=4) is not None
+    narrow = pyramid.textures(TileKey(0, 0, 0), widening=4)
+    assert wide is not None and narrow is not None
+    fields = narrow.geometry.field, wide.geometry.field
+    assert fields[0].valid.size < 5_000 < fields[1].valid.size
+    assert narrow.geometry.shape == wide.geometry.shape

@@ -22,15 +22,11 @@ from contextlib import suppress
 from importlib import import_module
 from typing import Any, NoReturn
 
-from flowtex._util.child.worker import serve, settle
+from flowtex._util.child.worker import command, serve, settle
 
 #: Whether children are forked; elsewhere libraries do not bear that.
 FORKS = sys.platform == "linux"
 
-_PROGRAM = (
-    "import json, sys; start = json.loads(sys.argv[1]); sys.path[:] = start['path']; "
-    "from flowtex._util.child.forkserver import main; main(start['control'], start['preload'])"
-)
 #: Bytes of a request.
 REQUEST_BYTES = 65_536
 #: Length of a status, and of the signal that ends a process with its parent.
@@ -41,20 +37,13 @@ _lock = threading.Lock()
 
 
 class ForkServer:
-    """The process that is forked, as seen by the one that asks for children.
-
-    Parameters
-    ----------
-    preload
-        Modules that it loads, one after another; what is not installed is left out.
-    """
+    """The process with modules loaded that is forked, as seen by who asks for children."""
 
     def __init__(self, preload: tuple[str, ...]) -> None:
         self._control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        start = {"path": sys.path, "control": other.fileno(), "preload": preload}
         # A session of its own: Ctrl-C in the terminal is for the process that asks.
         self._process = subprocess.Popen(
-            [sys.executable, "-I", "-c", _PROGRAM, json.dumps(start)],
+            command(main, control=other.fileno(), preload=preload),
             pass_fds=[other.fileno()],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,

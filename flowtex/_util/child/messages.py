@@ -43,13 +43,7 @@ def write_message(stream: IO[bytes], value: Any, arrays: Sequence[AnyArray] = ()
 
 
 def read_message(stream: IO[bytes], most_bytes: int) -> tuple[Any, list[AnyArray]] | None:
-    """Return a value and arrays, which have ``most_bytes`` at most; ``None`` at the end.
-
-    Raises
-    ------
-    MessageError
-        When it is no message.
-    """
+    """Return a value and arrays, of ``most_bytes`` at most; ``None`` at the end of the stream."""
     prefix = bytearray(_PREFIX.size)
     if not _fill(stream, memoryview(prefix)):
         return None

@@ -7,7 +7,6 @@ import os
 import select
 import signal
 import subprocess
-import sys
 import threading
 import time
 import weakref
@@ -20,7 +19,7 @@ from typing import IO, Any
 from flowtex._util.array_types import AnyArray
 from flowtex._util.child.forkserver import FORKS, STATUS_BYTES, fork_server
 from flowtex._util.child.messages import MessageError, read_message, write_message
-from flowtex._util.child.worker import PROGRAM, start_text
+from flowtex._util.child.worker import command, spawned
 from flowtex._util.memory import available_bytes
 from flowtex._util.progress import Stopped, check
 
@@ -39,13 +38,9 @@ PIPE_BYTES = 1 << 20
 class ChildError(Exception):
     """A child gives no answer.
 
-    Attributes
-    ----------
-    kind
-        Name of the class of the error that it raised; empty where it died, had to be ended, or
-        lacks memory: the text then says so, as in ``"crashed (SIGSEGV)"``.
-    trace
-        Where it was raised; empty where the text says all.
+    ``kind`` is the name of the class of the error that it raised; empty where it died, had to be
+    ended, or lacks memory: the text then says so, as in ``"crashed (SIGSEGV)"``. ``trace`` tells
+    where it was raised; empty where the text says all.
     """
 
     def __init__(self, text: str, kind: str = "", trace: str = "") -> None:
@@ -71,24 +66,11 @@ class Child:
     """A process that answers requests, one after another.
 
     Its methods may be called from any thread. It ends with this object, and with this process,
-    however that ends.
-
-    Parameters
-    ----------
-    entry
-        ``"module:name"`` of what makes the function that answers, without arguments. That takes a
-        value of JSON, and returns one with a list of arrays.
-    preload
-        Modules that are loaded before: a child that is forked has them at once.
-    memory
-        Bytes that it may take, where the system has a limit (not on macOS and Windows); by default
-        a share of what is available.
-    forks
-        Whether it is forked from a process with the modules loaded, or started from nothing.
-
-    Examples
-    --------
-    >>> child = Child("math:hypot")  # doctest: +SKIP
+    however that ends. ``entry`` is ``"module:name"`` of what makes the function that answers,
+    without arguments. That takes a value of JSON, and returns one with a list of arrays.
+    ``preload`` are modules that a child that is forked has at once, and ``memory`` bytes that it
+    may take, where the system has a limit (not on macOS and Windows); by default a share of what is
+    available.
     """
 
     def __init__(
@@ -128,14 +110,9 @@ class Child:
     def request(self, value: Any, *, timeout: float) -> tuple[Any, list[AnyArray]]:
         """Return the answer to a request: a value of JSON, and arrays.
 
-        Raises
-        ------
-        ChildError
-            When the child is dead, dies meanwhile, needs more memory than it may have, does not
-            answer in ``timeout`` seconds, after which it is ended, or raises an error.
-        Stopped
-            When the work was cancelled, as :func:`flowtex._util.progress.stoppable` says. The child
-            is told, and goes on to live.
+        A ChildError tells that the child is dead, dies, needs more memory than it may have, does
+        not answer in ``timeout`` seconds, after which it is ended, or raises an error. Where the
+        work was cancelled, it is told, and goes on to live.
         """
         while not self._asking.acquire(timeout=CHECK_INTERVAL_S):
             check()
@@ -275,7 +252,7 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...]) -> _Process:
 def _spawned(entry: str, memory: int, _preload: tuple[str, ...]) -> _Process:
     """Start a child from nothing."""
     process = subprocess.Popen(
-        [sys.executable, "-I", "-c", PROGRAM, start_text(entry, memory)],
+        command(spawned, entry=entry, memory=memory),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,

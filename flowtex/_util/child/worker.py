@@ -23,15 +23,22 @@ Answer = tuple[Any, Sequence[AnyArray]]
 #: Answers a request, which is a value of JSON.
 Handler = Callable[[Any], Answer]
 
-#: Starts a child where processes are not forked.
-PROGRAM = (
-    "import json, sys; start = json.loads(sys.argv[1]); sys.path[:] = start['path']; "
-    "from flowtex._util.child.worker import spawned; spawned(start['entry'], start['memory'])"
+_PROGRAM = (
+    "import json, sys; from importlib import import_module; start = json.loads(sys.argv[1]); "
+    "sys.path[:] = start['path']; module, function = start['entry']; "
+    "getattr(import_module(module), function)(**start['arguments'])"
 )
 #: How ready the system is, 0 to 1000, to end the child instead of its parent for want of memory.
 OOM_SCORE = "800"
 #: Errors that say all in their text, and characters of that, at most.
 QUIET, TEXT_LENGTH = ("Stopped", "MemoryError", "FieldError"), 4_000
+
+
+def command(function: Callable[..., Any], **arguments: Any) -> list[str]:
+    """Return what starts a process that has the paths of this one, and calls a function."""
+    entry = function.__module__, function.__name__
+    start = json.dumps({"path": sys.path, "entry": entry, "arguments": arguments})
+    return [sys.executable, "-I", "-c", _PROGRAM, start]
 
 
 def spawned(entry: str, memory: int) -> None:
@@ -114,8 +121,3 @@ def _listen(reads: IO[bytes], requests: SimpleQueue[tuple[int, Any]], cancelled:
                 requests.put((value["number"], value["value"]))
     finally:
         os._exit(0)
-
-
-def start_text(entry: str, memory: int) -> str:
-    """Return the argument of :data:`PROGRAM`."""
-    return json.dumps({"path": sys.path, "entry": entry, "memory": memory})

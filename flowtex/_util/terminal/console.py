@@ -22,10 +22,7 @@ def plain_text(text: str) -> str:
 
 
 def terminal(*, stderr: bool = False) -> Console:
-    """Return rich's console on stdout or stderr, for which no text is mark-up.
-
-    Styles are given by :class:`rich.text.Text` alone.
-    """
+    """Return rich's console on stdout or stderr, for which no text is mark-up."""
     return _console_class()(stderr=stderr, markup=False, emoji=False, highlight=False)
 
 

@@ -21,7 +21,7 @@ from flowtex._util.cache import ByteCache
 from flowtex.app.server.validation import shortened
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.datasets.detect import is_dataset
+from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.files import SUFFIXES as EARTH_SUFFIXES
 from flowtex.field.datasets.files import common_name, is_dataset_file
 from flowtex.field.datasets.source import DatasetSource
@@ -328,7 +328,7 @@ def _is_folder(path: str | Path) -> bool:
     return Path(path).is_dir() and not is_dataset_file(Path(path))
 
 
-def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
+def _source_of(flow: Any, options: dict[str, Any]) -> Source:
     """Take a mesh as it is where nothing is chosen about it, else the field that is meant."""
     options = {key: value for key, value in options.items() if value is not None}
     if is_dataset(flow) and not options:

@@ -8,7 +8,7 @@ import secrets
 from pathlib import Path
 
 from flowtex._util.extras import import_extra
-from flowtex.pyramid.layout import create_level
+from flowtex.pyramid.layout import described
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import DOCUMENT, ReadFault, fault_words, is_refused, objects_at
 
@@ -43,9 +43,7 @@ class ServedStore:
         self._origin = objects_at(levels.place)
         self._reads = asyncio.Semaphore(MOST_READS)
         zarr = import_extra("zarr", "store")
-        group = zarr.group(store=zarr.storage.MemoryStore())
-        for level in range(levels.about["depth"] + 1):
-            create_level(group, level, levels.shape(level), levels.about)
+        group = described(levels.about)
         #: How many objects each array has along its axes.
         self._counts: dict[str, tuple[int, ...]] = {
             name: tuple(map(_quotient, array.shape, array.shards or array.chunks))

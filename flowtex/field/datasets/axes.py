@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flowtex._util.arguments import near_names
-from flowtex._util.array_types import AnyArray
+from flowtex._util.array_types import AnyArray, Bools
 from flowtex.errors import FieldError
 
 if TYPE_CHECKING:
@@ -34,6 +34,11 @@ SECONDS |= {"hr": 3600.0, "hour": 3600.0, "d": 86400.0, "day": 86400.0}
 FROM_THE_TOP = re.compile(r"generalized.height", re.IGNORECASE)
 #: Names of the dimensions of nodes and of faces, where there is a mesh.
 NODES, FACES = "mesh_nodes", "mesh_faces"
+#: Variables that tell which of these are under water, and what they have there.
+WET = {
+    **dict.fromkeys(("wet_nodes", "wet_cells"), 1),
+    **dict.fromkeys(("wetdry_node", "wetdry_elem", "dryFlagNode", "dryFlagElement"), 0),
+}
 #: Words by which a person may choose along an axis whose own name is another.
 LEVEL, TIME = "level", "time"
 
@@ -57,19 +62,10 @@ class Choice:
 class Section:
     """Part of a variable that is drawn: two axes, and time where it has several steps.
 
-    Attributes
-    ----------
-    array
-        The variable, ([time,] rows, columns) or ([time,] nodes or faces of a mesh); nothing of it
-        is read yet.
-    times
-        Dates, or seconds, one for each step, or ``None`` where no time is known.
-    notes
-        Sentences about what was chosen without being asked for.
-    level
-        Words for the level that is shown; empty where there is none.
-    numbers
-        What is drawn along axes where there is a choice, by name.
+    ``array`` is the variable, ([time,] rows, columns) or ([time,] nodes or faces of a mesh), of
+    which nothing is read yet. ``times`` are dates, or seconds, one for each step, or ``None`` where
+    no time is known; ``notes`` tell what was chosen without being asked for, ``level`` has words
+    for the level, and ``numbers`` what is drawn along axes where there is a choice, by name.
     """
 
     array: xr.DataArray
@@ -89,13 +85,7 @@ class Section:
 
 
 def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
-    """Return the dimensions of rows and columns, or the one of the nodes or faces of a mesh.
-
-    Raises
-    ------
-    FieldError
-        When they cannot be told.
-    """
+    """Return the dimensions of rows and columns, or the one of nodes or faces of a mesh."""
     for dim in (NODES, FACES):
         if dim in array.dims:
             return (dim,)
@@ -111,13 +101,7 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
 
 
 def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
-    """Choose along the axes of variables that belong together, alike in all of them.
-
-    Raises
-    ------
-    FieldError
-        When something is chosen that is not there, or the variables have nothing in common.
-    """
+    """Choose along the axes of variables that belong together, alike in all of them."""
     rows = [horizontal_dims(array) for array in arrays]
     others = [
         [str(d) for d in array.dims if d not in pair]
@@ -164,11 +148,22 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
     return [Section(array, times, tuple(notes), level, numbers) for array in done]
 
 
-def drawn_steps(section: Section, array: xr.DataArray) -> tuple[Any, list[int]]:
-    """Return dates or seconds of the steps that are drawn, and their numbers in the section.
+def wet_at(
+    section: Section, dim: str, datasets: Sequence[Any], choice: Choice
+) -> Callable[[int], Bools] | None:
+    """Return what tells which nodes or faces are under water at a step of a velocity."""
+    plain = Choice(choice.sel, choice.isel, {*choice.sel, *choice.isel})
+    for ds in datasets:
+        for name, water in WET.items():
+            if name in ds.data_vars and dim in ds[name].dims:
+                (flags,) = sections([ds[name]], plain)
+                if flags.is_series == section.is_series:
+                    return lambda number: np.asarray(flags.step(number).values) == water
+    return None
 
-    ``array`` is the variable before anything was chosen of it.
-    """
+
+def drawn_steps(section: Section, array: xr.DataArray) -> tuple[Any, list[int]]:
+    """Return dates or seconds of the steps that are drawn, and their numbers in the section."""
     times = section.times
     count = section.array.shape[0] if section.is_series else 1
     numbers = list(range(count))
@@ -191,10 +186,7 @@ def drawn_steps(section: Section, array: xr.DataArray) -> tuple[Any, list[int]]:
 
 
 def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
-    """Return words for the values along axes other than time where there is a choice.
-
-    They are by name, that of the level first.
-    """
+    """Return words for the values along other axes than time with a choice, the level first."""
     found: dict[str, tuple[str, ...]] = {}
     surface = horizontal_dims(array)
     for dim in map(str, array.dims):
@@ -208,10 +200,7 @@ def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
 
 
 def way_ahead(array: xr.DataArray, dim: str) -> int:
-    """Return the way in which the coordinate of a dimension grows: 1, or -1 against its numbers.
-
-    A component along y, say, leads to greater y.
-    """
+    """Return 1 where the coordinate of a dimension grows, or -1 against its numbers."""
     coordinate = array.coords.get(dim)
     if coordinate is None or coordinate.dtype.kind not in "fiu" or coordinate.size < 2:
         return 1

@@ -63,15 +63,7 @@ def belong_together(paths: Sequence[Path]) -> bool:
 
 
 def open_datasets(paths: Sequence[Path]) -> list[xr.Dataset]:
-    """Open files that belong together: parts of one model's output, or steps of a series.
-
-    Raises
-    ------
-    FieldError
-        When one cannot be read.
-    ModuleNotFoundError
-        When what reads it is missing; the text names the extra.
-    """
+    """Open files that belong together: parts of one model's output, or steps of a series."""
     several = [open_files(path) for path in paths]
     if len(several) == 1:
         return several[0]
@@ -107,13 +99,7 @@ def open_files(path: Path) -> list[xr.Dataset]:
 
 
 def import_cfgrib() -> Any:
-    """Import what reads GRIB.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        When it is missing, or the library of ecCodes that it calls; the text has the remedy.
-    """
+    """Import what reads GRIB; the error for what is missing has the remedy."""
     try:
         return import_extra("cfgrib", "grib")
     except (ModuleNotFoundError, RuntimeError) as error:

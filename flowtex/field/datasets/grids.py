@@ -1,20 +1,29 @@
-"""The grid that two components lie on: staggered or not, and the places of its nodes."""
+"""The grid that two components lie on: staggered or not, and the places of its nodes.
+
+On a staggered one (Arakawa C) they lie on the sides of cells, and become means in the middle. Along
+its own axis a component has one value for each side. Where the cells of the middle are numbered c,
+the sides beside cell c are those numbered c + first and c + first + 1.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from flowtex._util.array_types import Floats
+from flowtex.earth import GLOBE, Projection
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import horizontal_dims
 from flowtex.field.datasets.pairs import Pair
-from flowtex.field.datasets.places import Places, find_places, over_sphere
-from flowtex.field.datasets.staggered import Sides, centred, first_side
+from flowtex.field.datasets.places import Places, find_places
+from flowtex.field.io.inspection.limits import values_in
 
+#: Paddings of SGRID, and the first side that they stand for.
+PADDINGS = {"none": 0, "high": 0, "low": -1, "both": -1}
 #: Names of masks in the middle of cells, 1 at sea.
 MASKS = ("mask_rho", "mask_t", "tmask", "tmaskutil", "wet", "wet_c")
 #: Lines of a grid that repeat others are as near to them as this share of a cell.
@@ -94,9 +103,7 @@ def _moved(places: Places, sides: Sides) -> Places:
     """Return places between sides along a row; those that are not known are NaN."""
     shape = (places.a.shape[0], sides.cells)
     if places.is_earth:
-        middle = centred(over_sphere(places), 1, sides)
-        x, y, z = np.moveaxis(middle, -1, 0)
-        found = np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+        found = Projection(GLOBE).lonlat(centred(places.on_sphere, 1, sides))
     else:
         found = centred(places.a, 1, sides), centred(places.b, 1, sides)
     a, b = np.full(shape, np.nan), np.full(shape, np.nan)
@@ -105,10 +112,7 @@ def _moved(places: Places, sides: Sides) -> Places:
 
 
 def _nemo_places(pair: Pair, cells: tuple[str, str], datasets: Sequence[Any]) -> Places | None:
-    """Return the places of NEMO's T points, where the components lie on the sides of its cells.
-
-    Its variables have dimensions of the same names, whose coordinates differ.
-    """
+    """Return the places of NEMO's T points, where the components lie on the sides of cells."""
     own = [_own(array, datasets) for array in (pair.u, pair.v)]
     names = {str(n) for ds in datasets for n in ds.variables}
     if "glamt" in names and "gphit" in names and "glamu" in names:
@@ -137,7 +141,7 @@ def _wraps(places: Places) -> bool:
     """Whether the last column is followed by the first one."""
     if not places.is_earth:
         return False
-    p = over_sphere(places)
+    p = places.on_sphere
     step, gap = (np.linalg.norm(a, axis=-1) for a in (p[:, 1] - p[:, 0], p[:, 0] - p[:, -1]))
     with np.errstate(invalid="ignore"):
         near = gap <= 1.5 * step
@@ -146,13 +150,10 @@ def _wraps(places: Places) -> bool:
 
 
 def unrepeated(places: Places) -> tuple[slice, slice]:
-    """Return the lines without those that repeat others: a halo beyond the date line, and a fold.
-
-    One repeated column is kept, so that the axis closes.
-    """
+    """Return rows and columns without those that repeat others; one repeated column is kept."""
     if not places.is_earth or places.is_line:
         return slice(None), slice(None)
-    p = over_sphere(places)
+    p = places.on_sphere
     rows, columns = p.shape[:2]
 
     def same(one: Floats, other: Floats) -> bool:
@@ -190,3 +191,77 @@ def sea_mask(shape: tuple[int, ...], datasets: Sequence[Any]) -> Any:
 
 def _sizes(array: Any) -> str:
     return " x ".join(f"{n} {d}" for d, n in array.sizes.items())
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Sides of cells along an axis.
+
+    ``first`` and ``count`` number them as above, for so many cells; ``wraps`` where the axis goes
+    around the Earth.
+    """
+
+    first: int
+    sides: int
+    cells: int
+    wraps: bool = False
+
+    @property
+    def known(self) -> slice:
+        """The cells that have a side to both sides."""
+        if self.wraps:
+            return slice(0, self.cells)
+        return slice(max(0, -self.first), min(self.cells, self.sides - self.first - 1))
+
+
+def centred(values: Floats, axis: int, sides: Sides) -> Floats:
+    """Return means of two sides at the known cells; one that is missing, or NaN, is a wall."""
+    cells = np.arange(sides.cells)[sides.known]
+    before, after = cells + sides.first, cells + sides.first + 1
+    if sides.wraps:
+        before, after = before % sides.sides, after % sides.sides
+    one, other = np.take(values, before, axis=axis), np.take(values, after, axis=axis)
+    mean = (np.nan_to_num(one) + np.nan_to_num(other)) / 2
+    mean[np.isnan(one) & np.isnan(other)] = np.nan
+    return np.asarray(mean)
+
+
+def first_side(side: str, cell: str, counts: tuple[int, int], datasets: Sequence[Any]) -> int:
+    """Return the number of the side before the first cell, for dimensions of so many of each."""
+    sides, cells = counts
+    if sides != cells:
+        return 0 if sides > cells else -1
+    told = shift_told(side, cell, datasets)
+    if told is not None:
+        return told
+    lines = [_line(name, datasets) for name in (side, cell)]
+    if lines[0] is not None and lines[1] is not None:
+        rising = lines[1][-1] > lines[1][0]
+        return 0 if (lines[0][0] < lines[1][0]) == rising else -1
+    # MITgcm counts the side on the left of a cell, and most others the one on its right.
+    return 0 if re.search(r"g$|_l(eft)?$", side, re.IGNORECASE) else -1
+
+
+def shift_told(side: str, cell: str, datasets: Sequence[Any]) -> int | None:
+    """Return the same where COMODO's or SGRID's attributes tell it."""
+    for ds in datasets:
+        shift = ds[side].attrs.get("c_grid_axis_shift") if side in ds.variables else None
+        if shift is not None:
+            return 0 if float(shift) < 0 else -1
+        for variable in ds.variables.values():
+            if variable.attrs.get("cf_role") != "grid_topology":
+                continue
+            texts = " ".join(str(v) for v in variable.attrs.values())
+            for one, two, padding in re.findall(r"(\w+):\s*(\w+)\s*\(padding:\s*(\w+)\)", texts):
+                if (one, two) == (cell, side):
+                    return PADDINGS.get(padding)
+    return None
+
+
+def _line(name: str, datasets: Sequence[Any]) -> Any:
+    for ds in datasets:
+        if name in ds.coords and ds[name].ndim == 1 and ds[name].dtype.kind in "fiu":
+            values = np.asarray(values_in(ds[name]), dtype=float)
+            # Numbers of the nodes alone tell nothing.
+            return None if np.array_equal(values, np.arange(len(values)) + values[0]) else values
+    return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -31,7 +31,39 @@ LARGEST = 4.0
 TORN = 8.0
 
 
-@dataclass(frozen=True, eq=False)
+class Nodes(Protocol):
+    """Where nodes are drawn, (..., 3), and what data and components have there."""
+
+    points: Floats
+
+    @property
+    def projection(self) -> Projection | None:
+        """The map; ``None`` in a plane."""
+
+    def at(self, values: Floats) -> Floats:
+        """Return values at the nodes."""
+
+    def vectors(self, east: Floats, north: Floats) -> Floats:
+        """Return vectors (..., 3) of components at the nodes in m/s."""
+
+
+@dataclass(eq=False)
+class PlaneNodes:
+    """Nodes in a plane, whose components are along x and y."""
+
+    points: Floats
+    projection: Projection | None = None
+
+    def at(self, values: Floats) -> Floats:
+        """Return values as they are."""
+        return values
+
+    def vectors(self, u: Floats, v: Floats) -> Floats:
+        """Return vectors of components along x and y."""
+        return np.stack([u, v, np.zeros_like(u)], axis=-1)
+
+
+@dataclass(eq=False)
 class MapNodes:
     """Nodes on a map.
 
@@ -46,6 +78,10 @@ class MapNodes:
     periodic: str | None
     lon: Floats
     lat: Floats
+
+    def at(self, values: Floats) -> Floats:
+        """Return values in the order of the map."""
+        return np.asarray(values[self.lines])
 
     def vectors(self, east: Floats, north: Floats) -> Floats:
         """Return vectors (J, I, 3) of components in m/s, in the order of the map."""
@@ -89,11 +125,7 @@ def on_map(places: Places, name: str | None) -> MapNodes:
 
 
 def lines_on_map(places: Places, projection: Projection, *, around: bool) -> MapLines:
-    """Return the lines of places in the order of a map.
-
-    On one that goes around the Earth the last column is the first one again, a turn further; data
-    may have it already.
-    """
+    """Return the lines of places in the order of a map; one around the Earth is closed."""
     lon, lat = places.lines
     turn = np.abs(lon - lon[0])
     step = float(np.median(np.diff(turn))) if len(turn) > 1 else 0.0
@@ -131,10 +163,7 @@ def shown_rows(points: Floats) -> slice:
 
 
 def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
-    """Return the map of a name, or one that suits the region, and whether that is around the Earth.
-
-    ``places`` are nodes in any order where they are no lines.
-    """
+    """Return the map of a name, or one that suits, and whether the region is around the Earth."""
     if name == GLOBE:
         return Projection(GLOBE), False
     lon, lat = places.lines if places.is_line else (places.a, places.b)

@@ -88,13 +88,7 @@ class Pair:
 
 
 def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) -> Pair:
-    """Return the velocity that is named, or the only one that is likely.
-
-    Raises
-    ------
-    FieldError
-        When there is none, several are as likely, or what is named is not there.
-    """
+    """Return the velocity that is named, or the only one that is likely."""
     if (u is None) != (v is None):
         msg = f"u is {u!r} and v is {v!r}; name both components, or none"
         raise FieldError(msg)
@@ -122,13 +116,7 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
 
 
 def two_names(vectors: str | None) -> dict[str, str]:
-    """Return the arguments u and v for names with a comma between, as ``"uo,vo"``.
-
-    Raises
-    ------
-    FieldError
-        When these are not two names.
-    """
+    """Return the arguments u and v for names with a comma between, as ``"uo,vo"``."""
     if vectors is None:
         return {}
     names = [word.strip() for word in vectors.split(",")]
@@ -164,13 +152,7 @@ def _likely(pair: Pair) -> tuple[int, int, bool]:
 
 
 def to_metres_per_second(array: xr.DataArray) -> float | None:
-    """Return how many metres per second the unit of a variable is; ``None`` where it has none.
-
-    Raises
-    ------
-    FieldError
-        When the unit is none of a velocity.
-    """
+    """Return how many metres per second a variable's unit is; ``None`` where it has none."""
     unit = str(array.attrs.get("units", "")).strip()
     if unit in ("", "1", "-", "None", "unknown"):
         return None

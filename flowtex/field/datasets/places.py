@@ -11,6 +11,7 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex._util.extras import import_extra
+from flowtex.earth import GLOBE, Projection
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import values_in
 
@@ -55,26 +56,25 @@ class Places:
         """What a is in each column, (I,), and b in each row, (J,), where these are lines."""
         return self.a[0], self.b[:, 0]
 
+    @property
+    def on_sphere(self) -> Floats:
+        """Positions of longitudes and latitudes on the globe, (J, I, 3)."""
+        return Projection(GLOBE).positions(self.a, self.b)
+
+    def turned(self, ahead: tuple[int, int], u: Floats, v: Floats) -> tuple[Floats, Floats]:
+        """Return components on the Earth, or along x and y, of those along rows and columns."""
+        p = self.on_sphere if self.is_earth else np.stack([self.a, self.b], axis=-1)
+        along_j, along_i = (way * _directions(p, axis) for axis, way in enumerate(ahead))
+        vector = u[..., None] * along_i + v[..., None] * along_j
+        if self.is_earth:
+            return Projection(GLOBE).components(self.a, self.b, vector)
+        return vector[..., 0], vector[..., 1]
+
 
 def find_places(
     array: xr.DataArray, dims: tuple[str, ...], datasets: Sequence[xr.Dataset]
 ) -> Places:
-    """Return where values on some rows and columns lie.
-
-    Parameters
-    ----------
-    array
-        A variable whose own coordinates are looked at first.
-    dims
-        Names of the dimensions of rows and columns.
-    datasets
-        Where other coordinates may be.
-
-    Raises
-    ------
-    FieldError
-        When there are none; the text lists what there is.
-    """
+    """Return where values lie, by their own coordinates, or by those of other datasets."""
     shape = tuple(_size(d, array, datasets) for d in dims)
     for lon, lat in _pairs(array, dims, datasets, (LONGITUDE, LATITUDE), ("longitude", "latitude")):
         a, b = _spread(lon, lat, dims, shape)
@@ -106,10 +106,14 @@ def find_places(
     raise FieldError(msg)
 
 
-def over_sphere(a: Places) -> Floats:
-    """Return unit vectors, (J, I, 3), of longitudes and latitudes."""
-    lon, lat = np.radians(a.a), np.radians(a.b)
-    return np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+def _directions(p: Floats, axis: int) -> Floats:
+    """Return unit differences of positions along an axis, one-sided beside what is not known."""
+    p = np.swapaxes(p, 0, axis)
+    ahead, behind = np.full_like(p, np.nan), np.full_like(p, np.nan)
+    behind[1:] = ahead[:-1] = p[1:] - p[:-1]
+    both = np.where(np.isnan(ahead), behind, np.where(np.isnan(behind), ahead, ahead + behind))
+    length = np.linalg.norm(both, axis=-1, keepdims=True)
+    return np.swapaxes(both / np.where(length > 0, length, 1.0), 0, axis)
 
 
 def _size(dim: str, array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> int:
@@ -160,10 +164,7 @@ def _partner(name: str) -> set[str]:
 def _spread(
     a: Any, b: Any, dims: tuple[str, ...], shape: tuple[int, ...]
 ) -> tuple[Floats | None, Floats | None]:
-    """Return two coordinates at all nodes, or nothing where they belong to other nodes.
-
-    Lines are (1, I) and (J, 1).
-    """
+    """Return two coordinates at the nodes, of lines (1, I) and (J, 1); none for other nodes."""
     if a.ndim == 1 and b.ndim == 1:
         if a.dims == b.dims:
             msg = (
@@ -230,13 +231,7 @@ def _is_lonlat(a: Floats, b: Floats, lon: Any, lat: Any) -> bool:
 
 
 def _longitudes(lon: Floats, name: str) -> Floats:
-    """Return longitudes that go on along a row without a jump.
-
-    Raises
-    ------
-    FieldError
-        When those of a line are in no order.
-    """
+    """Return longitudes that go on along a row without a jump; those of a line have an order."""
     if not (np.ptp(lon, axis=0) == 0).all():  # as on a curvilinear grid
         return lon
     line = np.unwrap(lon[0], period=360.0)

@@ -16,13 +16,14 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
-from flowtex.earth import GLOBE, Projection
+from flowtex.earth import GLOBE
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import (
     FACES,
     LEVEL,
     NODES,
     TIME,
+    WET,
     Choice,
     Section,
     axis_kind,
@@ -30,20 +31,17 @@ from flowtex.field.datasets.axes import (
     horizontal_dims,
     sections,
     way_ahead,
+    wet_at,
 )
-from flowtex.field.datasets.directions import turned
-from flowtex.field.datasets.grids import find_grid, sea_mask, unrepeated
-from flowtex.field.datasets.maps import on_map, projection_of
-from flowtex.field.datasets.meshes.conventions import find_mesh
+from flowtex.field.datasets.grids import centred, find_grid, sea_mask, unrepeated
+from flowtex.field.datasets.maps import Nodes, PlaneNodes, on_map
+from flowtex.field.datasets.meshes.conventions import find_mesh, with_mesh_axes
 from flowtex.field.datasets.meshes.maps import mesh_on_map
 from flowtex.field.datasets.meshes.mesh import Mesh
-from flowtex.field.datasets.meshes.nodal import WET, NodalValues, wet_at
-from flowtex.field.datasets.meshes.preparation import with_mesh_axes
 from flowtex.field.datasets.notices import notify
 from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
 from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places
 from flowtex.field.datasets.regions import Regions, Words, numbers_in, region_lines
-from flowtex.field.datasets.staggered import centred
 from flowtex.field.dates import as_seconds
 from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.steps import LazySteps
@@ -71,60 +69,37 @@ LAND_SHARE = 0.01
 class Recognised:
     """What was recognised in a dataset, and why.
 
-    Attributes
-    ----------
-    pair
-        The two variables of the velocity.
-    along
-        Along what the components are: ``"earth"``, or ``"grid"`` where ``ahead`` tells the ways of
-        rows and columns, 1 or -1.
-    staggered
-        Whether the components lie on the sides of cells.
-    grid
-        Words for the kind of grid.
-    coordinates
-        Names of the coordinates that give positions.
-    places
-        Positions of the nodes in the middle of cells, and what lies there.
-    notes
-        Sentences about what was chosen without being asked for.
-    level
-        Words for the level; empty where there is none.
-    factor
-        What makes the components m/s.
-    mask
-        A variable that is positive where there is data; ``None`` without one.
+    ``pair`` are the two variables of the velocity, and ``along`` is along what they are:
+    ``"earth"``, or ``"grid"`` where ``ahead`` tells the ways of rows and columns, 1 or -1.
+    ``staggered`` tells that they lie on the sides of cells. ``grid``, ``coordinates`` and ``notes``
+    are words: the kind of grid, names of the coordinates, and what was chosen without being asked
+    for. ``places`` are the nodes in the middle of cells; ``factor`` makes components m/s, and
+    ``mask`` is a variable that is positive where there is data.
     """
 
     pair: Pair
     along: str
-    ahead: tuple[int, int]
-    staggered: bool
     grid: str
     coordinates: str
     places: Places
     notes: tuple[str, ...]
-    level: str
     u: Section
     v: Section
     steps: Callable[[int], tuple[Floats, Floats]]
     cells: tuple[str, ...]
-    factor: float = 1.0
+    factor: float
+    ahead: tuple[int, int] = (1, 1)
+    staggered: bool = False
     mask: Any = None
     kept: tuple[slice, ...] = ()
     trimmed: tuple[slice, ...] = ()
     mesh: Mesh | None = None
 
-    @property
-    def map_name(self) -> str:
-        """The flat map that suits the places."""
-        return projection_of(self.places, None)[0].name
-
     def turned(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Return components eastward and northward, or along x and y."""
-        if self.along == "earth" or self.places.is_line:
+        if self.along != "grid" or self.places.is_line:
             return u, v
-        return turned(self.places, self.ahead, u, v)
+        return self.places.turned(self.ahead, u, v)
 
 
 def read_datasets(
@@ -140,10 +115,7 @@ def read_datasets(
     regions: bool = False,
     **selection: Any,
 ) -> GridArrays | TriangleArrays | Regions:
-    """Read what a field needs, as :meth:`FlowField.from_xarray` has the parameters.
-
-    With ``regions`` no nodes are read where any part of them can be read by itself.
-    """
+    """Read what a field needs; with ``regions`` no nodes, if any part can be read by itself."""
     if globe and projection not in (None, GLOBE):
         msg = f"globe=True and projection={projection!r} are given; leave out one of them"
         raise FieldError(msg)
@@ -162,104 +134,75 @@ def read_datasets(
     times, numbers = drawn_steps(known.u, known.pair.u)
     scalars = _scalars(known, as_datasets(data), Choice(dict(sel), dict(isel or {})))
     words: dict[str, Any] = {
-        "name": ", ".join(filter(None, (name, known.level))),
+        "name": ", ".join(filter(None, (name, known.u.level))),
         **_words(scalars),
     }
     if regions and known.mesh is None:
         found = _regions(known, scalars, times, numbers, projection, words)
         if found is not None:
             return found
-    make, drawn = (
-        (GridArrays, _on_grid(known, projection))
+    nodes, more = (
+        _on_grid(known, projection)
         if known.mesh is None
-        else (TriangleArrays, _on_mesh_nodes(known, known.mesh, projection, numbers))
+        else _on_mesh_nodes(known, known.mesh, projection, numbers)
     )
 
     def later(read: Callable[[int], Floats]) -> LazySteps:
         return LazySteps(len(numbers), lambda step: read(numbers[step]))
 
     def value(read: Callable[[int], Floats], number: int) -> Floats:
-        return drawn.at(read(number))
+        return nodes.at(read(number))
+
+    def vectors(number: int) -> Floats:
+        moved = nodes.vectors(*map(nodes.at, known.turned(*known.steps(number))))
+        # What of a mesh is dry now and was not always is at rest.
+        return moved if known.mesh is None else np.nan_to_num(moved)
 
     extra = {key: later(partial(value, scalar.read)) for key, scalar in scalars.items()}
-    if drawn.projection is not None and not drawn.projection.is_globe:
-        extra["speed"] = later(lambda number: np.hypot(*map(drawn.at, known.steps(number))))
+    if nodes.projection is not None and not nodes.projection.is_globe:
+        extra["speed"] = later(lambda number: np.hypot(*map(nodes.at, known.steps(number))))
         words["units"]["speed"] = "m/s"
-    moving = later(lambda number: drawn.vectors(*known.steps(number)))
-    return make(
-        points=drawn.points,
+    moving = later(vectors)
+    make: Any = GridArrays if known.mesh is None else TriangleArrays
+    arrays: GridArrays | TriangleArrays = make(
+        points=nodes.points,
         velocity=moving if len(numbers) > 1 else moving[0],
         times=times,
         scalars=extra,
         time_unit="s",
-        projection=drawn.projection,
-        **drawn.more,
+        projection=nodes.projection,
+        **more,
         **words,
     )
+    return arrays
 
 
-class _Drawn(NamedTuple):
-    """Where nodes are drawn.
-
-    ``at`` gives what data have there, ``vectors`` what components are there, and ``more`` has
-    further arguments of a field.
-    """
-
-    points: Floats
-    at: Callable[[Floats], Floats]
-    vectors: Callable[[Floats, Floats], Floats]
-    projection: Projection | None
-    more: dict[str, Any]
-
-
-def _on_grid(known: Recognised, projection: str | None) -> _Drawn:
-    """Return where the nodes of rows and columns are drawn."""
+def _on_grid(known: Recognised, projection: str | None) -> tuple[Nodes, dict[str, Any]]:
+    """Return where the nodes of rows and columns are drawn, and further arguments of a field."""
     places = known.places
-    if not places.is_earth:
-        points = np.stack([places.a, places.b], axis=-1)
-
-        def in_plane(u: Floats, v: Floats) -> Floats:
-            return _in_plane(*known.turned(u, v))
-
-        return _Drawn(points, np.asarray, in_plane, None, {"length_unit": places.unit})
-    drawn = on_map(places, projection)
-
-    def at(values: Floats) -> Floats:
-        return np.asarray(values[drawn.lines])
-
-    def vectors(u: Floats, v: Floats) -> Floats:
-        return drawn.vectors(*map(at, known.turned(u, v)))
-
-    more = {"length_unit": "m", "periodic": drawn.periodic}
-    return _Drawn(drawn.points, at, vectors, drawn.projection, more)
+    if places.is_earth:
+        nodes = on_map(places, projection)
+        return nodes, {"length_unit": "m", "periodic": nodes.periodic}
+    return PlaneNodes(np.stack([places.a, places.b], axis=-1)), {"length_unit": places.unit}
 
 
 def _on_mesh_nodes(
     known: Recognised, mesh: Mesh, projection: str | None, numbers: list[int]
-) -> _Drawn:
-    """Return where the nodes of a mesh are drawn; those are valid that have data at some time."""
-    drawn = mesh_on_map(mesh, known.places, projection) if mesh.is_earth else None
-    if drawn is not None and drawn.lost:
-        notify(
-            f"{drawn.lost:,} triangles are left out, for the map tears them apart, as at a "
-            "pole; a globe has them all, as in globe=True"
-        )
-    at = np.asarray if drawn is None else drawn.at
-    vectors = _in_plane if drawn is None else drawn.vectors
+) -> tuple[Nodes, dict[str, Any]]:
+    """Return the same of a mesh; nodes are valid that have data at some time."""
     some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
     valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
-    more = {
-        "length_unit": known.places.unit or "m",
-        "triangles": mesh.triangles if drawn is None else drawn.triangles,
-        "valid": at(valid * 1.0) > 1 - 1e-9,
-    }
-
-    def moving(u: Floats, v: Floats) -> Floats:
-        # What is dry now and was not always is at rest.
-        return np.nan_to_num(vectors(u, v))
-
-    points = mesh.positions if drawn is None else drawn.points
-    return _Drawn(points, at, moving, None if drawn is None else drawn.projection, more)
+    if not mesh.is_earth:
+        more = {"length_unit": known.places.unit or "m", "triangles": mesh.triangles}
+        return PlaneNodes(mesh.positions), {**more, "valid": valid}
+    nodes = mesh_on_map(mesh, known.places, projection)
+    if nodes.lost:
+        notify(
+            f"{nodes.lost:,} triangles are left out, for the map tears them apart, as at a "
+            "pole; a globe has them all, as in globe=True"
+        )
+    is_valid = nodes.at(valid * 1.0) > 1 - 1e-9
+    return nodes, {"length_unit": "m", "triangles": nodes.triangles, "valid": is_valid}
 
 
 def _regions(
@@ -296,10 +239,6 @@ def _regions(
     )
 
 
-def _in_plane(u: Floats, v: Floats) -> Floats:
-    return np.stack([u, v, np.zeros_like(u)], axis=-1)
-
-
 def _words(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
     """Return units, and long names for which there is room, of variables."""
     attributes = {key: scalar.attributes for key, scalar in scalars.items()}
@@ -320,13 +259,7 @@ def recognise(
     sel: Mapping[str, Any] | None = None,
     isel: Mapping[str, Any] | None = None,
 ) -> Recognised:
-    """Find the velocity of a dataset, its grid and its places.
-
-    Raises
-    ------
-    FieldError
-        When they cannot be told; the text has the remedy.
-    """
+    """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
     datasets = as_datasets(data)
     pair = choose_pair(datasets, u, v)
     factors = [to_metres_per_second(array) for array in (pair.u, pair.v)]
@@ -389,17 +322,15 @@ def recognise(
             a, b = (np.where(wet(), p, np.nan) for p in (a, b))
         return a[trimmed], b[trimmed]
 
-    grid = f"{words}, {'rows and columns' if places.is_line else 'curvilinear'}"
     return Recognised(
         pair=pair,
         along="earth" if pair.along == "earth" and not (staggered and by_words) else "grid",
         ahead=(way_ahead(pair.u, rows[0]), way_ahead(pair.v, columns[1])),
         staggered=staggered,
-        grid=grid,
+        grid=f"{words}, {'rows and columns' if places.is_line else 'curvilinear'}",
         coordinates=places.why,
         places=places,
         notes=tuple(notes),
-        level=one.level,
         u=one,
         v=two,
         steps=lru_cache(MOST_READ)(steps),
@@ -430,7 +361,6 @@ def _on_mesh(
         raise FieldError(msg)
     one, two = sections
     ((dim,),) = dims
-    nodal = NodalValues(mesh, dim)
     wet = wet_at(one, dim, datasets, choice)
 
     def steps(number: int) -> tuple[Floats, Floats]:
@@ -438,30 +368,29 @@ def _on_mesh(
         there = np.isfinite(u) & np.isfinite(v)
         if wet is not None:
             there &= wet(number)
-        return nodal.vector(np.where(there, u, np.nan), np.where(there, v, np.nan))
+        u, v = (np.where(there, part, np.nan) for part in (u, v))
+        return mesh.vectors_at_nodes(u, v, dim)
 
-    unit = "" if mesh.is_earth else "m"
+    places = Places(
+        mesh.a[None],
+        mesh.b[None],
+        is_earth=mesh.is_earth,
+        is_line=False,
+        why=mesh.coordinates,
+        unit="" if mesh.is_earth else "m",
+    )
     return Recognised(
         pair=pair,
         along="earth" if mesh.is_earth else "plane",
-        ahead=(1, 1),
-        staggered=False,
-        grid=f"{mesh.words}; velocity {'at nodes' if nodal.at_nodes else 'in faces'}",
+        grid=f"{mesh.words}; velocity {'at nodes' if dim == NODES else 'in faces'}",
         coordinates=mesh.coordinates,
-        places=Places(
-            mesh.a[None],
-            mesh.b[None],
-            is_earth=mesh.is_earth,
-            is_line=False,
-            why=mesh.coordinates,
-            unit=unit,
-        ),
+        places=places,
         notes=tuple(notes),
-        level=one.level,
         u=one,
         v=two,
         steps=lru_cache(MOST_READ)(steps),
         cells=(dim,),
+        factor=factor,
         mesh=mesh,
     )
 
@@ -503,9 +432,10 @@ def _scalars(known: Recognised, datasets: Sequence[Any], choice: Choice) -> dict
     # What a velocity has no level for may still have a value.
     choice.used.update(choice.sel, choice.isel)
     for ds in datasets:
-        if aside and any(name in ds for name in used):
+        has_velocity = any(name in ds for name in used)
+        if aside and has_velocity:
             continue
-        alone = known.mesh is not None and known.mesh.is_alone_in(ds, used)
+        alone = known.mesh is not None and known.mesh.names[0] in ds and not has_velocity
         for name, array in ds.data_vars.items():
             surface = _surface(known, array)
             numbers = array.dtype.kind in "fiu" and not OF_GRIDS.match(str(name))
@@ -537,12 +467,10 @@ def _scalar(known: Recognised, array: Any, steps: int, choice: Choice) -> _Scala
     if section.is_series and section.array.shape[0] != steps:
         return None
 
-    def on_grid(number: int) -> Floats:
-        return np.asarray(numbers_in(section.step(number))[known.kept][known.trimmed])
+    def at_nodes(number: int) -> Floats:
+        values = numbers_in(section.step(number))
+        if known.mesh is None:
+            return np.asarray(values[known.kept][known.trimmed])
+        return known.mesh.at_nodes(values, horizontal_dims(array)[0])
 
-    if known.mesh is None:
-        return _Scalar(section, on_grid, array.attrs)
-    nodal = NodalValues(known.mesh, horizontal_dims(array)[0])
-    return _Scalar(
-        section, lambda number: nodal.scalar(numbers_in(section.step(number))), array.attrs
-    )
+    return _Scalar(section, at_nodes, array.attrs)

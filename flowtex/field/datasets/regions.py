@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from flowtex.field.datasets.maps import (
 from flowtex.field.datasets.places import Places
 from flowtex.field.io.inspection.limits import values_in
 from flowtex.field.periodic import find_closure
+from flowtex.field.steps import Nodes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,34 +36,14 @@ if TYPE_CHECKING:
 LARGEST_VALUE = 1e15
 
 
-class RegionNodes(NamedTuple):
-    """What the nodes of a region have at one time step.
-
-    ``points`` are (J, I, 3), ``valid`` is (J, I), ``velocity`` (J, I, 3), zero at nodes that are
-    not valid, and ``scalars`` are (J, I) by name.
-    """
-
-    points: Floats
-    valid: Bools
-    velocity: Floats
-    scalars: dict[str, Floats]
-
-
 @dataclass(frozen=True, eq=False)
 class RegionLines:
     """Where the nodes lie: two lines of coordinates, and their numbers in the data.
 
-    Attributes
-    ----------
-    a, b
-        Longitude of each column (I,) and latitude of each row (J,), or x and y; ``shown`` is the
-        former on the map, where the last column may be the first one, a turn further.
-    rows, columns
-        Numbers in the data, (J,) and (I,).
-    projection
-        The map; ``None`` in a plane.
-    closed
-        Whether the last column is the first one again.
+    ``a`` is the longitude of each column (I,) and ``b`` the latitude of each row (J,), or x and y;
+    ``shown`` is the former on the map, where the last column may be the first one, a turn further.
+    ``rows`` and ``columns`` are numbers in the data. ``projection`` is the map, ``None`` in a
+    plane, and ``closed`` tells whether the last column is the first one again.
     """
 
     a: Floats
@@ -111,21 +92,10 @@ class Words:
 class Regions:
     """A dataset on lines of coordinates.
 
-    Attributes
-    ----------
-    words
-        What the field is called.
-    lines
-        Where its nodes lie.
-    components
-        The variables of the velocity, ([time,] row, column), and the ``factor`` that makes them
-        m/s.
-    mask
-        Positive where there is data, (row, column).
-    scalars
-        Further variables, by name.
-    numbers
-        Number of each time step in the variables.
+    ``words`` are what the field is called, and ``lines`` where its nodes lie. ``components`` are
+    the variables of the velocity, ([time,] row, column), and ``factor`` makes them m/s; ``mask`` is
+    positive where there is data, (row, column), and ``scalars`` are further variables. ``numbers``
+    are those of the time steps in the variables.
     """
 
     words: Words
@@ -143,11 +113,8 @@ class Regions:
         drawn = projection is not None and not projection.is_globe
         return (*self.scalars, "speed") if drawn else tuple(self.scalars)
 
-    def nodes(self, step: int, rows: Any, columns: Any, valid: Bools | None = None) -> RegionNodes:
-        """Read some rows and columns, as slices or numbers, at a time step.
-
-        ``valid`` tells the nodes that have data in the first step, where they are known.
-        """
+    def nodes(self, step: int, rows: Any, columns: Any, valid: Bools | None = None) -> Nodes:
+        """Read some rows and columns at a time step; ``valid`` is that of the first, if known."""
         number = self.numbers[step]
         u, v = self._components(number, rows, columns)
         velocity = self.lines.vectors(u, v, rows, columns)
@@ -162,7 +129,7 @@ class Regions:
         if len(self.names) > len(scalars):
             scalars["speed"] = np.hypot(u, v)
         points = self.lines.points(rows, columns)
-        return RegionNodes(points, valid, np.nan_to_num(velocity), scalars)
+        return Nodes(points, valid, np.nan_to_num(velocity), scalars)
 
     def _components(self, number: int, rows: Any, columns: Any) -> list[Floats]:
         parts = [self.read(one, number, rows, columns) * self.factor for one in self.components]
@@ -183,10 +150,7 @@ class Regions:
 
 
 def region_lines(places: Places, name: str | None) -> RegionLines | None:
-    """Return where the nodes lie on a map, or in a plane; ``None`` where regions are no islands.
-
-    That is where all nodes have to be known to tell what becomes of one of them.
-    """
+    """Return where the nodes lie; ``None`` where no region can be read without the others."""
     if not places.is_line or not all(_is_ordered(line) for line in places.lines):
         return None
     a, b = places.lines

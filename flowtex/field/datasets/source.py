@@ -11,25 +11,20 @@ from flowtex.earth import GLOBE, NAMES
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import LEVEL, Choice, axis_values, sections
 from flowtex.field.datasets.files import common_name, dataset_paths, open_datasets
+from flowtex.field.datasets.maps import projection_of
 from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.field.datasets.pairs import find_pairs, two_names
 from flowtex.field.datasets.read import as_datasets, recognise
 from flowtex.field.field import FlowField
 from flowtex.field.io.reader_errors import errors_of_file
-from flowtex.field.source import FlowSource
+from flowtex.field.source import FlowSource, Source
 
 
-class DatasetSource(FlowSource):
-    """Datasets of xarray's that belong together; blocks are the maps they can be drawn on.
+class DatasetSource(Source):
+    """Datasets of xarray's that belong together; blocks are the maps they can be drawn on."""
 
-    Raises
-    ------
-    FieldError
-        When no velocity is found in them.
-    """
-
-    def __init__(self, datasets: Any, *, name: str = "", path: Path | None = None) -> None:
-        super().__init__(None, name=name, path=path)
+    def __init__(self, datasets: Any, *, name: str = "") -> None:
+        super().__init__(name)
         self._datasets = as_datasets(datasets)
         pairs = find_pairs(self._datasets)
         likely = [pair for pair in pairs if pair.rank == pairs[0].rank]
@@ -39,7 +34,7 @@ class DatasetSource(FlowSource):
         found = (f"{pair.u.name},{pair.v.name}" for pair in (known.pair, *pairs))
         self.vectors = tuple(dict.fromkeys(found))
         if known.places.is_earth:
-            flat = known.map_name
+            flat = projection_of(known.places, None)[0].name
             self.blocks = tuple(dict.fromkeys((flat, GLOBE, *NAMES)))
             self.block_vectors = dict.fromkeys(self.blocks, self.vectors)
         self.block_word, self.reads_late = "Map", True
@@ -54,28 +49,22 @@ class DatasetSource(FlowSource):
         (section,) = sections([array], Choice({LEVEL: level}))
         return f"{LEVEL}={section.numbers.get(LEVEL, 0)}"
 
-    def part(self, block: str | None = None) -> FlowSource:
+    def part(self, block: str | None = None) -> Source:
         """Return this source, which draws on any of the maps."""
         if block is not None and block not in self.blocks:
             msg = f"block is {block!r}; there are {', '.join(self.blocks)}"
             raise FieldError(msg)
         return self
 
-    def field(
-        self,
-        *,
-        vectors: str | None = None,
-        plane: str | None = None,
-        block: str | None = None,
-        **options: Any,
+    def _field(
+        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
     ) -> FlowField:
-        """Make a field, as :meth:`FlowSource.field` does; a plane is such as ``"level=2"``."""
         names: dict[str, Any] = two_names(vectors or self.vectors[0])
         axis, _, number = (plane or self.default_plane).partition("=")
         array = next((ds[names["u"]] for ds in self._datasets if names["u"] in ds), None)
         if array is not None and axis in axis_values(array):
             options["isel"] = {**(options.get("isel") or {}), axis: int(number)}
-        with warnings.catch_warnings(), self._errors():
+        with warnings.catch_warnings():
             # The page shows what is chosen.
             warnings.simplefilter("ignore", DatasetNotice)
             return FlowField.from_xarray(
@@ -83,14 +72,8 @@ class DatasetSource(FlowSource):
             )
 
 
-def open_source(path: str | Path | Sequence[str | Path]) -> FlowSource:
-    """Open a file, or several files of data of the Earth.
-
-    Raises
-    ------
-    FieldError
-        When it cannot be read; the text starts with the path.
-    """
+def open_source(path: str | Path | Sequence[str | Path]) -> Source:
+    """Open a file, or several of data of the Earth; errors start with the path."""
     paths = dataset_paths(path)
     if not paths:
         if not isinstance(path, (str, Path)):
@@ -98,4 +81,4 @@ def open_source(path: str | Path | Sequence[str | Path]) -> FlowSource:
             raise FieldError(msg)
         return FlowSource.from_file(path)
     with errors_of_file(paths[0]):
-        return DatasetSource(open_datasets(paths), name=common_name(paths), path=paths[0])
+        return DatasetSource(open_datasets(paths), name=common_name(paths))

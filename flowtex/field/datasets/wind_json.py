@@ -28,13 +28,7 @@ WORDS = {"u": "eastward_wind", "v": "northward_wind"}
 
 
 def read_winds(path: Path) -> xr.Dataset:
-    """Read the components of the first level and time.
-
-    Raises
-    ------
-    FieldError
-        When the file has not this form.
-    """
+    """Read the components of the first level and time."""
     xarray = import_extra("xarray", "xarray")
     try:
         check_memory(JSON_GROWTH * path.stat().st_size, "the file")

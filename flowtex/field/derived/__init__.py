@@ -1,27 +1,71 @@
-"""Scalars that are computed from the velocity at the nodes."""
+"""Scalars that are computed from the velocity at the nodes, and its gradient along a surface."""
 
 from __future__ import annotations
 
-from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_positions
-from flowtex.field.derived.scalars import (
-    DERIVED,
-    FOLLOWED,
-    LONG_NAMES,
-    derived_steps,
-    derived_unit,
-    followed_steps,
-    speed_unit,
-)
+from collections.abc import Callable
+from typing import Any
 
-__all__ = [
-    "DERIVED",
-    "FOLLOWED",
-    "LONG_NAMES",
-    "NodeGradient",
-    "derived_steps",
-    "derived_unit",
-    "followed_steps",
-    "node_gradient",
-    "speed_unit",
-    "true_positions",
-]
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex.earth import Projection
+from flowtex.errors import FieldError
+from flowtex.field.derived.gradient import node_gradient, true_velocity
+from flowtex.field.steps import Steps, map_steps
+from flowtex.field.surface import Surface
+
+#: What is computed of the gradient a[m, n], the change of component m along direction n.
+DERIVED: dict[str, Callable[[Floats], Floats]] = {
+    "vorticity": lambda a: a[1, 0] - a[0, 1],
+    "divergence": lambda a: a[0, 0] + a[1, 1],
+    "shear": lambda a: np.hypot(a[0, 0] - a[1, 1], a[0, 1] + a[1, 0]),
+    "okubo_weiss": lambda a: (a[0, 0] - a[1, 1]) ** 2 + 4 * a[0, 1] * a[1, 0],
+}
+#: Those for which particles are followed over a horizon, from a field; the tracer adds them.
+FOLLOWED: dict[str, Callable[[Any, float], Steps]] = {}
+#: Words for them, where there are other ones than their names.
+LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
+
+
+def derived_steps(
+    name: str, surface: Surface, projection: Projection | None, velocity: Steps
+) -> Steps:
+    """Return one of :data:`DERIVED`, (T, J, I); NaN where too few neighbours have data."""
+    if name not in DERIVED:
+        msg = f"{name!r} cannot be derived; expected one of {', '.join((*DERIVED, *FOLLOWED))}"
+        raise FieldError(msg)
+    gradient, compute = node_gradient(surface, projection), DERIVED[name]
+
+    def scalar(step: Floats) -> Floats:
+        with np.errstate(invalid="ignore"):
+            moved = true_velocity(step, surface.points, projection)
+            return gradient.with_poles(compute(gradient.of_vectors(moved)))
+
+    return map_steps(velocity, scalar)
+
+
+def followed_steps(name: str, field: Any, horizon: float | None) -> Steps:
+    """Return one of :data:`FOLLOWED` at each node and step of a field, (T, J, I)."""
+    if name not in FOLLOWED:
+        msg = f"horizon={horizon} for {name!r}; it belongs to {', '.join(FOLLOWED)}"
+        raise FieldError(msg)
+    if horizon is None or not (np.isfinite(horizon) and horizon != 0):
+        msg = f"horizon is {horizon} for {name!r}; expected a time other than 0"
+        raise FieldError(msg)
+    return FOLLOWED[name](field, horizon)
+
+
+def derived_unit(name: str, time_unit: str) -> str:
+    """Return the unit of a derived scalar; empty where that of time is not known."""
+    if not time_unit:
+        return ""
+    return f"1/{time_unit}²" if name == "okubo_weiss" else f"1/{time_unit}"
+
+
+def speed_unit(length: str, time: str) -> str:
+    """Return the word for the unit of speed; empty when one of the units is not known."""
+    if not length or not time:
+        return ""
+    if time.startswith(f"{length} / "):
+        return time.removeprefix(f"{length} / ")
+    return f"{length} / ({time})" if "/" in time else f"{length}/{time}"

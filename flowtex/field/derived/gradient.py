@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.earth import GLOBE, Projection
@@ -46,7 +47,7 @@ def node_gradient(surface: Surface, projection: Projection | None) -> NodeGradie
     """Return the gradient at the nodes of a surface; on a flat map it is the one on the sphere."""
     points = true_positions(surface.points, projection)
     if isinstance(surface, TriangleSurface):
-        return _TriangleGradient(surface, points).node_gradient
+        return _triangle_gradient(surface, points)
     return _GridGradient(surface, points).node_gradient
 
 
@@ -54,17 +55,11 @@ def node_gradient(surface: Surface, projection: Projection | None) -> NodeGradie
 class NodeGradient:
     """Derivatives at nodes along two orthonormal directions of the tangent plane.
 
-    Arrays have their components first: those of vectors are (3, J, I).
-
-    Attributes
-    ----------
-    directions
-        The two directions, (2, 3, J, I). Turning from the first to the second is positive: seen
-        from the side of a flat surface to which its largest normal component points, and from
-        outside on any other.
-    derivative
-        Takes an array (C, J, I) to its derivatives, (2, C, J, I); NaN where there are too few
-        neighbours with data.
+    Arrays have their components first: those of vectors are (3, J, I). Turning from the first of
+    the ``directions``, (2, 3, J, I), to the second is positive: seen from the side of a flat
+    surface to which its largest normal component points, and from outside on any other.
+    ``derivative`` takes an array (C, J, I) to its derivatives, (2, C, J, I); NaN where there are
+    too few neighbours with data.
     """
 
     directions: Floats
@@ -72,20 +67,14 @@ class NodeGradient:
     poles: tuple[Pole, ...] = ()
 
     def with_poles(self, nodal: Floats) -> Floats:
-        """Give the nodes of each pole, whose directions differ, the mean of the line beside it.
-
-        It is off by a term of second order. ``nodal`` is (J, I), and is changed.
-        """
+        """Give nodes of poles, whose directions differ, the mean beside them, in place."""
         for pole in self.poles:
             lines = pole.lines(nodal)
             lines[pole.line] = lines[pole.line + pole.inward, :-1].mean()
         return nodal
 
     def of_vectors(self, vectors: Floats) -> Floats:
-        """Return the matrix a[m, n], (2, 2, J, I): change of component m along direction n.
-
-        ``vectors`` are (J, I, 3); what of them is normal to the surface does not count.
-        """
+        """Return the change of component m along direction n, (2, 2, J, I), of (J, I, 3)."""
         one, two = self.directions
         parts = np.moveaxis(vectors, -1, 0)
         along = _dot(parts, one) * one
@@ -164,11 +153,7 @@ class _GridGradient:
 def _one_sided(
     data: Floats, valid: Bools, line: Indices, place: Indices, turn: Floats | None
 ) -> Floats:
-    """Return differences (C, N) beside a border or a gap: of second order, or first, or NaN.
-
-    ``turn`` is the change of ``data`` (C, lines, places) around a closed axis, ``None`` where it
-    does not close.
-    """
+    """Return differences (C, N) beside a border or a gap; ``turn`` is what a closed axis adds."""
     last = data.shape[1] - 1
     here, result = data[:, line, place], np.full((len(data), len(line)), np.nan)
     usable, done = valid[line, place], np.zeros(len(line), dtype=bool)
@@ -197,84 +182,72 @@ def _dot(one: Floats, two: Floats) -> Floats:
     return np.asarray(result)
 
 
-class _TriangleGradient:
-    """Quadratic fits to the nodes around each node of a surface of triangles.
+def _triangle_gradient(surface: TriangleSurface, points: Floats) -> NodeGradient:
+    """Fit quadratic functions to the nodes around each node, (C, 1, N), of a surface of triangles.
 
     Zhang and Naga 2005, A new finite element gradient recovery method: superconvergence property.
     The fit is of second order on triangles of any shape, which means of the triangles' own
     gradients are not.
     """
+    if points is not surface.points:
+        surface = TriangleSurface(points, surface.triangles, surface.valid)
+    points, (one, two) = surface.points[0], surface.tangents[:, 0]
+    if _clockwise(one.T[:, None], two.T[:, None], points.T[:, None], surface.valid):
+        two = -two
+    rows, columns = _near_nodes(surface)
+    count = len(points)
+    offset = points[columns] - points[rows]
+    x, y = (np.einsum("ec,ec->e", offset, d[rows]) for d in (one, two))
+    degree = np.bincount(rows, minlength=count)
+    size = np.sqrt(np.bincount(rows, x * x + y * y, count) / np.maximum(degree, 1))
+    size[size == 0] = 1.0
+    x, y = x / size[rows], y / size[rows]
+    terms = np.stack([x, y, x * x, x * y, y * y])
+    terms[2:, degree[rows] < QUADRATIC_NEIGHBOURS] = 0.0
+    weight = 1 / (x * x + y * y + 1e-2)
+    normal = np.empty((count, 5, 5))
+    for a in range(5):
+        for b in range(a, 5):
+            normal[:, a, b] = np.bincount(rows, weight * terms[a] * terms[b], count)
+            normal[:, b, a] = normal[:, a, b]
+    largest = normal.max(axis=(1, 2))
+    normal += np.maximum(largest, 1e-300)[:, None, None] * REGULARISATION * np.eye(5)
+    known = (degree >= 2) & (np.linalg.det(normal[:, :2, :2]) > 1e-6 * largest**2)
+    normal[~known] = np.eye(5)
+    inverse = np.linalg.inv(normal)[:, :2]
+    operators = []
+    for share in inverse.transpose(1, 0, 2):
+        entries = weight * np.einsum("ek,ke->e", share[rows], terms) / size[rows]
+        matrix = scipy.sparse.csr_array((entries, (rows, columns)), (count, count))
+        own = np.where(known, -np.bincount(rows, entries, count), np.nan)
+        operators.append(matrix + scipy.sparse.diags_array(own))
 
-    def __init__(self, surface: TriangleSurface, points: Floats) -> None:
-        moved = TriangleSurface(points, surface.triangles, surface.valid)
-        self._surface = surface if points is surface.points else moved
+    def derivative(nodal: Floats) -> Floats:
+        columns = nodal[:, 0].T
+        return np.stack([(operator @ columns).T[:, None] for operator in operators])
 
-    @cached_property
-    def node_gradient(self) -> NodeGradient:
-        """The gradient of arrays (C, 1, N)."""
-        from scipy import sparse
+    directions = np.stack([one, two]).transpose(0, 2, 1)[:, :, None]
+    return NodeGradient(directions, derivative)
 
-        points, (one, two) = self._surface.points[0], self._surface.tangents[:, 0]
-        if _clockwise(one.T[:, None], two.T[:, None], points.T[:, None], self._surface.valid):
-            two = -two
-        rows, columns = self._neighbours()
-        count = len(points)
-        offset = points[columns] - points[rows]
-        x, y = (np.einsum("ec,ec->e", offset, d[rows]) for d in (one, two))
-        degree = np.bincount(rows, minlength=count)
-        size = np.sqrt(np.bincount(rows, x * x + y * y, count) / np.maximum(degree, 1))
-        size[size == 0] = 1.0
-        x, y = x / size[rows], y / size[rows]
-        terms = np.stack([x, y, x * x, x * y, y * y])
-        terms[2:, degree[rows] < QUADRATIC_NEIGHBOURS] = 0.0
-        weight = 1 / (x * x + y * y + 1e-2)
-        normal = np.empty((count, 5, 5))
-        for a in range(5):
-            for b in range(a, 5):
-                normal[:, a, b] = np.bincount(rows, weight * terms[a] * terms[b], count)
-                normal[:, b, a] = normal[:, a, b]
-        largest = normal.max(axis=(1, 2))
-        normal += np.maximum(largest, 1e-300)[:, None, None] * REGULARISATION * np.eye(5)
-        known = (degree >= 2) & (np.linalg.det(normal[:, :2, :2]) > 1e-6 * largest**2)
-        normal[~known] = np.eye(5)
-        inverse = np.linalg.inv(normal)[:, :2]
-        operators = []
-        for share in inverse.transpose(1, 0, 2):
-            entries = weight * np.einsum("ek,ke->e", share[rows], terms) / size[rows]
-            matrix = sparse.csr_array((entries, (rows, columns)), (count, count))
-            own = np.where(known, -np.bincount(rows, entries, count), np.nan)
-            operators.append(matrix + sparse.diags_array(own))
 
-        def derivative(nodal: Floats) -> Floats:
-            columns = nodal[:, 0].T
-            return np.stack([(operator @ columns).T[:, None] for operator in operators])
-
-        directions = np.stack([one, two]).transpose(0, 2, 1)[:, :, None]
-        return NodeGradient(directions, derivative)
-
-    def _neighbours(self) -> tuple[Indices, Indices]:
-        """Return pairs of nodes at most two edges apart, the first of each pair in order."""
-        from scipy import sparse
-
-        corners = self._surface.triangles[self._surface.cells]
-        a, b = corners.ravel(), np.roll(corners, 1, axis=1).ravel()
-        count = self._surface.valid.size
-        ones = np.ones(2 * len(a), dtype=np.int32)
-        edges = sparse.csr_array(
-            (ones, (np.concatenate([a, b]), np.concatenate([b, a]))), (count, count)
-        )
-        near = (edges @ edges + edges).tocoo()
-        apart = near.row != near.col
-        rows, columns = near.row[apart], near.col[apart]
-        order = np.argsort(rows, kind="stable")
-        return rows[order].astype(np.intp), columns[order].astype(np.intp)
+def _near_nodes(surface: TriangleSurface) -> tuple[Indices, Indices]:
+    """Return pairs of nodes at most two edges apart, the first of each pair in order."""
+    corners = surface.triangles[surface.cells]
+    a, b = corners.ravel(), np.roll(corners, 1, axis=1).ravel()
+    count = surface.valid.size
+    ones = np.ones(2 * len(a), dtype=np.int32)
+    edges = scipy.sparse.csr_array(
+        (ones, (np.concatenate([a, b]), np.concatenate([b, a]))), (count, count)
+    )
+    near = (edges @ edges + edges).tocoo()
+    apart = near.row != near.col
+    rows, columns = near.row[apart], near.col[apart]
+    order = np.argsort(rows, kind="stable")
+    return rows[order].astype(np.intp), columns[order].astype(np.intp)
 
 
 def _clockwise(one: Floats, two: Floats, points: Floats, valid: Bools) -> bool:
-    """Return whether turning from the first direction to the second is negative.
-
-    Some of the nodes tell.
-    """
+    """Return whether turning from the first direction to the second is negative, by some nodes."""
     some = tuple(slice(None, None, -(-count // MOST_JUDGED)) for count in valid.shape)
     one, two, points = (a[:, *some] for a in (one, two, points))
     normal = np.stack([one[a] * two[b] - one[b] * two[a] for a, b in ((1, 2), (2, 0), (0, 1))])

@@ -181,7 +181,7 @@ class FieldConstructors:
         >>> flowtex.FlowField.from_file("airfoil.vts").shape
         (65, 193)
         """
-        from flowtex.field.io.file_fields import errors_of, read_files
+        from flowtex.field.io.files import errors_of, read_files
 
         options: dict[str, Any] = {"plane": plane, "slice": slice, "contour": contour}
         options |= {"block": block, "periodic": periodic, "sign_free": sign_free, "level": level}

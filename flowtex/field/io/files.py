@@ -1,4 +1,4 @@
-"""From files to the arrays of a field.
+"""From files to the arrays of a field: of a mesh, or of data of the Earth.
 
 PyVista's readers open most files; PLOT3D, which says little about itself, goes through
 :mod:`flowtex.field.io.plot3d`.
@@ -8,16 +8,23 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from flowtex.errors import FieldError
+from flowtex.field.datasets.files import common_name, dataset_paths, open_datasets
+from flowtex.field.datasets.pairs import two_names
+from flowtex.field.datasets.read import read_datasets
+from flowtex.field.datasets.regions import Regions
 from flowtex.field.io import plot3d
 from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.io.from_pyvista import read_meshes
 from flowtex.field.io.inspection.files import inspect_file
 from flowtex.field.io.meshes import time_steps, times_of
+from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.readers import open_reader
 from flowtex.field.io.surfaces import beside
 
@@ -29,6 +36,10 @@ _KNOWN_FORMATS = (
 
 #: A URL of which ``pathlib`` has made a path; one letter is a drive.
 _ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")
+
+
+#: Arguments that are for meshes; the others are for data of the Earth.
+OF_MESHES = ("plane", "slice", "contour", "block", "periodic", "sign_free")
 
 
 @dataclass(frozen=True)
@@ -53,10 +64,7 @@ def read_file(
     vectors: str | None = None,
     **options: Any,
 ) -> GridArrays | TriangleArrays:
-    """Read what a field needs from a file, with the parameters of :meth:`FlowField.from_file`.
-
-    Whatever this raises is to be named by :func:`~flowtex.field.io.reader_errors.errors_of_file`.
-    """
+    """Read what a field needs from a mesh; errors are to be named by :func:`errors_of`."""
     file = open_file(path)
     if file.problem:
         raise FieldError(file.problem)
@@ -68,11 +76,7 @@ def read_file(
 
 
 def open_file(path: str | Path) -> OpenFile:
-    """Open a file, as for :meth:`FlowField.from_file`.
-
-    The FieldError for one that is missing, empty, or of an unknown format is to be named by
-    :func:`~flowtex.field.io.reader_errors.errors_of_file`.
-    """
+    """Open a file; errors are to be named by :func:`errors_of`."""
     file = Path(path).expanduser()
     _check_path(file)
     inspect_file(file)
@@ -90,7 +94,11 @@ def open_file(path: str | Path) -> OpenFile:
     except ValueError as error:
         if "does not support a file" not in str(error):
             raise
-        raise FieldError(_unknown_format(file)) from error
+        what = repr(file.suffix) if file.suffix else "no suffix"
+        if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
+            what = "no PLOT3D grid of any layout"
+        msg = f"the format is not known ({what}); expected {_KNOWN_FORMATS}"
+        raise FieldError(msg) from error
 
 
 def _check_path(file: Path) -> None:
@@ -125,14 +133,6 @@ def _check_path(file: Path) -> None:
         raise FieldError(problem)
 
 
-def _unknown_format(file: Path) -> str:
-    """Return the fault of a file that no reader takes."""
-    what = repr(file.suffix) if file.suffix else "no suffix"
-    if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
-        what = "no PLOT3D grid of any layout"
-    return f"the format is not known ({what}); expected {_KNOWN_FORMATS}"
-
-
 def _at_time(source: Any, time: float) -> Any:
     """Read the one step of a series that is asked for."""
     if isinstance(source, list):
@@ -149,3 +149,44 @@ def _at_time(source: Any, time: float) -> Any:
     listed = ", ".join(f"{t:g}" for t in times[:8]) + (", ..." if len(times) > 8 else "")
     msg = f"time is {time!r}; the file has {f'the times {listed}' if times else 'no times'}"
     raise FieldError(msg)
+
+
+def read_files(
+    path: str | Path | Sequence[str | Path],
+    *,
+    vectors: str | None = None,
+    time: float | str | None = None,
+    regions: bool = False,
+    **options: Any,
+) -> GridArrays | TriangleArrays | Regions:
+    """Read what a field needs; errors are to be named by :func:`errors_of`."""
+    paths = dataset_paths(path)
+    of_meshes = {name: options.pop(name) for name in OF_MESHES if name in options}
+    chosen = {name: value for name, value in options.items() if value is not None}
+    if paths:
+        _refuse(of_meshes, "meshes, and this is data of the Earth")
+        if time is not None:
+            chosen["sel"] = {**chosen.get("sel", {}), "time": time}
+        chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
+        return read_datasets(open_datasets(paths), **chosen)
+    _refuse(chosen, "data of the Earth, and this is a mesh")
+    if not isinstance(path, (str, Path)):
+        msg = f"{len(path)} files are given, and a mesh is read from one; name one of them"
+        raise FieldError(msg)
+    if isinstance(time, str):
+        msg = f"time is {time!r}; expected a number, one of the times of the file"
+        raise FieldError(msg)
+    return read_file(path, time=time, vectors=vectors, **of_meshes)
+
+
+def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager[None]:
+    """Name a file, or the first of several, in what goes wrong until a field is made of it."""
+    paths = dataset_paths(path)
+    first = paths[0] if paths else path
+    return errors_of_file(first if isinstance(first, (str, Path)) else "several files")
+
+
+def _refuse(choices: Mapping[str, Any], what: str) -> None:
+    if given := [name for name, value in choices.items() if value not in (None, False)]:
+        msg = f"{', '.join(given)} is for {what}; leave it out"
+        raise FieldError(msg)

@@ -39,13 +39,7 @@ from flowtex.field.io.planes import (
 )
 from flowtex.field.io.surfaces.cuts import find_cut
 from flowtex.field.io.surfaces.steps import SheetStep, read_surfaces, stacked
-from flowtex.field.io.vectors import (
-    MeshArray,
-    catalogue,
-    choose_vectors,
-    values_of,
-    vector_faults,
-)
+from flowtex.field.io.vectors import MeshArray, catalogue, choose_vectors, values_of, vector_faults
 from flowtex.field.periodic import find_closure
 from flowtex.field.signs import axes, products
 
@@ -75,11 +69,7 @@ def read_meshes(
     block: int | str | None = None,
     name: str = "",
 ) -> GridArrays | TriangleArrays:
-    """Read what a field needs from a mesh or a series of them.
-
-    Parameters and errors are those of :meth:`FlowField.from_pyvista`; the block is picked from
-    each step.
-    """
+    """Read what :meth:`FlowField.from_pyvista` needs from a mesh or a series of them."""
     cut = find_cut(slice, contour)
     if cut is not None and plane is not None:
         words = "slice" if slice is not None else "contour"

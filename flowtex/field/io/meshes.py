@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import Bools, Floats
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field.io.vectors import MeshArray, candidates, catalogue, missing_arrays
@@ -42,11 +42,7 @@ class TimeStep:
 def time_steps(
     source: Any, block: int | str | None = None, *, cut: bool = False
 ) -> Iterator[TimeStep]:
-    """Go through the time steps of a mesh, a MultiBlock, a list of either, or a reader.
-
-    With a block, by its name or number, only of that one; with a ``cut`` of all volumes together.
-    Raises a FieldError when something is met that is no mesh.
-    """
+    """Go through the time steps of a mesh, blocks, a list or a reader; of one block if named."""
     if is_reader(source):
         yield from _read(source, block, cut=cut)
     elif isinstance(source, (list, tuple)):
@@ -80,10 +76,7 @@ def times_of(source: Any) -> list[float]:
 
 
 def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Go through the meshes in a tree of blocks, with their paths; empty blocks are left out.
-
-    A block without a name is named after its number, and so are those of one name.
-    """
+    """Go through the meshes in a tree of blocks by path; those of one name get their number."""
     import pyvista as pv
 
     if not isinstance(mesh, pv.MultiBlock):
@@ -116,9 +109,9 @@ def drawn_parts(
     """
     parts = parts_of(mesh)
     grids = {name: part for name, part in parts.items() if is_structured(part)}
-    flat = {name: part for name, part in parts.items() if cell_dimension(part) == 2}
-    solid = {name: part for name, part in parts.items() if cell_dimension(part) == 3}
-    usable = {name: grid for name, grid in grids.items() if cell_dimension(grid) > 1}
+    flat = {name: part for name, part in parts.items() if part.max_cell_dimensionality == 2}
+    solid = {name: part for name, part in parts.items() if part.max_cell_dimensionality == 3}
+    usable = {name: grid for name, grid in grids.items() if grid.max_cell_dimensionality > 1}
     meant = usable or grids or solid or flat or parts
     if cut and solid:
         meant = solid
@@ -161,7 +154,7 @@ def several_fault(parts: dict[str, Any], label: str) -> str:
         f"{number} ({name}, {part_size(part)})" for number, (name, part) in enumerate(parts.items())
     ]
     more = ", ..." if len(listed) > MOST_LISTED else ""
-    solid = any(cell_dimension(part) == 3 for part in parts.values())
+    solid = any(part.max_cell_dimensionality == 3 for part in parts.values())
     return (
         f"{label} has {len(parts)} blocks, and no time steps of one: "
         f"{', '.join(listed[:MOST_LISTED])}{more}; choose one, as in block="
@@ -188,10 +181,7 @@ def _read(reader: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeSt
 
 
 def pick(mesh: Any, block: int | str) -> Any:
-    """Return one of the meshes in a mesh, by number or by name.
-
-    Raises a FieldError when there is none.
-    """
+    """Return one of the meshes in a mesh, by number or by name."""
     parts = parts_of(mesh)
     for number, (name, part) in enumerate(parts.items()):
         if block in (number, name):
@@ -240,31 +230,6 @@ def _together(parts: dict[str, Any]) -> Any:
     with_flow = {name: part for name, part in parts.items() if candidates(part)} or parts
     notify(f"{len(with_flow)} blocks are drawn together: {', '.join(with_flow)}")
     return pv.MultiBlock(list(with_flow.values())).combine()
-
-
-def cell_dimension(mesh: Any) -> int:
-    """Return the dimension of the cells of a mesh: 3 where there is any volume, 0 for points."""
-    import pyvista as pv
-
-    if isinstance(mesh, pv.UnstructuredGrid):
-        return int(cell_dimensions(mesh).max(initial=0))
-    if isinstance(mesh, pv.PolyData):
-        return 2 if mesh.GetNumberOfPolys() or mesh.n_strips else int(mesh.n_lines > 0)
-    return sum(n > 1 for n in mesh.dimensions) if is_structured(mesh) else 0
-
-
-def cell_dimensions(mesh: Any) -> Indices:
-    """Return the dimension of each cell of an unstructured mesh, (M,)."""
-    from vtkmodules.vtkCommonDataModel import vtkGenericCell
-
-    # Numbers of types are small: to count them is quicker than to sort them.
-    types = np.asarray(mesh.celltypes)
-    counts = np.bincount(types)
-    cell, dimension = vtkGenericCell(), np.zeros(len(counts), dtype=np.intp)
-    for kind in np.flatnonzero(counts):
-        cell.SetCellType(int(kind))
-        dimension[kind] = cell.GetCellDimension()
-    return dimension[types]
 
 
 def check_arrays(step: TimeStep, vectors: MeshArray) -> None:

@@ -59,10 +59,7 @@ def count_nodes(dimensions: tuple[int, int, int]) -> str:
 
 
 def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
-    """Return faults in a choice of plane, ``"k=20"`` and the like.
-
-    ``None`` is right for a mesh of (I, J, K) nodes that is one plane itself.
-    """
+    """Return faults in a choice of plane; ``None`` is right where the mesh is one itself."""
     size = count_nodes(dimensions)
     if min(dimensions) < 1:
         return ["the mesh is empty: check that the file or the filter that made it gave any nodes"]

@@ -118,10 +118,7 @@ def _grids(numbers: list[int], count: int, axes: int) -> tuple[tuple[int, ...], 
 
 
 def find_solution(grid: Path) -> Path:
-    """Find the solution beside a grid: ``xyz`` in its name gives ``q``, or its suffix does.
-
-    When there is none, a FieldError says which names were looked for.
-    """
+    """Find the solution beside a grid: ``xyz`` in its name gives ``q``, or its suffix does."""
     names = list(dict.fromkeys(_solution_names(grid)))
     for name in names:
         if (grid.parent / name).is_file():

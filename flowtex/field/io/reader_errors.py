@@ -25,10 +25,7 @@ _VTK_GLOBALS = threading.RLock()
 
 @contextmanager
 def errors_of_file(path: str | Path) -> Iterator[None]:
-    """Turn what readers raise, and errors that VTK logs, into one FieldError with the path first.
-
-    What VTK warns of becomes a UserWarning. One thread at a time reads files.
-    """
+    """Name the file in what readers raise and VTK logs, one thread at a time."""
     file = Path(path).expanduser()
     cause: Exception | None = None
     with _VTK_GLOBALS, _vtk_log() as catcher:

@@ -11,34 +11,22 @@ from typing import Any
 
 
 def open_reader(file: Path) -> Any:
-    """Return the reader of a file: one of PyVista's, or one that is used alike.
-
-    Raises a ValueError for a format that is not known.
-    """
-    import pyvista as pv
-
-    if file.suffix.lower() == ".foam" and _decomposed(file.parent):
-        return _decomposed_foam(file)
-    reader: Any = pv.get_reader(str(file))
-    return _CGNSReader(reader) if isinstance(reader, pv.CGNSReader) else reader
-
-
-def _decomposed(case: Path) -> bool:
-    """Whether a case of OpenFOAM has its mesh in the folders of the processors alone."""
-    return (case / "processor0").is_dir() and not (case / "constant" / "polyMesh").is_dir()
-
-
-def _decomposed_foam(file: Path) -> Any:
+    """Return the reader of a file; a ValueError tells of a format that is not known."""
     import pyvista as pv
 
     class DecomposedReader(pv.POpenFOAMReader):
-        """PyVista's reader, which has to know before it opens the case."""
+        """PyVista's reader, which has to know of pieces before it opens the case."""
 
         def _set_defaults(self) -> None:
             super()._set_defaults()
             self._reader.SetCaseType(0)
 
-    return DecomposedReader(str(file))
+    case = file.parent
+    in_pieces = (case / "processor0").is_dir() and not (case / "constant" / "polyMesh").is_dir()
+    if file.suffix.lower() == ".foam" and in_pieces:
+        return DecomposedReader(str(file))
+    reader: Any = pv.get_reader(str(file))
+    return _CGNSReader(reader) if isinstance(reader, pv.CGNSReader) else reader
 
 
 class _CGNSReader:

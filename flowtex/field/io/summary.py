@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.io.files import OpenFile, open_file
 from flowtex.field.io.meshes import (
-    cell_dimension,
     drawn_parts,
     hidden_nodes,
     is_reader,
@@ -31,23 +30,11 @@ from flowtex.field.io.meshes import (
 from flowtex.field.io.planes import plane_faults
 from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.surfaces.cuts import cut_faults
-from flowtex.field.io.vectors import (
-    MeshArray,
-    candidates,
-    catalogue,
-    values_of,
-    vector_faults,
-)
+from flowtex.field.io.vectors import MeshArray, candidates, catalogue, values_of, vector_faults
 
 
-@dataclass(frozen=True)
-class ArraySummary:
-    """One array of a file.
-
-    ``components`` is the count of numbers at each point or cell; ``low`` and ``high`` are the range
-    of the finite values, of the lengths where there are several components, NaN where there are
-    none. ``parts`` are the names of the arrays that make a vector together.
-    """
+class ArraySummary(NamedTuple):
+    """One array, its finite range, of lengths where it is a vector, and what it is made of."""
 
     name: str
     where: Literal["points", "cells"]
@@ -57,13 +44,8 @@ class ArraySummary:
     parts: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class BlockSummary:
-    """One block of a file.
-
-    ``name`` is its path, ``number`` what counts those with cells, ``None`` for the others,
-    ``size`` words for how large it is.
-    """
+class BlockSummary(NamedTuple):
+    """One block: its path, and the number that counts those with cells; ``None`` for others."""
 
     name: str
     number: int | None
@@ -75,28 +57,12 @@ class BlockSummary:
 class FileSummary:
     """What a file holds.
 
-    Attributes
-    ----------
-    grid
-        Type of its mesh: of the block that is meant where it has several.
-    size
-        Words for how large it is.
-    cells
-        How many cells an unstructured mesh has of each kind.
-    bounds
-        Its ends, ((x, x), (y, y), (z, z)).
-    volume
-        Whether there is a volume to cut.
-    blocks
-        The blocks that hold something, when there are several.
-    candidates
-        Names of the arrays that may be the velocity.
-    times
-        Times of a series; empty for a single mesh.
-    blanked
-        Number of nodes that the file hides.
-    problem
-        What keeps :meth:`FlowField.from_file` from reading it as it stands; empty if nothing.
+    ``grid`` is the type of its mesh: of the block that is meant where it has several. ``size`` are
+    words, ``cells`` counts those of an unstructured mesh by kind, ``bounds`` are ends, ((x, x), (y,
+    y), (z, z)), and ``volume`` tells whether there is one to cut. ``blocks`` are those that hold
+    something, when there are several; ``candidates`` are names of what may be the velocity,
+    ``blanked`` counts hidden nodes, and ``problem`` is what keeps :meth:`FlowField.from_file` from
+    reading it as it stands.
     """
 
     path: Path
@@ -114,11 +80,7 @@ class FileSummary:
 
 
 def describe(path: str | Path, block: int | str | None = None) -> FileSummary:
-    """Summarize a file, whether or not a flow can be drawn from it; the first step of a series.
-
-    The arrays are those of the block, by its name or number, or of the one that is meant.
-    Raises a FieldError when the file cannot be read at all, or has no such block.
-    """
+    """Summarize the first step of a file, whether or not a flow can be drawn from it."""
     with errors_of_file(path):
         file = open_file(path)
         mesh = file.source.read() if is_reader(file.source) else file.source
@@ -145,7 +107,7 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
         size=part_size(part) if data else "",
         cells=_cells(part),
         bounds=tuple(zip(part.bounds[::2], part.bounds[1::2], strict=True)) if data else (),
-        volume=data and cell_dimension(part) == 3,
+        volume=data and part.max_cell_dimensionality == 3,
         blocks=tuple(_blocks(parts, parts_of(mesh))) if len(parts) > 1 else (),
         arrays=tuple(_array(part, a) for a in (*arrays, *(a for a in found if a.parts))),
         candidates=tuple(names),

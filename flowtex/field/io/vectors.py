@@ -7,6 +7,7 @@ or whose names tell that they belong together (:mod:`flowtex.field.io.components
 from __future__ import annotations
 
 import difflib
+import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -31,8 +32,8 @@ class MeshArray:
     name: str
     where: Literal["points", "cells"]
     components: int
-    numeric: bool
-    real: bool
+    numeric: bool = True
+    real: bool = True
     parts: tuple[str, ...] = ()
 
     def __str__(self) -> str:
@@ -42,38 +43,30 @@ class MeshArray:
 
 def catalogue(mesh: Any) -> list[MeshArray]:
     """List the arrays on the points and cells of a mesh, without those that only hide."""
-    arrays = []
-    for where in _PLACES:
-        data = mesh.point_data if where == "points" else mesh.cell_data
-        for name in data:
-            if name in BLANKING:
-                continue
-            array = np.asarray(data[name])
-            arrays.append(
-                MeshArray(
-                    name=name,
-                    where=where,
-                    components=int(np.prod(array.shape[1:], dtype=int)),
-                    numeric=array.dtype.kind in "fiub",
-                    real=array.dtype.kind == "f",
-                )
-            )
-    return arrays
+    return [
+        MeshArray(name, where, math.prod(shape), numeric=kind in "fiub", real=kind == "f")
+        for where in _PLACES
+        for data in [_data(mesh, where)]
+        for name in data
+        for shape, kind in [(np.shape(data[name])[1:], np.asarray(data[name]).dtype.kind)]
+        if name not in BLANKING
+    ]
+
+
+def _data(mesh: Any, where: str) -> Any:
+    return mesh.point_data if where == "points" else mesh.cell_data
 
 
 def values_of(mesh: Any, array: MeshArray) -> AnyArray:
     """Return the values of an array, (N,) or (N, C)."""
-    data = mesh.point_data if array.where == "points" else mesh.cell_data
+    data = _data(mesh, array.where)
     if array.parts:
         return np.column_stack([np.asarray(data[name]) for name in array.parts])
     return np.asarray(data[array.name])
 
 
 def candidates(mesh: Any) -> list[MeshArray]:
-    """Arrays that may be the velocity: real, two or three components, no normals or positions.
-
-    Where there are none, those that single components make by their names.
-    """
+    """Arrays that may be the velocity, or those that single components make by their names."""
     named = set()
     for data in (mesh.GetPointData(), mesh.GetCellData()):
         named |= {a.GetName() for a in (data.GetNormals(), data.GetTCoords()) if a is not None}
@@ -96,12 +89,8 @@ def _found(mesh: Any) -> list[MeshArray]:
     for where in _PLACES:
         names = [a.name for a in arrays if a.where == where and a.real and a.components == 1]
         for name, parts in find_vectors(names, pairs=low == high).items():
-            found.append(_joined(name, where, parts))
+            found.append(MeshArray(name, where, len(parts), parts=parts))
     return found
-
-
-def _joined(name: str, where: Literal["points", "cells"], parts: tuple[str, ...]) -> MeshArray:
-    return MeshArray(name, where, len(parts), numeric=True, real=True, parts=parts)
 
 
 def missing_arrays(mesh: Any, vectors: MeshArray) -> list[str]:
@@ -154,7 +143,7 @@ def _meant(mesh: Any, vectors: Any) -> list[MeshArray]:
         return []
     scalars = {(a.where, a.name) for a in arrays if a.numeric and a.components == 1}
     return [
-        _joined(",".join(words), where, words)
+        MeshArray(",".join(words), where, len(words), parts=words)
         for where in _PLACES
         if scalars.issuperset((where, word) for word in words)
     ]

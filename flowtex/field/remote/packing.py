@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from datetime import datetime
 from typing import Any
 
 from flowtex._util.array_types import AnyArray, Floats
-from flowtex._util.extras import import_extra
 from flowtex.earth import Projection
+from flowtex.field.dates import date_of, written_date
 from flowtex.field.field import FlowField
 from flowtex.field.source import Source
 from flowtex.field.steps import LazySteps
@@ -54,19 +53,15 @@ def pack_field(
     value: dict[str, Any] = {name: getattr(field, name) for name in VALUES}
     value["arrays"] = {name: packed(getattr(field, name)) for name in ARRAYS}
     value["scalars"] = {name: packed(array) for name, array in field.scalars.items()}
-    value["start"] = _date(field.start)
-    map_ = field.projection
-    value["projection"] = None if map_ is None else [map_.name, map_.center, map_.half_height]
+    value["start"] = written_date(field.start)
+    value["projection"] = field.projection and field.projection.written
     return value, arrays
 
 
 def unpack_field(
     value: Mapping[str, Any], arrays: Sequence[AnyArray], read: Callable[[int], Any]
 ) -> FlowField:
-    """Return a field from :func:`pack_field`; ``read`` returns what reads steps of a number.
-
-    Raises a ValueError where arrays do not fit together.
-    """
+    """Return a field from :func:`pack_field`; a ValueError where arrays do not fit together."""
 
     def unpacked(about: Any) -> Any:
         if isinstance(about, dict):
@@ -76,15 +71,12 @@ def unpack_field(
 
     given = {name: value[name] for name in VALUES}
     given["periodic"] = (bool(value["periodic"][0]), bool(value["periodic"][1]))
-    if (map_ := value["projection"]) is not None:
-        name, (lon, lat), half_height = map_
-        map_ = Projection(str(name), (float(lon), float(lat)), float(half_height))
     field = FlowField(
         **{name: unpacked(value["arrays"][name]) for name in ARRAYS},
         **given,
         scalars={name: unpacked(about) for name, about in value["scalars"].items()},
-        start=_from_date(value["start"]),
-        projection=map_,
+        start=date_of(value["start"]),
+        projection=Projection.of(value["projection"]),
     )
     _check(field)
     return field
@@ -115,19 +107,3 @@ def _check(field: FlowField) -> None:
         elif array.shape != shape or array.dtype.kind not in kinds:
             msg = f"{name} is {array.dtype} of shape {array.shape}; expected {shape}"
             raise ValueError(msg)
-
-
-def _date(start: Any) -> Any:
-    if start is None or isinstance(start, datetime):
-        return None if start is None else start.isoformat()
-    numbers = [int(n) for n in (*start.timetuple()[:6], start.microsecond)]
-    return {"numbers": numbers, "calendar": start.calendar, "zero": bool(start.has_year_zero)}
-
-
-def _from_date(value: Any) -> Any:
-    if value is None or isinstance(value, str):
-        return None if value is None else datetime.fromisoformat(value)
-    cftime = import_extra("cftime", "xarray")
-    return cftime.datetime(
-        *value["numbers"], calendar=value["calendar"], has_year_zero=value["zero"]
-    )

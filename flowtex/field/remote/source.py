@@ -78,15 +78,9 @@ class RemoteSource(Source):
         """Return the plane of a level, as :meth:`Source.plane_of` does."""
         return str(self._file.ask("plane_of", level=level)[0])
 
-    def field(
-        self,
-        *,
-        vectors: str | None = None,
-        plane: str | None = None,
-        block: str | None = None,
-        **options: Any,
+    def _field(
+        self, vectors: str | None, plane: str | None, block: str | None, options: dict[str, Any]
     ) -> FlowField:
-        """Make a field; :meth:`Source.field` has the parameters."""
         block = self._block if block is None else block
         field = self._file.field({"vectors": vectors, "plane": plane, "block": block, **options})
         if self.reads_late:
@@ -173,13 +167,7 @@ class _RemoteSteps:
 
 
 def open_remote(paths: Sequence[Path]) -> RemoteSource:
-    """Open a file, or several of data of the Earth, in another process.
-
-    Raises
-    ------
-    FieldError
-        When they cannot be read, or change all the while; the text starts with the path.
-    """
+    """Open a file, or several of data of the Earth, in another process."""
     for _ in range(MOST_READINGS):
         file = _OpenFile([path.expanduser().absolute() for path in paths])
         source = RemoteSource(file, file.ask("open", paths=[str(path) for path in file.paths])[0])

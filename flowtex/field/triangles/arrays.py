@@ -19,10 +19,10 @@ from flowtex.field.triangles.topology import edges_of, merged_nodes, needle_edge
 from flowtex.field.validation import (
     as_numbers,
     finite_nodes,
+    nodal_faults,
     range_faults,
     scalar_steps,
     three_components,
-    time_faults,
     with_gaps,
 )
 
@@ -49,11 +49,7 @@ def triangle_nodes(
     valid: ArrayLike | None,
     scalars: Mapping[str, Any],
 ) -> TriangleNodes:
-    """Check arrays, join what lies at one place, and leave out what cannot be drawn, with a word.
-
-    Parameters and errors are those of :meth:`FlowField.from_triangles`. Of steps that are read late
-    the first one is looked at.
-    """
+    """Check arrays, join what lies at one place, and leave out what cannot be drawn."""
     p, masked_points = as_numbers("points", points)
     v, masked = as_numbers("velocity", first_step(velocity))
     try:
@@ -135,22 +131,7 @@ def _faults(
     elif corners.min() < 0 or corners.max() >= count:
         wrong = int(corners.min() if corners.min() < 0 else corners.max())
         faults.append(f"triangles has node {wrong}; expected 0 to {count - 1}, as points has rows")
-    if v.ndim not in (2, 3) or v.shape[-2] != count or v.shape[-1] not in (2, 3) or not len(v):
-        faults.append(
-            f"velocity has shape {v.shape}; expected ({count}, 3) for a steady field or "
-            f"(T, {count}, 3) for one that varies in time, with points {p.shape}"
-        )
-    else:
-        faults += time_faults(times, steps)
-    if valid is not None and valid.shape != (count,):
-        faults.append(f"valid has shape {valid.shape}; expected ({count},) as points has rows")
-    for name, array in scalars.items():
-        if array.shape not in ((count,), (steps, count)):
-            faults.append(
-                f"scalars[{name!r}] has shape {array.shape}; expected ({count},) or "
-                f"({steps}, {count}), as points and velocity have"
-            )
-    return faults
+    return faults + nodal_faults((count,), v, steps, times, valid, scalars)
 
 
 def solid_triangles(p: Floats, corners: Indices) -> Bools:
@@ -163,11 +144,7 @@ def solid_triangles(p: Floats, corners: Indices) -> Bools:
 
 
 def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
-    """Triangles with an area, each once, and pairs of nodes (n, 2) that are one; the rest is told.
-
-    Of a needle without area the sides lie upon each other: that its ends become one node closes
-    the crack that it leaves.
-    """
+    """Triangles with an area, each once, and pairs of nodes (n, 2) that needles make one."""
     finite = finite_nodes(p[None])[0]
     known = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
     good = known.copy()
@@ -205,10 +182,7 @@ def nodal_means(
 
 
 def known_means(values: Floats, matrix: scipy.sparse.csr_array) -> Floats:
-    """Means (n, ...) of values (N, ...), weighted by rows of a matrix (n, N), of what is known.
-
-    A row without any that is has NaN.
-    """
+    """Means (n, ...) of known values (N, ...), weighted by rows of a matrix; NaN without any."""
     flat = values.reshape(len(values), -1)
     known = np.asarray(np.isfinite(flat).all(axis=1))
     sums = np.asarray(matrix @ np.where(known[:, None], flat, 0.0))

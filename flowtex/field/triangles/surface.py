@@ -10,13 +10,16 @@ of the triangle plus the share of its second corner, i the share of its third.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.errors import FieldError
+from flowtex.field.metric import IndexVelocity
 from flowtex.field.surface import Surface
-from flowtex.field.triangles.topology import flipped, neighbours, triangle_normals
+from flowtex.field.triangles.topology import SHARP, flipped, neighbours, triangle_normals
 
 #: Greatest share of a second corner, by which no next triangle is meant.
 MOST_SHARE = 1 - 1e-7
@@ -107,6 +110,46 @@ class TriangleSurface(Surface):
         typical = float(np.median(size[self.valid[0]])) or 1.0
         return np.asarray(np.maximum(size, 1e-4 * typical)[None])
 
+    @cached_property
+    def drawn(self) -> Indices:
+        """Numbers of the triangles that are drawn."""
+        return np.flatnonzero(self.cells)
+
+    def is_drawn(self, number: Indices) -> Bools:
+        """Whether triangles (N,) are drawn."""
+        return np.asarray(self.cells[number])
+
+    def corners_of(self, number: Indices) -> Indices:
+        """Nodes (N, 3) at the corners of triangles (N,)."""
+        return np.asarray(self.triangles[number])
+
+    def beside(self, number: Indices, corner: int) -> Indices:
+        """Triangles (N,) across the edges opposite to a corner, -1 at a border."""
+        return np.asarray(self.neighbours[number, corner])
+
+    def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
+        """Return a position (j, i), its triangle, and shares of the corners, (3,)."""
+        j, i = map(float, index)
+        count = len(self.triangles)
+        if not (0 <= j < count and 0 <= i <= 1):
+            msg = (
+                f"(j, i) is ({j:g}, {i:g}), outside the surface; expected a j from 0 to {count}, "
+                "the number of the triangle plus the share of its second corner, and the share of "
+                "its third as i"
+            )
+            raise FieldError(msg)
+        if not self.cells[int(j)]:
+            msg = f"(j, i) is ({j:g}, {i:g}), in a triangle with a blanked node; expected another"
+            raise FieldError(msg)
+        return index, int(j), self.corners_at(index[::-1])[1]
+
+    @cached_property
+    def apart(self) -> Bools:
+        """Nodes of what is drawn, (1, N); those at one place are one."""
+        used = np.zeros(self.shape, dtype=bool)
+        used[0, self.triangles[self.cells]] = True
+        return used
+
     def wrap(self, index: Floats) -> Floats:
         """Return positions (..., 2) as (i, j) as they are: nothing repeats."""
         return index
@@ -126,3 +169,40 @@ class TriangleSurface(Surface):
         """Return positions in space (..., 3) of positions (..., 2) as (i, j)."""
         nodes, weights = self.corners_at(index)
         return np.asarray(np.einsum("...k,...kc->...c", weights, self.points[0][nodes]))
+
+    def express(self, velocity: Floats) -> IndexVelocity:
+        """Express a velocity (T, 1, N, 3) in the tangent planes.
+
+        At a node of a sharp edge that plane lies between the faces, and a velocity has a greater
+        part in it than in either of them. The speed there is the mean of those in the faces, as it
+        is all around.
+        """
+        flow = super().express(velocity)
+        triangle, corner = self._sharp_corners()
+        if not len(triangle):
+            return flow
+        nodes = self.triangles[triangle, corner]
+        some, at = np.unique(nodes, return_inverse=True)
+        unit = self.crosses[triangle]
+        unit = unit / np.maximum(np.linalg.norm(unit, axis=1, keepdims=True), np.finfo(float).tiny)
+        count = np.bincount(at)
+        components, speed = flow.components.copy(), flow.speed.copy()
+        for step in range(len(velocity)):
+            v = velocity[step, 0, nodes]
+            within = np.linalg.norm(v - np.sum(v * unit, axis=1, keepdims=True) * unit, axis=1)
+            mean = np.bincount(at, within) / count
+            whole = speed[step, 0, some]
+            share = np.divide(mean, whole, out=np.zeros_like(mean), where=whole > 0).clip(max=1.0)
+            speed[step, 0, some] *= share
+            components[step, 0, some] *= share[:, None]
+        return replace(flow, components=components, speed=speed)
+
+    def _sharp_corners(self) -> tuple[Indices, Indices]:
+        """Triangles and their corners (K,) that lie at sharp edges."""
+        length = np.linalg.norm(self.crosses, axis=1)
+        sharp = np.zeros(self.shape[1], dtype=bool)
+        for k in range(3):
+            nodes = self.triangles[:, k]
+            alike = np.einsum("mc,mc->m", self.crosses, self.normals[0, nodes])
+            sharp[nodes[alike < SHARP * length]] = True
+        return np.nonzero(sharp[self.triangles])  # type: ignore[return-value]

@@ -1,4 +1,4 @@
-"""How triangles are joined: shared points, neighbours across edges, and which way they face."""
+"""How triangles are joined: shared points, neighbours across edges, which way they face."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ SAME_NODE_SHARE = 1e-9
 #: Edges of a triangle without area that are shorter than this share of the longest are a point.
 #: Sections have them beside nodes that lie in the plane but for the rounding of single precision.
 NEEDLE_SHARE = 1e-4
+#: Cosine of the angle between the normals of a node and a triangle below which there is an edge.
+SHARP = 0.86
 #: Numbers of which three have room in one of 64 bits.
 MOST_CUBED = 2**21
 
@@ -46,11 +48,7 @@ def repeated(triangles: Indices) -> Bools:
 
 
 def merged_nodes(points: Floats, triangles: Indices, joined: Indices | tuple[()] = ()) -> Indices:
-    """Return for each node (N,) the one that it is the same as: the first at its place.
-
-    Only nodes on borders are compared: others are joined to their surroundings already. Pairs that
-    are ``joined`` (n, 2) are the same as well.
-    """
+    """Return for each node (N,) the first at its place; pairs that are ``joined`` are one."""
     count = len(points)
     keys = np.sort(_edge_keys(triangles))
     differs = np.diff(keys, prepend=-1, append=-1) != 0
@@ -88,10 +86,7 @@ def triangle_normals(points: Floats, triangles: Indices) -> Floats:
 
 
 def neighbours(points: Floats, triangles: Indices) -> Indices:
-    """Return the triangle across the edge opposite to each corner, (M, 3), -1 at a border.
-
-    Where more than two share an edge, the one that goes on most nearly straight is taken.
-    """
+    """Return the triangle across each edge, (M, 3), -1 at a border; of several the straightest."""
     keys = _edge_keys(triangles)
     order = np.argsort(keys)
     ordered = keys[order]
@@ -130,10 +125,7 @@ def _straightest(
 
 
 def flipped(triangles: Indices, beside: Indices) -> Bools:
-    """Return which triangles (M,) face the other way than the first one of their part.
-
-    ``beside`` is from :func:`neighbours`. On a surface with one side only some are left that do.
-    """
+    """Return which triangles (M,) face the other way than the first one of their part."""
     ahead = np.roll(triangles, -1, axis=1)  # of the edge opposite to a corner
     rows, corners = np.nonzero(beside >= 0)
     other = beside[rows, corners]
@@ -145,23 +137,31 @@ def flipped(triangles: Indices, beside: Indices) -> Bools:
     result = np.zeros(len(triangles), dtype=bool)
     if not turned.any():
         return result
-    # Triangles that face alike are one patch; patches are few and are walked one by one.
+    # Triangles that face alike are one patch; those an odd number of turns away face otherwise.
     size = (len(triangles), len(triangles))
     alike = mutual & ~turned
     graph = scipy.sparse.coo_array((np.ones(alike.sum()), (rows[alike], other[alike])), shape=size)
     count, patch = scipy.sparse.csgraph.connected_components(graph, directed=False)
-    near: dict[int, set[int]] = {}
-    for one, two in np.unique(np.stack([patch[rows[turned]], patch[other[turned]]], -1), axis=0):
-        near.setdefault(int(one), set()).add(int(two))
-    side = np.full(count, -1)
-    for start in range(count):
-        if side[start] >= 0:
-            continue
-        side[start], waiting = 0, [start]
-        while waiting:
-            here = waiting.pop()
-            for there in near.get(here, ()):
-                if side[there] < 0:
-                    side[there] = 1 - side[here]
-                    waiting.append(there)
-    return np.asarray(side[patch] == 1)
+    ends = patch[rows[turned]], patch[other[turned]]
+    turns = scipy.sparse.csr_array((np.ones(turned.sum()), ends), shape=(count, count))
+    _, part = scipy.sparse.csgraph.connected_components(turns, directed=False)
+    firsts = np.unique(part, return_index=True)[1]
+    steps = scipy.sparse.csgraph.dijkstra(
+        turns, directed=False, indices=firsts, unweighted=True, min_only=True
+    )
+    return np.asarray(steps[patch] % 2 == 1)
+
+
+def normals_at_corners(points: Floats, normals: Floats) -> Floats:
+    """Return normals at the corners of triangles, (..., 3, 3), as light and views are to have them.
+
+    They are those of the nodes there, (..., 3, 3) as the ``points`` are, and where these belong to
+    a sharp edge that of the triangle, so that every face is even up to its end.
+    """
+    across = np.cross(points[..., 1, :] - points[..., 0, :], points[..., 2, :] - points[..., 0, :])
+    alike = np.einsum("...c,...kc->...k", across, normals)
+    length = np.linalg.norm(across, axis=-1)[..., None]
+    sharp = np.abs(alike) < SHARP * length
+    own = across / np.maximum(length, np.finfo(float).tiny)
+    faced = np.where(alike < 0, -1.0, 1.0)[..., None] * own[..., None, :]
+    return np.where(sharp[..., None], faced, normals)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Indices
-from flowtex.field.triangles.creases import normals_at_corners
+from flowtex.field.triangles.topology import normals_at_corners
 from flowtex.rendering.cpu.places import Places, TrianglePlaces, shares_by
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.textures import TextureSet, TriangleGeometry

@@ -21,8 +21,6 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.camera import Camera
 from flowtex.field import Surface
-from flowtex.field.locate import TRIANGLES
-from flowtex.field.triangles.surface import TriangleSurface
 
 #: Pixels, or rows of pixels, that are looked at together.
 CHUNK = 1 << 20
@@ -78,13 +76,7 @@ def cover(surface: Surface, camera: Camera, size: tuple[int, int]) -> Coverage:
     points = (surface.points - surface.center).reshape(-1, 3)
     matrix = camera.matrix(size[0] / size[1], surface.center)
     clip = points @ matrix[:, :3].T + matrix[:, 3]
-    if isinstance(surface, TriangleSurface):
-        return rasterise(clip, surface.triangles[surface.cells], size)
-    columns = surface.shape[1]
-    j, i = np.nonzero(surface.cells)
-    halves = np.array([j * columns + i for half in TRIANGLES for j, i in half])
-    triangles = ((j * columns + i)[:, None] + halves).reshape(-1, 3)
-    return rasterise(clip, triangles, size)
+    return rasterise(clip, surface.corners_of(surface.drawn), size)
 
 
 def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Coverage:

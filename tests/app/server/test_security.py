@@ -66,12 +66,10 @@ def test_names_that_are_not_known_are_refused(host: str, status: int) -> None:
 
 def test_servers_listen_on_this_machine_alone() -> None:
     from flowtex.app import serve
-    from flowtex.cli.options import ServeFlags
-    from flowtex.cli.serve import serve as serve_store
+    from flowtex.cli.options import AddressFlags
 
-    assert ServeFlags().host == "127.0.0.1"  # of show and demo
-    for call in (serve, serve_store):
-        assert inspect.signature(call).parameters["host"].default == "127.0.0.1"
+    assert AddressFlags().host == "127.0.0.1"  # of the shell
+    assert inspect.signature(serve).parameters["host"].default == "127.0.0.1"
 
 
 def test_names_are_of_this_machine_and_those_that_are_given(

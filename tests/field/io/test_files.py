@@ -445,11 +445,7 @@ def test_broken_netcdf_is_told(tmp_path: Path) -> None:
             "# vtk DataFile Version 3.0\n\ngarbage\n",
             "Unrecognized file type: garbage for file: {path}",
         ),
-        (
-            "a.vti",
-            '<VTKFile type="ImageData"></VTKFile>',
-            "Cannot find ImageData element in file.",
-        ),
+        ("a.vti", '<VTKFile type="ImageData"></VTKFile>', "Cannot find ImageData element in file."),
     ],
 )
 def test_a_broken_file(
@@ -543,10 +539,7 @@ def test_threads_that_read_broken_files_do_not_corrupt_the_heap(tmp_path: Path) 
 
 
 def test_what_vtk_only_warns_of_is_passed_on(tmp_path: Path) -> None:
-    with (
-        pytest.warns(UserWarning, match=r"^a\.vts: VTK says: odd$"),
-        errors_of_file(Path("a.vts")),
-    ):
+    with pytest.warns(UserWarning, match=r"^a\.vts: VTK says: odd$"), errors_of_file(Path("a.vts")):
         from vtkmodules.vtkCommonCore import vtkOutputWindow
 
         vtkOutputWindow.GetInstance().DisplayWarningText("odd")

@@ -132,74 +132,6 @@ def test_a_bare_vtk_mesh_is_a_mesh() -> None:
     assert FlowField.from_pyvista(bare).shape == (3, 4)
 
 
-@pytest.mark.parametrize(
-    ("plane", "text"),
-    [
-        (
-            None,
-            "the mesh has 5 x 4 x 3 nodes (I x J x K), and a flow is drawn on one surface: choose "
-            'a plane, as in plane="k=1"; there are i=0 to 4, j=0 to 3, k=0 to 2, and -1 is the '
-            'last one; or cut it anywhere, as in slice="z"',
-        ),
-        (
-            "k=3",
-            "plane is 'k=3'; expected k between -3 and 2, as the mesh has 5 x 4 x 3 nodes "
-            "(I x J x K)",
-        ),
-        (
-            "i=-6",
-            "plane is 'i=-6'; expected i between -5 and 4, as the mesh has 5 x 4 x 3 nodes "
-            "(I x J x K)",
-        ),
-        (
-            "z=3",
-            'plane is \'z=3\'; expected "i=N", "j=N" or "k=N" with a whole number N, as in '
-            'plane="k=1"',
-        ),
-        (
-            3,
-            'plane is 3; expected "i=N", "j=N" or "k=N" with a whole number N, as in plane="k=1"',
-        ),
-    ],
-)
-def test_a_plane_that_is_not_there(plane: Any, text: str) -> None:
-    with says(text):
-        FlowField.from_pyvista(flowing(5, 4, 3), plane=plane)
-
-
-def test_a_plane_across_a_flat_mesh() -> None:
-    with says(
-        "plane is 'i=2', which leaves a single row, as the mesh has 4 x 3 x 1 nodes (I x J x K); "
-        "it is one surface already: leave plane out"
-    ):
-        FlowField.from_pyvista(flowing(), plane="i=2")
-
-
-def test_a_single_row_of_nodes() -> None:
-    with says(
-        "the mesh has 4 x 1 x 1 nodes (I x J x K), a single row; a surface needs at least 2 nodes "
-        "along two of the axes"
-    ):
-        FlowField.from_pyvista(flowing(4, 1, 1))
-
-
-@pytest.mark.parametrize("empty", [pv.StructuredGrid(), pv.ImageData(), pv.RectilinearGrid()])
-def test_an_empty_mesh(empty: Any) -> None:
-    with says("the mesh is empty: check that the file or the filter that made it gave any nodes"):
-        FlowField.from_pyvista(empty)
-
-
-def test_plane_and_vectors_are_refused_together() -> None:
-    with says(
-        "2 things are wrong:\n"
-        "  1. plane is 'k=9'; expected k between -3 and 2, as the mesh has 5 x 4 x 3 nodes "
-        "(I x J x K)\n"
-        "  2. vectors is 'w', and the mesh has no such array. Its arrays, with their components: "
-        "v (points, 3)"
-    ):
-        FlowField.from_pyvista(flowing(5, 4, 3), plane="k=9", vectors="w")
-
-
 # --- vectors --------------------------------------------------------------------------------
 
 
@@ -226,64 +158,6 @@ def test_the_active_vectors_win() -> None:
     assert (FlowField.from_pyvista(grid, vectors="v").velocity != 7).any()
 
 
-def test_momentum_that_a_reader_marked_is_no_choice() -> None:
-    grid = structured()
-    grid["Momentum"], grid["Velocity"] = np.ones((12, 3)), np.full((12, 3), 2.0)
-    grid.set_active_vectors("Momentum")
-    with says(
-        "the mesh has 2 arrays that could be the velocity: Momentum (points, 3), Velocity "
-        '(points, 3); choose one, as in vectors="Velocity"'
-    ):
-        FlowField.from_pyvista(grid)
-
-
-def test_several_candidates_are_listed() -> None:
-    grid = flowing()
-    grid.cell_data["w"] = np.ones((6, 2))
-    with says(
-        "the mesh has 2 arrays that could be the velocity: v (points, 3), w (cells, 2); choose "
-        'one, as in vectors="w"'
-    ):
-        FlowField.from_pyvista(grid)
-
-
-def test_no_candidate() -> None:
-    grid = structured()
-    grid["p"] = np.ones(12)
-    with says(
-        "the mesh has no vectors that could be the velocity; expected a point or cell array of "
-        "real numbers with 2 or 3 components. Its arrays, with their components: p (points, 1). "
-        'Name single components with commas between, as in vectors="u,v,w"'
-    ):
-        FlowField.from_pyvista(grid)
-
-
-def test_a_name_that_is_not_there() -> None:
-    with says(
-        "vectors is 'V1', and the mesh has no such array. Its arrays, with their components: "
-        "v (points, 3)"
-    ):
-        FlowField.from_pyvista(flowing(), vectors="V1")
-    grid = structured()
-    grid["velocity"] = np.ones((12, 3))
-    with says(
-        "vectors is 'velcity', and the mesh has no such array. Did you mean \"velocity\"? Its "
-        "arrays, with their components: velocity (points, 3)"
-    ):
-        FlowField.from_pyvista(grid, vectors="velcity")
-
-
-def test_a_name_of_something_else() -> None:
-    grid = flowing()
-    grid["p"] = np.ones(12)
-    with says(
-        "vectors is 'p', an array of 1 component(s); expected 2 or 3 numbers at each point or "
-        "cell, or the names of as many arrays of one, with commas between. The arrays of the "
-        "mesh, with their components: v (points, 3), p (points, 1)"
-    ):
-        FlowField.from_pyvista(grid, vectors="p")
-
-
 def test_two_components_and_integers_when_named() -> None:
     grid = structured()
     grid["uv"] = np.arange(24).reshape(12, 2)
@@ -295,16 +169,6 @@ def test_zero_everywhere_warns() -> None:
     grid = structured()
     grid["v"] = np.zeros((12, 3))
     with pytest.warns(UserWarning, match="^The velocity is zero at every node, so the picture"):
-        FlowField.from_pyvista(grid)
-
-
-def test_nan_everywhere() -> None:
-    grid = structured()
-    grid["v"] = np.full((12, 3), np.nan)
-    with says(
-        "none of the 12 nodes is usable: each is blanked, masked or NaN; check the chosen vectors "
-        "and the blanking"
-    ):
         FlowField.from_pyvista(grid)
 
 
@@ -579,33 +443,8 @@ def test_a_reader_of_pyvista_is_a_reader(tmp_path: Path) -> None:
     assert FlowField.from_pyvista(pv.get_reader(tmp_path / "flow.vts")).shape == (3, 4)
 
 
-def test_times_out_of_order() -> None:
-    with says(
-        "times[1] = 1 does not come after times[0] = 2; expected strictly increasing times: sort "
-        "the steps, and drop those that repeat"
-    ):
-        FlowField.from_pyvista([at_time(2.0), at_time(1.0)])
-
-
-def test_times_of_another_number() -> None:
-    with says("times has shape (3,); expected (2,), one for each step of velocity"):
-        FlowField.from_pyvista([at_time(0.0), at_time(1.0)], times=[0, 1, 2])
-
-
-PARTS = " If these are parts of one mesh and not time steps, give one of them, as in block=0"
-
-
-def test_steps_of_another_size() -> None:
-    with says(
-        "step 1 has 5 x 3 x 1 nodes (I x J x K) and the first step has 4 x 3 x 1 nodes "
-        "(I x J x K); expected the same nodes in every step." + PARTS
-    ):
-        FlowField.from_pyvista([at_time(0.0), at_time(1.0, i=5)])
-
-
 def test_parts_of_one_mesh_are_no_steps() -> None:
-    left, right = flowing(), flowing()
-    right.points = np.asarray(right.points) + np.array([3.0, 0, 0])
+    left, right = flowing(), moved()
     with says(
         "the mesh has 2 blocks, and no time steps of one: 0 (left, 4 x 3 x 1 nodes), "
         '1 (right, 4 x 3 x 1 nodes); choose one, as in block="left"'
@@ -615,41 +454,16 @@ def test_parts_of_one_mesh_are_no_steps() -> None:
     assert field.points[..., 0].min() == 3
 
 
-def test_nodes_that_move() -> None:
-    moved = flowing()
-    moved.points = np.asarray(moved.points) + np.array([3.0, 0, 0])
-    with says(
-        "the nodes of step 1 are up to 3 away from those of the first step; moving meshes are not "
-        "supported: sample all steps onto one mesh with mesh.sample(step)." + PARTS
-    ):
-        FlowField.from_pyvista([flowing(), moved])
-
-
 def test_rounded_nodes_have_not_moved() -> None:
     second = at_time(1.0)
     second.points = np.asarray(second.points) * (1 + 1e-9)
     assert len(FlowField.from_pyvista([at_time(0.0), second]).times) == 2
 
 
-def test_a_step_without_the_vectors() -> None:
-    second = structured()
-    second["p"] = np.ones(12)
-    with says(
-        "step 1 has no array v (points, 3), which the first step has; expected it in every step. "
-        "Its arrays, with their components: p (points, 1)"
-    ):
-        FlowField.from_pyvista([at_time(0.0), second])
-
-
 def test_a_scalar_that_a_step_lacks_is_left_out() -> None:
     second = at_time(1.0)
     second.point_data.remove("p")
     assert not FlowField.from_pyvista([at_time(0.0), second]).scalars
-
-
-def test_an_empty_list() -> None:
-    with says("the list of meshes is empty; expected one mesh for each time step"):
-        FlowField.from_pyvista([])
 
 
 def test_a_step_of_several_blocks() -> None:
@@ -661,22 +475,178 @@ def test_a_step_of_several_blocks() -> None:
     assert FlowField.from_pyvista([pv.MultiBlock([flowing(), flowing(5)])], block=1).shape == (3, 5)
 
 
-# --- what is no mesh ------------------------------------------------------------------------
+# --- what is wrong with a mesh ---------------------------------------------------------------
 
 
-def test_a_multiblock_without_blocks() -> None:
-    with says("the mesh has no blocks; check the file or the filter that made it"):
-        FlowField.from_pyvista(pv.MultiBlock([None]))
+SOLID = "as the mesh has 5 x 4 x 3 nodes (I x J x K)"
+PARTS = " If these are parts of one mesh and not time steps, give one of them, as in block=0"
+KNOWN = "Its arrays, with their components:"
 
 
-@pytest.mark.parametrize("thing", [np.ones((3, 4, 3)), "flow.vts", None])
-def test_no_mesh_at_all(thing: Any) -> None:
-    with says(
-        f"the mesh is of type {type(thing).__name__}; expected a mesh of PyVista's or a "
-        "MultiBlock, a list of them, or a reader. Arrays go to FlowField.from_arrays(points, "
-        "velocity) and FlowField.from_triangles(points, triangles, velocity)"
-    ):
-        FlowField.from_pyvista(thing)
+def carrying(**arrays: Any) -> Any:
+    """A flat grid with point arrays; those named ``cells_...`` are of cells."""
+    grid = structured()
+    for name, array in arrays.items():
+        of = grid.cell_data if name.startswith("cells_") else grid.point_data
+        of[name.removeprefix("cells_")] = array
+    return grid
+
+
+def marked() -> Any:
+    """A grid whose reader took the momentum for its vectors."""
+    grid = carrying(Momentum=np.ones((12, 3)), Velocity=np.full((12, 3), 2.0))
+    grid.set_active_vectors("Momentum")
+    return grid
+
+
+def moved() -> Any:
+    grid = flowing()
+    grid.points = np.asarray(grid.points) + np.array([3.0, 0, 0])
+    return grid
+
+
+@pytest.mark.parametrize(
+    ("mesh", "given", "text"),
+    [
+        (
+            flowing(5, 4, 3),
+            {},
+            "the mesh has 5 x 4 x 3 nodes (I x J x K), and a flow is drawn on one surface: choose "
+            'a plane, as in plane="k=1"; there are i=0 to 4, j=0 to 3, k=0 to 2, and -1 is the '
+            'last one; or cut it anywhere, as in slice="z"',
+        ),
+        *(
+            (flowing(5, 4, 3), {"plane": plane}, f"plane is {plane!r}; expected {expected}")
+            for plane, expected in [
+                ("k=3", f"k between -3 and 2, {SOLID}"),
+                ("i=-6", f"i between -5 and 4, {SOLID}"),
+                *(
+                    (p, '"i=N", "j=N" or "k=N" with a whole number N, as in plane="k=1"')
+                    for p in ("z=3", 3)
+                ),
+            ]
+        ),
+        (
+            flowing(),
+            {"plane": "i=2"},
+            "plane is 'i=2', which leaves a single row, as the mesh has 4 x 3 x 1 nodes "
+            "(I x J x K); it is one surface already: leave plane out",
+        ),
+        (
+            flowing(4, 1, 1),
+            {},
+            "the mesh has 4 x 1 x 1 nodes (I x J x K), a single row; a surface needs at least 2 "
+            "nodes along two of the axes",
+        ),
+        *(
+            (
+                empty,
+                {},
+                "the mesh is empty: check that the file or the filter that made it gave any nodes",
+            )
+            for empty in (pv.StructuredGrid(), pv.ImageData(), pv.RectilinearGrid())
+        ),
+        (
+            flowing(5, 4, 3),
+            {"plane": "k=9", "vectors": "w"},
+            "2 things are wrong:\n"
+            f"  1. plane is 'k=9'; expected k between -3 and 2, {SOLID}\n"
+            f"  2. vectors is 'w', and the mesh has no such array. {KNOWN} v (points, 3)",
+        ),
+        (
+            marked(),
+            {},
+            "the mesh has 2 arrays that could be the velocity: Momentum (points, 3), Velocity "
+            '(points, 3); choose one, as in vectors="Velocity"',
+        ),
+        (
+            carrying(v=np.ones((12, 3)), cells_w=np.ones((6, 2))),
+            {},
+            "the mesh has 2 arrays that could be the velocity: v (points, 3), w (cells, 2); choose "
+            'one, as in vectors="w"',
+        ),
+        (
+            carrying(p=np.ones(12)),
+            {},
+            "the mesh has no vectors that could be the velocity; expected a point or cell array of "
+            f"real numbers with 2 or 3 components. {KNOWN} p (points, 1). "
+            'Name single components with commas between, as in vectors="u,v,w"',
+        ),
+        (
+            flowing(),
+            {"vectors": "V1"},
+            f"vectors is 'V1', and the mesh has no such array. {KNOWN} v (points, 3)",
+        ),
+        (
+            carrying(velocity=np.ones((12, 3))),
+            {"vectors": "velcity"},
+            "vectors is 'velcity', and the mesh has no such array. Did you mean \"velocity\"? "
+            f"{KNOWN} velocity (points, 3)",
+        ),
+        (
+            carrying(v=np.ones((12, 3)), p=np.ones(12)),
+            {"vectors": "p"},
+            "vectors is 'p', an array of 1 component(s); expected 2 or 3 numbers at each point or "
+            "cell, or the names of as many arrays of one, with commas between. The arrays of the "
+            "mesh, with their components: v (points, 3), p (points, 1)",
+        ),
+        (
+            carrying(v=np.full((12, 3), np.nan)),
+            {},
+            "none of the 12 nodes is usable: each is blanked, masked or NaN; check the chosen "
+            "vectors and the blanking",
+        ),
+        (
+            [at_time(2.0), at_time(1.0)],
+            {},
+            "times[1] = 1 does not come after times[0] = 2; expected strictly increasing times: "
+            "sort the steps, and drop those that repeat",
+        ),
+        (
+            [at_time(0.0), at_time(1.0)],
+            {"times": [0, 1, 2]},
+            "times has shape (3,); expected (2,), one for each step of velocity",
+        ),
+        (
+            [at_time(0.0), at_time(1.0, i=5)],
+            {},
+            "step 1 has 5 x 3 x 1 nodes (I x J x K) and the first step has 4 x 3 x 1 nodes "
+            f"(I x J x K); expected the same nodes in every step.{PARTS}",
+        ),
+        (
+            [flowing(), moved()],
+            {},
+            "the nodes of step 1 are up to 3 away from those of the first step; moving meshes are "
+            f"not supported: sample all steps onto one mesh with mesh.sample(step).{PARTS}",
+        ),
+        (
+            [at_time(0.0), carrying(p=np.ones(12))],
+            {},
+            "step 1 has no array v (points, 3), which the first step has; expected it in every "
+            f"step. {KNOWN} p (points, 1)",
+        ),
+        ([], {}, "the list of meshes is empty; expected one mesh for each time step"),
+        (
+            pv.MultiBlock([None]),
+            {},
+            "the mesh has no blocks; check the file or the filter that made it",
+        ),
+        *(
+            (
+                thing,
+                {},
+                f"the mesh is of type {type(thing).__name__}; expected a mesh of PyVista's or a "
+                "MultiBlock, a list of them, or a reader. Arrays go to "
+                "FlowField.from_arrays(points, velocity) and "
+                "FlowField.from_triangles(points, triangles, velocity)",
+            )
+            for thing in (np.ones((3, 4, 3)), "flow.vts", None)
+        ),
+    ],
+)
+def test_what_is_wrong_is_told(mesh: Any, given: dict[str, Any], text: str) -> None:
+    with says(text):
+        FlowField.from_pyvista(mesh, **given)
 
 
 def test_the_advice_to_sample_works() -> None:

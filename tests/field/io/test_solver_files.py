@@ -9,15 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
-from cfd_files import (
-    CGNS,
-    TIMES,
-    box,
-    turning,
-    write_ensight,
-    write_exodus,
-    write_foam,
-)
+from cfd_files import CGNS, TIMES, box, turning, write_ensight, write_exodus, write_foam
 
 from flowtex import FlowField
 from flowtex._util.notices import Notice
@@ -144,12 +136,7 @@ def test_nested_blocks(tmp_path: Path) -> None:
     tree = pv.MultiBlock({"Base": base, "c": right})
     tree.save(tmp_path / "flow.vtm")
     path = tmp_path / "flow.vtm"
-    assert [b.name for b in describe(path).blocks] == [
-        "Base/a/b 0",
-        "Base/hull",
-        "Base/a/b 2",
-        "c",
-    ]
+    assert [b.name for b in describe(path).blocks] == ["Base/a/b 0", "Base/hull", "Base/a/b 2", "c"]
     assert FlowField.from_file(path, block="Base/a/b 0").shape == (3, 4)
     assert FlowField.from_file(path, block="Base/a/b 2").shape == (3, 6)
     assert FlowField.from_pyvista(tree, block="c").shape == (3, 6)

@@ -68,8 +68,7 @@ def weather(path: Path, calendar: str = "noleap") -> Path:
         ds[name].attrs = {"standard_name": f"{word}_wind", "units": "m/s"}
     units = {"units": "days since 2001-02-27", "calendar": calendar}
     ds = ds.assign_coords(
-        level=("level", [200.0, 850.0], {"units": "hPa"}),
-        time=("time", np.arange(4.0), units),
+        level=("level", [200.0, 850.0], {"units": "hPa"}), time=("time", np.arange(4.0), units)
     )
     ds.to_netcdf(path)
     return path
@@ -327,8 +326,7 @@ def test_arrays_that_do_not_fit_together_are_refused(
 
 
 @pytest.mark.parametrize(
-    "answer",
-    [None, {}, {"value": {}, "warnings": []}, {"value": {"periodic": 1}, "warnings": []}],
+    "answer", [None, {}, {"value": {}, "warnings": []}, {"value": {"periodic": 1}, "warnings": []}]
 )
 def test_an_answer_that_makes_no_sense_is_an_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: Any

@@ -22,7 +22,7 @@ INSIDE = 1e-9
 NEAREST_NODE = 1e-5
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class MeshMap:
     """Nodes and triangles on a map.
 
@@ -46,8 +46,8 @@ class MeshMap:
         return np.asarray((1 - self.share) * one + self.share * other)
 
     def vectors(self, east: Floats, north: Floats) -> Floats:
-        """Return vectors (P, 3) of components (N,) in m/s at the nodes of the mesh."""
-        return self.projection.vectors(self.lon, self.lat, self.at(east), self.at(north))
+        """Return vectors (P, 3) of components (P,) in m/s."""
+        return self.projection.vectors(self.lon, self.lat, east, north)
 
 
 def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
@@ -87,13 +87,8 @@ def _span(lon: Floats, middle: float) -> Floats:
 def _cut(lon: Floats, triangles: Indices, middle: float) -> tuple[Indices, Indices, Floats, Floats]:
     """Cut triangles across the edge of the map, each into one on its one side and two beyond.
 
-    Returns
-    -------
-    triangles
-        Numbers among the nodes and the new ones after them, (M, 3).
-    pairs, shares, at
-        Between which nodes the new ones are, (Q, 2), at which share of the way, and their
-        longitudes, (Q,).
+    Returns triangles (M, 3) of the nodes and the new ones after them; between which nodes the new
+    ones are, (Q, 2), at which share of the way, and their longitudes, (Q,).
     """
     across = np.ptp(lon[triangles], axis=1) > 180.0
     corners = triangles[across]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,10 +10,12 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import FACES, NODES
 from flowtex.field.datasets.places import DEGREES, LENGTHS
 from flowtex.field.io.inspection.limits import values_in
+from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
 
 #: Decimals of degrees to which bounds of neighbours agree.
@@ -27,18 +28,10 @@ RADIANS = re.compile(r"^rad(ian)?s?$", re.IGNORECASE)
 class Mesh:
     """A mesh of polygons; its numbers are read when they are asked for.
 
-    Attributes
-    ----------
-    kind
-        Words for the convention.
-    x, y
-        Coordinates of the nodes, or those of the corners of each face where ``corners`` is missing.
-    corners
-        Numbers of the nodes of each face.
-    counts
-        How many corners each face has, where this is told apart.
-    first
-        Number of the first node.
+    ``kind`` has words for the convention. ``x`` and ``y`` are coordinates of the nodes, or those of
+    the corners of each face where ``corners``, the nodes of each face, is missing. ``counts`` tells
+    how many corners each face has, where this is told apart, and ``first`` is the number of the
+    first node.
     """
 
     kind: str
@@ -53,7 +46,7 @@ class Mesh:
         """Names of the dimensions of nodes and of faces in the files."""
         if self.corners is None:
             return "", str(self.x.dims[0])
-        return str(_node_dim(self.x)), _face_dim(self.corners)
+        return _dim(self.x, NODES), _dim(self.corners, FACES)
 
     @property
     def coordinates(self) -> str:
@@ -66,10 +59,6 @@ class Mesh:
         """Names of the variables that it is made of."""
         parts = (self.x, self.y, self.corners, self.counts)
         return tuple(str(part.name) for part in parts if part is not None)
-
-    def is_alone_in(self, ds: Any, velocity: Sequence[Any]) -> bool:
-        """Whether a dataset has this mesh and no velocity."""
-        return self.names[0] in ds and not any(name in ds for name in velocity)
 
     @property
     def is_earth(self) -> bool:
@@ -133,12 +122,10 @@ class Mesh:
 
     @cached_property
     def positions(self) -> Floats:
-        """Positions of the nodes, (N, 3): on the unit sphere, or in the plane."""
+        """Positions of the nodes, (N, 3): on the globe, or in the plane."""
         if not self.is_earth:
             return np.stack([self.a, self.b, np.zeros_like(self.a)], axis=-1)
-        lon, lat = np.radians(self.a), np.radians(self.b)
-        parts = (np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat))
-        return np.stack(parts, axis=-1)
+        return Projection(GLOBE).positions(self.a, self.b)
 
     @cached_property
     def middles(self) -> tuple[Floats, Floats]:
@@ -146,10 +133,7 @@ class Mesh:
         there = (self.faces >= 0)[..., None]
         with np.errstate(invalid="ignore"):
             p = (self.positions[self.faces] * there).sum(axis=1) / there.sum(axis=1)
-        if not self.is_earth:
-            return p[:, 0], p[:, 1]
-        x, y, z = p.T
-        return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+        return Projection(GLOBE).lonlat(p) if self.is_earth else (p[:, 0], p[:, 1])
 
     @cached_property
     def _split(self) -> tuple[Indices, Indices]:
@@ -182,6 +166,24 @@ class Mesh:
         doubled = np.nan_to_num(np.linalg.norm(triangle_normals(self.positions, triangles), axis=1))
         return np.asarray(np.bincount(numbers, doubled / 2, len(self.faces)))
 
+    def at_nodes(self, values: Floats, dim: str) -> Floats:
+        """Return values (N, ...) at the nodes; those in faces become means by area."""
+        if dim == NODES:
+            return values
+        (step,) = nodal_means(values[None], self.faces, self.areas, len(self.a))
+        return np.asarray(step)
+
+    def vectors_at_nodes(self, u: Floats, v: Floats, dim: str) -> tuple[Floats, Floats]:
+        """Return components (N,); those in faces are averaged in space, where directions agree."""
+        if dim == NODES:
+            return u, v
+        if not self.is_earth:
+            x, y = self.at_nodes(np.stack([u, v], axis=-1), dim).T
+            return x, y
+        globe = Projection(GLOBE)
+        means = self.at_nodes(globe.vectors(*self.middles, u, v), dim)
+        return globe.components(self.a, self.b, means)
+
     @property
     def words(self) -> str:
         """Words for the mesh and its size."""
@@ -191,16 +193,8 @@ class Mesh:
         return f"{self.kind}, {len(self.a):,} nodes, {len(self.faces):,} {what}"
 
 
-def _node_dim(x: Any) -> str:
-    if NODES in x.dims:
-        return NODES
-    return str(max(x.dims, key=lambda d: x.sizes[d]))
-
-
-def _face_dim(corners: Any) -> str:
-    if FACES in corners.dims:
-        return FACES
-    return str(max(corners.dims, key=lambda d: corners.sizes[d]))
+def _dim(array: Any, ours: str) -> str:
+    return ours if ours in array.dims else str(max(array.dims, key=lambda d: array.sizes[d]))
 
 
 def _numbers(mesh: Mesh, count: int) -> Indices:
@@ -234,8 +228,7 @@ def _numbers(mesh: Mesh, count: int) -> Indices:
 def _from_bounds(a: Floats, b: Floats) -> tuple[Floats, Floats, Indices]:
     """Return nodes where corners of cells, (F, K) each, are at one place."""
     there = np.isfinite(a) & np.isfinite(b)
-    lon, lat = np.radians(a[there]), np.radians(b[there])
-    p = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    p = Projection(GLOBE).positions(a[there], b[there]) / EARTH_RADIUS
     _, first, at = np.unique(
         np.round(np.degrees(p), SAME_DEGREES), axis=0, return_index=True, return_inverse=True
     )

@@ -27,13 +27,7 @@ _Sizes = dict[tuple[int, str], int]
 
 
 def check_ensight(case: Path) -> None:
-    """Refuse a case of which a file has fewer values than it declares.
-
-    Raises
-    ------
-    FieldError
-        With the file, and what is missing of it.
-    """
+    """Refuse a case of which a file has fewer values than it declares."""
     text = case.read_text(encoding="utf-8", errors="replace")
     model = _MODEL.search(text)
     geometry = case.parent / model[1] if model else case

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import BinaryIO
@@ -31,20 +31,9 @@ BY_SUFFIX: dict[str, Callable[[Path], None]] = {
 def inspect_file(path: Path, *, whole: bool = True) -> None:
     """Refuse a file that has not what it declares, needs too much memory, or leads to others.
 
-    Those that it names as members of a series, or as its blocks, are looked into as well. A file is
-    looked into once for each of its times of change.
-
-    Parameters
-    ----------
-    path
-        The file, or a folder of Zarr; another folder is left alone.
-    whole
-        Whether its arrays are read whole, as those of meshes; of others, parts are.
-
-    Raises
-    ------
-    FieldError
-        With what is wrong, and of a member its name.
+    Those that it names as members of a series, or as its blocks, are looked into as well, each once
+    for each of its times of change. Of folders those of Zarr are. Arrays are read ``whole``, as
+    those of meshes, or parts of them are.
     """
     if path.is_dir() and any((path / name).is_file() for name in DOCUMENTS):
         check_zarr(path)
@@ -72,7 +61,7 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
     """Look into one file, and return those that it names."""
     with path.open("rb") as stream:
         head = stream.read(HEAD_BYTES)
-        is_hdf5 = any(_has_at(stream, at, hdf5.MAGIC) for at in _hdf5_starts(size))
+        is_hdf5 = _is_hdf5(stream, size)
     suffix = path.suffix.lower()
     if is_hdf5:
         hdf5.check_hdf5(path, whole=whole)
@@ -86,14 +75,12 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
     return tuple(vtk_xml.check_vtk_xml(path)) if is_xml else ()
 
 
-def _hdf5_starts(size: int) -> Iterator[int]:
-    """Yield where HDF5 may begin: what is before it is the user's."""
+def _is_hdf5(stream: BinaryIO, size: int) -> bool:
+    """Whether HDF5 begins somewhere: what is before it is the user's."""
     at = 0
     while at < size:
-        yield at
+        stream.seek(at)
+        if stream.read(len(hdf5.MAGIC)) == hdf5.MAGIC:
+            return True
         at = 2 * at or 512
-
-
-def _has_at(stream: BinaryIO, at: int, magic: bytes) -> bool:
-    stream.seek(at)
-    return stream.read(len(magic)) == magic
+    return False

@@ -16,13 +16,7 @@ LONG_MESSAGE, LONG_UNIT = 0x800000, 120
 
 
 def check_grib(path: Path) -> None:
-    """Refuse a file whose last message is cut, or with a grid that does not fit into memory.
-
-    Raises
-    ------
-    FieldError
-        With what is missing, or that a message of GRIB 2 is corrupt.
-    """
+    """Refuse a file whose last message is cut, or with a grid that does not fit into memory."""
     size = path.stat().st_size
     with path.open("rb") as stream:
         at = _next(stream, 0)

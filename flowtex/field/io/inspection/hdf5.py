@@ -18,20 +18,7 @@ MAGIC = b"\x89HDF\r\n\x1a\n"
 
 
 def check_hdf5(path: Path, *, whole: bool) -> None:
-    """Refuse a file that leads to others, is cut, or has arrays that do not fit into memory.
-
-    Parameters
-    ----------
-    path
-        The file.
-    whole
-        Whether its arrays are read whole, one time of each; else coordinates and chunks alone are.
-
-    Raises
-    ------
-    FieldError
-        With the name of what leads to another file, or what is missing.
-    """
+    """Refuse a file that leads to others, is cut, or has arrays too large for the memory."""
     import h5py
 
     try:
@@ -40,7 +27,11 @@ def check_hdf5(path: Path, *, whole: bool) -> None:
             # This follows no link out of the file.
             file.id.links.visit(lambda name, link: links.append((name, link.type)), info=True)
             for name, kind in links:
-                _check_link(h5py, file.id, name, kind)
+                if kind not in (h5py.h5l.TYPE_HARD, h5py.h5l.TYPE_SOFT):
+                    external = kind == h5py.h5l.TYPE_EXTERNAL
+                    target = file.id.links.get_val(name)[0] if external else b"unknown"
+                    target = target.decode(errors="replace")
+                    _refuse(f"{name.decode(errors='replace')} is an external link", target)
             for name, kind in links:
                 if kind == h5py.h5l.TYPE_HARD:
                     item = h5py.h5o.open(file.id, name)
@@ -54,14 +45,6 @@ def check_hdf5(path: Path, *, whole: bool) -> None:
             check_count(found, base + declared, "the header")
         msg = f"the file is broken: HDF5 says: {error}; write or copy it again"
         raise FieldError(msg) from error
-
-
-def _check_link(h5py: Any, file: Any, name: bytes, kind: int) -> None:
-    if kind in (h5py.h5l.TYPE_HARD, h5py.h5l.TYPE_SOFT):
-        return
-    external = kind == h5py.h5l.TYPE_EXTERNAL
-    target = file.links.get_val(name)[0].decode(errors="replace") if external else "unknown"
-    _refuse(f"{name.decode(errors='replace')} is an external link", target)
 
 
 def _check_object(h5py: Any, item: Any, name: str, *, whole: bool) -> None:

@@ -15,13 +15,7 @@ MEMORY_SHARE = 0.5
 
 
 def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> None:
-    """Refuse a file that has less than it declares.
-
-    Raises
-    ------
-    FieldError
-        When ``found`` is less than ``declared``.
-    """
+    """Refuse a file that has less than it declares."""
     if found < declared:
         msg = (
             f"the file is cut short or broken: {what} declares {_text(declared)} {unit}, the file "
@@ -32,13 +26,7 @@ def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> No
 
 
 def check_memory(nbytes: int, what: str) -> None:
-    """Refuse to read what takes more memory than there is for it.
-
-    Raises
-    ------
-    FieldError
-        When ``nbytes`` are more than a share of the memory that is available.
-    """
+    """Refuse to read what takes more than a share of the memory that is available."""
     budget = int(available_bytes() * MEMORY_SHARE)
     if nbytes > budget:
         msg = (
@@ -62,12 +50,6 @@ def _text(count: int) -> str:
 
 
 def values_in(array: Any) -> AnyArray:
-    """Return the values of a variable of xarray's, (...) as it is.
-
-    Raises
-    ------
-    FieldError
-        When they do not fit into memory as numbers of 8 bytes: a small file may declare many.
-    """
+    """Return the values of a variable of xarray's, where they fit into memory as float64."""
     check_memory(8 * array.size, f"the variable {getattr(array, 'name', None) or 'without a name'}")
     return np.asarray(array.values)

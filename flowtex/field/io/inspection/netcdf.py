@@ -21,20 +21,7 @@ STREAMING = (0xFFFFFFFF, 0xFFFFFFFFFFFFFFFF)
 
 
 def check_netcdf(path: Path, *, whole: bool) -> None:
-    """Refuse a file that is shorter than it declares, or whose arrays do not fit into memory.
-
-    Parameters
-    ----------
-    path
-        The file.
-    whole
-        Whether its arrays are read whole, one time of each; else coordinates alone are.
-
-    Raises
-    ------
-    FieldError
-        With what is missing.
-    """
+    """Refuse a file that is shorter than it declares, or has arrays too large for the memory."""
     with path.open("rb") as stream:
         size = path.stat().st_size
         header = _Header(stream, size)

@@ -18,15 +18,7 @@ _OF_NUMBERS[list(b"0123456789+-.eEdDnNaAiIfFtTyY")] = True
 
 
 class TextScanner:
-    """Goes once through a file of words, numbers and blocks of bytes.
-
-    Parameters
-    ----------
-    stream
-        The file, from where it stands.
-    end
-        Where to stop, in bytes from the beginning of the file.
-    """
+    """Goes once through a file of words, numbers and blocks of bytes, up to ``end`` in bytes."""
 
     def __init__(self, stream: BinaryIO, end: int) -> None:
         self._stream, self._end = stream, end

@@ -26,11 +26,6 @@ def check_obj(path: Path) -> None:
 
     The format declares nothing: of one that ends early after a line only points that no face uses
     tell, and a whole one may have such.
-
-    Raises
-    ------
-    FieldError
-        With what is missing.
     """
     points = most = 0
     with path.open("rb") as stream:
@@ -52,13 +47,7 @@ def check_obj(path: Path) -> None:
 
 
 def check_stl(path: Path) -> None:
-    """Refuse a file with fewer triangles than it declares, or as text without its last line.
-
-    Raises
-    ------
-    FieldError
-        With what is missing.
-    """
+    """Refuse a file with fewer triangles than it declares, or text without its last line."""
     size = path.stat().st_size
     with path.open("rb") as stream:
         head = stream.read(STL_HEAD)
@@ -71,13 +60,7 @@ def check_stl(path: Path) -> None:
 
 
 def check_ply(path: Path) -> None:
-    """Refuse a file with fewer elements than its header declares.
-
-    Raises
-    ------
-    FieldError
-        With what is missing.
-    """
+    """Refuse a file with fewer elements than its header declares."""
     with path.open("rb") as stream:
         form, elements = _ply_header(stream)
         text = TextScanner(stream, path.stat().st_size)

@@ -54,13 +54,7 @@ KEYWORDS = (
 
 
 def check_vtk_legacy(path: Path) -> None:
-    """Refuse a file that ends early, or whose arrays do not fit into memory.
-
-    Raises
-    ------
-    FieldError
-        With what is missing.
-    """
+    """Refuse a file that ends early, or whose arrays do not fit into memory."""
     with path.open("rb") as stream:
         _Legacy(TextScanner(stream, path.stat().st_size)).check()
 

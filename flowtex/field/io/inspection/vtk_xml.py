@@ -40,17 +40,9 @@ def is_xml(head: bytes) -> bool:
 
 
 def check_vtk_xml(path: Path) -> list[Path]:
-    """Refuse a file that is cut, or whose arrays do not fit into the file or into memory.
+    """Return the files that one names, of a series or of blocks; refuse one that is cut.
 
-    Returns
-    -------
-    list of Path
-        The files that it names, of a series or of several blocks.
-
-    Raises
-    ------
-    FieldError
-        With what is missing.
+    Its arrays have to fit into the file and into memory.
     """
     with path.open("rb") as stream:
         if b"\0" in stream.read(4):

@@ -21,13 +21,7 @@ NUMBER_BYTES = 8
 
 
 def check_zarr(folder: Path) -> None:
-    """Refuse a store with a line of coordinates, or a chunk, that does not fit into memory.
-
-    Raises
-    ------
-    FieldError
-        With the name of the array, and what it declares.
-    """
+    """Refuse a line of coordinates, or a chunk, that does not fit into memory."""
     for name, array in _arrays(folder):
         with suppress(TypeError, KeyError, IndexError, AttributeError):  # Zarr says what is wrong
             shape, chunk = list(map(int, array["shape"])), _chunk(array)

@@ -16,7 +16,7 @@ import numpy as np
 from flowtex._util.array_types import Indices
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
-from flowtex.field.io.meshes import cell_dimension, cell_dimensions, hidden_nodes
+from flowtex.field.io.meshes import hidden_nodes
 from flowtex.field.io.vectors import BLANKING, MeshArray, catalogue
 from flowtex.field.triangles.arrays import solid_triangles
 from flowtex.field.triangles.topology import needle_edges
@@ -95,10 +95,7 @@ Cut = Slice | Contour
 
 
 def find_cut(slice: Any, contour: Any) -> Cut | None:
-    """Return the cut that is meant, or ``None`` for none.
-
-    Raises a FieldError when both are given, or one that cannot be understood.
-    """
+    """Return the cut that is meant, or ``None`` for none."""
     if slice is not None and contour is not None:
         msg = f"slice is {slice!r} and contour is {contour!r}; choose one of them"
         raise FieldError(msg)
@@ -159,7 +156,7 @@ def _number(given: Any) -> float:
 
 def cut_faults(mesh: Any, cut: Cut | None) -> list[str]:
     """Faults in a cut of a mesh, and in a mesh that has no surface."""
-    dimension = cell_dimension(mesh)
+    dimension = mesh.max_cell_dimensionality
     if not mesh.n_cells:
         return ["the mesh is empty: check that the file or the filter that made it gave any cells"]
     if dimension < 2:
@@ -189,12 +186,13 @@ def surface_of(
 
     mesh = _shown_cells(mesh)
     if isinstance(mesh, pv.UnstructuredGrid):
-        dimensions = cell_dimensions(mesh)
-        flat = cut is None and 2 in dimensions
-        if tell and cut is None and 3 in dimensions:
+        kinds = mesh.distinct_cell_types
+        flat = cut is None and any(kind.dimension == 2 for kind in kinds)
+        if tell and cut is None and any(kind.dimension == 3 for kind in kinds):
             what = "cells of two dimensions are" if flat else "outer surface of the volume is"
             notify(f"the {what} drawn; to cut it: {_examples(mesh)}")
-        drawn = dimensions == (2 if flat else 3)
+        meant = [kind for kind in kinds if kind.dimension == (2 if flat else 3)]
+        drawn: Any = np.isin(mesh.celltypes, meant)
         mesh = mesh if drawn.all() else mesh.extract_cells(drawn, pass_cell_ids=False)
     if cut is not None:
         mesh = cut.of(_exact(_on_points(mesh, vectors)))
@@ -244,10 +242,7 @@ def _shown_cells(mesh: Any) -> Any:
 
 
 def _exact(mesh: Any) -> Any:
-    """Return a volume with positions in double precision, of which VTK's filters give theirs.
-
-    A plane cuts slivers off the corners of cells; in single precision they face anywhere.
-    """
+    """Return a volume in double precision: in single, slivers that VTK cuts off face anywhere."""
     import pyvista as pv
 
     if isinstance(mesh, (pv.ImageData, pv.RectilinearGrid)):

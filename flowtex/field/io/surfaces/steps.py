@@ -13,13 +13,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.io.meshes import TimeStep, check_arrays, check_nodes
 from flowtex.field.io.surfaces.cuts import HIDDEN, Cut, cut_faults, surface_of
-from flowtex.field.io.vectors import (
-    MeshArray,
-    catalogue,
-    choose_vectors,
-    values_of,
-    vector_faults,
-)
+from flowtex.field.io.vectors import MeshArray, catalogue, choose_vectors, values_of, vector_faults
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
 
@@ -58,10 +52,7 @@ class _SurfaceStep(SheetStep):
 def read_surfaces(
     steps: Iterable[TimeStep], vectors: str | None, cut: Cut | None, times: ArrayLike | None
 ) -> dict[str, Any]:
-    """Read what a field needs from meshes at one or several times.
-
-    Parameters and errors are those of :meth:`FlowField.from_pyvista`.
-    """
+    """Read what :meth:`FlowField.from_pyvista` needs from meshes at one or several times."""
     sheets: list[_SurfaceStep] = []
     chosen: MeshArray | None = None
     for step in steps:
@@ -123,11 +114,7 @@ def _surface_step(
 
     shown = np.asarray(surface.point_data[HIDDEN]) <= 0
     sheet = _SurfaceStep(
-        time=step.time,
-        points=points,
-        vectors=at_nodes(vectors),
-        shown=shown,
-        triangles=triangles,
+        time=step.time, points=points, vectors=at_nodes(vectors), shown=shown, triangles=triangles
     )
     for array in arrays:
         if array != vectors:
