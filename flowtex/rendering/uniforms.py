@@ -31,6 +31,8 @@ CLOCK_STEP, MOST_TURNS = 2.0**-12, 2.0**12
 #: neighbours part, their mean is slow.
 SLOWER = 4.0
 
+#: Texels along a pixel from which on some are skipped.
+SKIPPED_TEXELS = 2.0
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
 
@@ -61,6 +63,8 @@ class ViewState:
         Length that a pixel drawn covers at the focus; 0 stands for as near as can be.
     lags
         Number of lags of the slices that are drawn with, the shortest; ``None`` for all.
+    levels
+        Mip levels of the slices beside the finest that are drawn with; ``None`` for all.
     """
 
     focus: Floats = field(default_factory=lambda: np.zeros(3))
@@ -72,6 +76,7 @@ class ViewState:
     density: float = 1.0
     pixel: float = 0.0
     lags: int | None = None
+    levels: int | None = None
 
 
 def variants(
@@ -158,7 +163,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_eye": (*(float(c) for c in eye), float(view.eye[3])),
         "u_between": float(view.between),
         "u_slicesSize": (float(geometry.size[1]), float(geometry.size[0])),
-        "u_deepest": float(geometry.levels),
+        "u_deepest": float(geometry.levels if view.levels is None else view.levels),
         "u_lags": [float(lag) for lag in lags],
         "u_lagCount": len(lags),
         "u_rateLayer": textures.count_of(view.lags) - 1,
@@ -223,16 +228,36 @@ def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> in
 
     It is for paths by length on a plane that is seen along parallel rays, as pixels are alike.
     """
-    store, geometry = textures.store, textures.geometry
+    store, pixel = textures.store, _pixel_on_plane(textures, view)
     known = store.steps == 1 and store.parameter == "arclength" and textures.paper is None
-    if not known or not geometry.planar or view.eye[3]:
+    if not known or pixel is None:
         return None
-    facing = abs(geometry.frame[2] @ view.eye[:3]) / np.linalg.norm(view.eye[:3])
-    pixel = view.pixel / max(float(facing), 1e-30)
     sides, samples = _direction(textures, settings)[0], _samples(textures, settings)
     count = samples // 2 if sides == 2 else samples - 1
     longest = SLOWER * count * _distance(textures, settings, view, pixel)
     return int(np.searchsorted(store.lags[:-1], longest / textures.least_unit)) + 1
+
+
+def needed_levels(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:
+    """Return 0 where the finest mip level of the slices does for a view; ``None`` elsewhere.
+
+    As paths are smooth in space, a level too fine does no harm while the shorter side of a pixel
+    skips no texel, but of a few cells. It is no longer than the pixel over a cell's longer side.
+    """
+    if textures.store.steps > 1 or not textures.geometry.levels:
+        return None
+    pixel = _pixel_on_plane(textures, view)
+    near = pixel is not None and pixel < SKIPPED_TEXELS * textures.grid.small_side
+    return 0 if near or not settings.lod else None
+
+
+def _pixel_on_plane(textures: TextureSet, view: ViewState) -> float | None:
+    """Return the length of a pixel on a plane seen along parallel rays; else they differ."""
+    geometry = textures.geometry
+    if not geometry.planar or view.eye[3]:
+        return None
+    facing = abs(geometry.frame[2] @ view.eye[:3]) / np.linalg.norm(view.eye[:3])
+    return view.pixel / max(float(facing), 1e-30)
 
 
 def _samples(textures: TextureSet, settings: Settings) -> int:

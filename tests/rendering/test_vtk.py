@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import weakref
 from functools import cache
@@ -44,6 +45,23 @@ def test_the_way_to_a_view_does_not_show_in_it(plotter: Any) -> None:
         pictures.append(plotter.screenshot(return_img=True).astype(float))
     assert np.sqrt(np.mean((pictures[0] - pictures[3]) ** 2)) < 2
     assert np.abs(pictures[0] - pictures[2]).mean() > 10
+
+
+def test_a_far_view_after_a_near_one_has_all_mip_levels(opengl: Any) -> None:
+    velocity = np.random.default_rng(3).normal([1, 0], size=(160, 320, 2))
+    points = np.stack(np.meshgrid(np.linspace(0, 2, 320), np.linspace(0, 1, 160)), axis=-1)
+    field = flowtex.FlowField.from_arrays(points, velocity)
+    pictures = []
+    for zooms in ((1,), (30, 1)):
+        with contextlib.closing(pv.Plotter(off_screen=True, window_size=(80, 60))) as plotter:
+            handle = plotter.flowtex.add(field, scalars=False)
+            for zoom in zooms:
+                look(plotter, field, zoom=zoom)
+                plotter.render()
+                picture = plotter.screenshot(return_img=True)
+                assert (handle._surface._base.view.levels == 0) == (zoom > 1)
+            pictures.append(picture)
+    np.testing.assert_array_equal(*pictures)
 
 
 def test_two_views_beside_each_other_share_the_camera(opengl: Any) -> None:

@@ -43,7 +43,7 @@ def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
         SliceStore(field, slices=slices),
         whole_speed=like.whole_speed,
     )
-    layers = textures.layers(step).astype(np.float64)
+    layers = textures.layers(step, dtype=np.float64)
     layers[0, ..., 3] *= textures.unit / like.unit
     rows, columns = textures.grid.rows, textures.grid.columns
     return layers[
@@ -55,7 +55,7 @@ def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
 
 def nodal(tile: TextureSet, step: int = 0) -> Floats:
     """Layers of the nodes that a tile draws."""
-    layers, geometry = tile.layers(step), tile.grid
+    layers, geometry = tile.layers(step, dtype=np.float32), tile.grid
     rows, columns = geometry.rows, geometry.columns
     return layers[
         :,

@@ -8,11 +8,10 @@ let go with the window at the latest.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from vtkmodules.util.vtkConstants import VTK_FLOAT
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObject
 
-from flowtex._util.array_types import Floats32
+from flowtex._util.array_types import AnyArray, Halves
 
 #: OpenGL's numbers of internal formats, in half precision, by channels.
 FORMATS = {1: 0x822D, 2: 0x822F, 4: 0x881A}
@@ -30,14 +29,13 @@ class GPUTexture:
 
     def __init__(
         self,
-        texels: Floats32,
+        texels: AnyArray,
         *,
         levels: int | None = None,
         repeat: tuple[bool, bool] = (False, False),
     ) -> None:
-        # Drivers may cut digits off instead of rounding, which moves a critical point.
         with np.errstate(over="ignore"):
-            self._texels: NDArray[np.float16] | None = texels.astype(np.float16)
+            self._texels: Halves | None = texels.astype(np.float16, copy=False)
         self._levels = levels
         self._repeat = repeat
         self._object: vtkTextureObject | None = None
@@ -70,7 +68,7 @@ class GPUTexture:
             raise RuntimeError(msg)
         target = vtkTextureObject()
         target.SetContext(window)
-        target.SetGenerateMipmap(True)
+        target.SetGenerateMipmap(self._levels != 0)
         target.SetMinificationFilter(vtkTextureObject.LinearMipmapLinear)
         target.SetMagnificationFilter(vtkTextureObject.Linear)
         repeat, clamp = vtkTextureObject.Repeat, vtkTextureObject.ClampToEdge

@@ -137,7 +137,7 @@ class FlowSurface:
         self._base.close()
         self._actor.mapper.SetInputData(surface_mesh(textures))
         self._base = FlowLayer(self._actor, self._renderer(), textures, self._settings)
-        self._base.view = replace(view, anchor=np.zeros(3), lags=None)
+        self._base.view = replace(view, anchor=np.zeros(3), lags=None, levels=None)
         self._base.set_moment(*self._moment)
         self.write_scalars()
 
@@ -203,7 +203,12 @@ class FlowSurface:
         for key, layer in layers.items():
             if key is None:
                 continue
-            layer.view = replace(self._base.view, anchor=layer.view.anchor, lags=layer.view.lags)
+            layer.view = replace(
+                self._base.view,
+                anchor=layer.view.anchor,
+                lags=layer.view.lags,
+                levels=layer.view.levels,
+            )
             layer.set_moment(*self._moment)
             layer.look()
         self._set_triangles(layers, shown, view)
