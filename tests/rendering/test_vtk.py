@@ -51,9 +51,9 @@ def test_a_far_view_after_a_near_one_has_all_mip_levels(opengl: Any) -> None:
     velocity = np.random.default_rng(3).normal([1, 0], size=(160, 320, 2))
     points = np.stack(np.meshgrid(np.linspace(0, 2, 320), np.linspace(0, 1, 160)), axis=-1)
     field = flowtex.FlowField.from_arrays(points, velocity)
-    pictures = []
+    pictures: list[Any] = []
     for zooms in ((1,), (30, 1)):
-        with contextlib.closing(pv.Plotter(off_screen=True, window_size=(80, 60))) as plotter:
+        with contextlib.closing(pv.Plotter(off_screen=True, window_size=[80, 60])) as plotter:
             handle = plotter.flowtex.add(field, scalars=False)
             for zoom in zooms:
                 look(plotter, field, zoom=zoom)
@@ -61,7 +61,7 @@ def test_a_far_view_after_a_near_one_has_all_mip_levels(opengl: Any) -> None:
                 picture = plotter.screenshot(return_img=True)
                 assert (handle._surface._base.view.levels == 0) == (zoom > 1)
             pictures.append(picture)
-    np.testing.assert_array_equal(*pictures)
+    np.testing.assert_array_equal(pictures[0], pictures[1])
 
 
 def test_two_views_beside_each_other_share_the_camera(opengl: Any) -> None:
