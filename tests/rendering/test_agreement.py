@@ -11,7 +11,7 @@ from webgl_page import ClientPage, packed, state
 
 from flowtex._util.array_types import Bytes
 from flowtex.plotting.vtk_camera import apply_camera
-from flowtex.rendering.cpu import render
+from flowtex.rendering.cpu.render import render
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene
 
