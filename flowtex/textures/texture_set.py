@@ -214,7 +214,7 @@ class TextureSet:
         whole = self.store.at(step, lags)
         slices, tangent = whole.part(*self.geometry.texels), self._tangent(whole)
         count = self.count_of(lags)
-        result = np.empty((count, *self.geometry.size, 4), dtype)
+        result: AnyArray = np.empty((count, *self.geometry.size, 4), dtype)
 
         def make(layer: int) -> None:
             nodal = self._nodal(slices, tangent, layer)

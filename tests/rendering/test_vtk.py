@@ -17,6 +17,7 @@ from plain_pyvista import off_colours
 
 import flowtex
 from flowtex.plotting.vtk_camera import look
+from flowtex.rendering import mesh_levels
 
 SIZE = (400, 300)
 
@@ -203,6 +204,28 @@ def test_a_frame_has_as_many_triangles_as_the_view_needs(plotter: Any) -> None:
     assert cells() == 2 * 128 * 256
     every = np.asarray(plotter.screenshot(return_img=True), dtype=float)
     assert np.abs(every - plain).max() <= 2
+
+
+@pytest.mark.parametrize("zoom", [1, 6])
+def test_large_triangles_of_a_crooked_grid_draw_what_small_ones_do(
+    opengl: Any, monkeypatch: pytest.MonkeyPatch, zoom: float
+) -> None:
+    s, t = np.meshgrid(np.linspace(0, 1, 240), np.linspace(0, 1, 120))
+    wave = 0.03 * np.sin(np.pi * s) * np.sin(np.pi * t)
+    x, y = 2 * (s + wave * np.sin(20 * t)), t + wave * np.sin(20 * s)
+    field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(gyre(x, y), -1))
+    pictures, counts = [], []
+    for share in (1.0, mesh_levels.PLACED_SHARE):
+        monkeypatch.setattr(mesh_levels, "PLACED_SHARE", share)
+        with contextlib.closing(pv.Plotter(off_screen=True, window_size=list(SIZE))) as plotter:
+            handle = plotter.flowtex.add(field, scalars=False)
+            look(plotter, field, zoom=zoom, focus=(0.63, 0.37))
+            plotter.render()
+            pictures.append(np.asarray(plotter.screenshot(return_img=True), float))
+            counts.append(sum(mesh.n_cells for mesh in handle.meshes))
+    assert counts[0] > 3 * counts[1]
+    off = np.abs(pictures[0] - pictures[1])[SIZE[1] // 10 : -SIZE[1] // 10]
+    assert np.sqrt(np.mean(off**2)) < 0.2
 
 
 def test_scalars_keep_their_colours_and_their_bar(plotter: Any) -> None:

@@ -11,10 +11,10 @@ import numpy as np
 from vtkmodules.util.vtkConstants import VTK_FLOAT
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObject
 
-from flowtex._util.array_types import AnyArray, Halves
+from flowtex._util.array_types import AnyArray
 
-#: OpenGL's numbers of internal formats, in half precision, by channels.
-FORMATS = {1: 0x822D, 2: 0x822F, 4: 0x881A}
+#: OpenGL's numbers of internal formats, in half precision, by channels; and of two in single.
+FORMATS, TWO_SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, 0x8230
 #: OpenGL's number of numbers in half precision.
 HALF_FLOAT = 0x140B
 
@@ -23,8 +23,9 @@ class GPUTexture:
     """One texture array with its mip levels; an image is an array of one layer.
 
     Of VTK's textures from memory the arrays alone get mip levels. The texels (layers, H, W,
-    channels), with 1, 2 or 4 channels, are stored in half precision. There are so many mip levels
-    beside the finest, or all of them; ``repeat`` says whether the texture goes around along (v, u).
+    channels), with 1, 2 or 4 channels, are stored in half precision; 2 may be in ``single``. There
+    are so many mip levels beside the finest, or all of them; ``repeat`` says whether the texture
+    goes around along (v, u).
     """
 
     def __init__(
@@ -33,9 +34,12 @@ class GPUTexture:
         *,
         levels: int | None = None,
         repeat: tuple[bool, bool] = (False, False),
+        single: bool = False,
     ) -> None:
         with np.errstate(over="ignore"):
-            self._texels: Halves | None = texels.astype(np.float16, copy=False)
+            self._texels: AnyArray | None = np.ascontiguousarray(
+                texels, np.float32 if single else np.float16
+            )
         self._levels = levels
         self._repeat = repeat
         self._object: vtkTextureObject | None = None
@@ -78,8 +82,11 @@ class GPUTexture:
         whole = max(height, width).bit_length() - 1
         # Left as it is, VTK's greatest level is 0, and there is no other level.
         target.SetMaxLevel(whole if self._levels is None else self._levels)
-        target.SetInternalFormat(FORMATS[channels])
-        # VTK has no name for half precision, and takes what was set for that of its own names.
-        target.SetDataType(HALF_FLOAT)
+        if texels.dtype == np.float32:
+            target.SetInternalFormat(TWO_SINGLE)
+        else:
+            target.SetInternalFormat(FORMATS[channels])
+            # VTK has no name for half precision, and takes what was set for that of its own names.
+            target.SetDataType(HALF_FLOAT)
         target.Create2DArrayFromRaw(width, height, channels, VTK_FLOAT, layers, texels)
         return target

@@ -126,7 +126,8 @@ class FlowLayer:
     def mesh_levels(self) -> MeshLevels | TriangleBlocks:
         """The triangles of each level of the mesh."""
         if self._mesh_levels is None:
-            self._mesh_levels = mesh_levels_of(self._textures)
+            placed = corrects_places(self._textures)
+            self._mesh_levels = mesh_levels_of(self._textures, placed=placed)
         return self._mesh_levels
 
     def set_textures(self, textures: TextureSet) -> None:
@@ -195,6 +196,8 @@ class FlowLayer:
         variant = variants(
             self._textures, unsteady=unsteady, moving=moving, near=near, sparse=sparse
         )
+        if corrects_places(self._textures):
+            variant |= {"FLOWTEX_PLACED"}
         if variant == self._variant:
             return
         self._variant = variant
@@ -216,6 +219,7 @@ class FlowLayer:
         values = uniforms(self._textures, self._settings, self.view)
         if isinstance(geometry := self._textures.geometry, SurfaceGeometry):
             values["u_padding"] = float(geometry.columns.before), float(geometry.rows.before)
+            values["u_anchor"] = float(self.view.anchor[0]), float(self.view.anchor[1])
         values["u_mapped"] = self._colours is not None
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
@@ -244,6 +248,9 @@ class FlowLayer:
         loaders |= {
             "u_shares": lambda: GPUTexture(colours.shares(geometry) if colours else none, levels=0),
             "u_colours": lambda: GPUTexture(colours.colours() if colours else none, levels=0),
+            "u_nodes": lambda: GPUTexture(
+                np.nan_to_num(geometry.position[None, ..., :2]), levels=0, single=True
+            ),
         }
         if paper is not None:
             loaders["u_noiseImage"] = partial(
@@ -373,6 +380,12 @@ class FlowLayer:
 
 #: The layer that each window has drawn last.
 _last: weakref.WeakKeyDictionary[Any, weakref.ref[FlowLayer]] = weakref.WeakKeyDictionary()
+
+
+def corrects_places(textures: TextureSet) -> bool:
+    """Whether the shader of a texture set corrects the places of fragments between the nodes."""
+    geometry = textures.geometry
+    return isinstance(geometry, SurfaceGeometry) and geometry.planar and textures.paper is None
 
 
 def _is_more(needed: int | None, there: int | None) -> bool:

@@ -30,7 +30,7 @@ from flowtex.rendering.tile_choice import (
 )
 from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
 from flowtex.rendering.uniforms import ViewState
-from flowtex.rendering.vtk.layer import FlowLayer
+from flowtex.rendering.vtk.layer import FlowLayer, corrects_places
 from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
@@ -321,7 +321,8 @@ class FlowSurface:
             if surface is not None and surface._scalars is not None:
                 surface._scalars[1](textures.geometry.field)  # which keeps the values at hand
             _ = textures.unit, textures.cell, textures.critical_cell  # which are kept as well
-            return surface_mesh(textures), mesh_levels_of(textures)
+            placed = corrects_places(textures)
+            return surface_mesh(textures), mesh_levels_of(textures, placed=placed)
 
         def notify() -> None:
             surface = this()
