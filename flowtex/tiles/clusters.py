@@ -206,7 +206,7 @@ def _sides(areas: Floats, triangles: Indices, count: int, extent: float) -> Floa
     for _ in range(SMOOTHING):
         total = sum(np.bincount(triangles[:, k], size, count) for k in range(3))
         nodal = np.divide(total, share, out=np.zeros(count), where=share > 0)
-        size = sum(nodal[triangles[:, k]] for k in range(3)) / 3
+        size = np.asarray(sum(nodal[triangles[:, k]] for k in range(3))) / 3
     # Nodes of cells of about one size must not fall on both sides of a power of two.
     least = extent / MOST_BINS / FIRST_EDGES
     typical = max(float(np.median(nodal[share > 0])), least)
@@ -262,7 +262,7 @@ def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bool
 
 def _turned(points: Floats, triangles: Indices, normals: Floats) -> Bools:
     """Return which triangles (M,) face away from the normals of their corners."""
-    normal = sum(normals[triangles[:, k]] for k in range(3))
+    normal = np.asarray(sum(normals[triangles[:, k]] for k in range(3)))
     return np.asarray(dot(triangle_normals(points, triangles), normal) <= 0)
 
 
