@@ -214,11 +214,7 @@ def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
 
     In perspective the nearest point of the surface counts, or of the ball around it.
     """
-    near = view.pixel
-    if view.eye[3]:
-        away, focus = view.eye[:3] - textures.geometry.center, view.eye[:3] - view.focus
-        gap = max(float(np.linalg.norm(away)) - 0.5 * textures.geometry.extent, 0.0)
-        near *= gap / float(np.linalg.norm(focus))
+    near = _pixel_at(textures, view, -0.5)
     side = settings.samples // 2 * _distance(textures, settings, view, near)
     return side < FAR_CELLS * textures.critical_cell
 
@@ -228,10 +224,12 @@ def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> in
 
     It is for paths by length on a plane that is seen along parallel rays, as pixels are alike.
     """
-    store, pixel = textures.store, _pixel_on_plane(textures, view)
+    store, geometry = textures.store, textures.geometry
     known = store.steps == 1 and store.parameter == "arclength" and textures.paper is None
-    if not known or pixel is None:
+    if not known or not geometry.planar or view.eye[3]:
         return None
+    facing = abs(geometry.frame[2] @ view.eye[:3]) / np.linalg.norm(view.eye[:3])
+    pixel = view.pixel / max(float(facing), 1e-30)
     sides, samples = _direction(textures, settings)[0], _samples(textures, settings)
     count = samples // 2 if sides == 2 else samples - 1
     longest = SLOWER * count * _distance(textures, settings, view, pixel)
@@ -241,23 +239,22 @@ def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> in
 def needed_levels(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:
     """Return 0 where the finest mip level of the slices does for a view; ``None`` elsewhere.
 
-    As paths are smooth in space, a level too fine does no harm while the shorter side of a pixel
-    skips no texel, but of a few cells. It is no longer than the pixel over a cell's longer side.
+    As paths are smooth in space, a level too fine does no harm while the shorter side of a pixel,
+    the farthest one, skips no texel, but of a few cells.
     """
     if textures.store.steps > 1 or not textures.geometry.levels:
         return None
-    pixel = _pixel_on_plane(textures, view)
-    near = pixel is not None and pixel < SKIPPED_TEXELS * textures.grid.small_side
+    near = _pixel_at(textures, view, 0.5) < SKIPPED_TEXELS * textures.grid.small_side
     return 0 if near or not settings.lod else None
 
 
-def _pixel_on_plane(textures: TextureSet, view: ViewState) -> float | None:
-    """Return the length of a pixel on a plane seen along parallel rays; else they differ."""
-    geometry = textures.geometry
-    if not geometry.planar or view.eye[3]:
-        return None
-    facing = abs(geometry.frame[2] @ view.eye[:3]) / np.linalg.norm(view.eye[:3])
-    return view.pixel / max(float(facing), 1e-30)
+def _pixel_at(textures: TextureSet, view: ViewState, extents: float) -> float:
+    """Length that a pixel covers so much farther away than the middle of the surface."""
+    if not view.eye[3]:
+        return view.pixel
+    away, focus = view.eye[:3] - textures.geometry.center, view.eye[:3] - view.focus
+    gap = max(float(np.linalg.norm(away)) + extents * textures.geometry.extent, 0.0)
+    return view.pixel * gap / float(np.linalg.norm(focus))
 
 
 def _samples(textures: TextureSet, settings: Settings) -> int:
