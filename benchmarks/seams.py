@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import flowtex
 from flowtex.plotting.vtk_camera import look, read_camera
-from flowtex.rendering.cpu import render
+from flowtex.rendering.cpu.render import render
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
 

@@ -344,6 +344,7 @@ def try_opengl() -> OpenGLReport:
 
 if __name__ == "__main__":
     if sys.argv[1:] == ["--try"]:
+        sys.modules["numpy"] = None  # type: ignore[assignment] # VTK would load it, to no use here
         prefer_headless()
         sys.stdout.write(json.dumps(asdict(try_opengl())) + "\n")
     else:

@@ -171,6 +171,8 @@ class FieldOptions:
         self, place: Any, choices: dict[str, Any], time: float | str | None
     ) -> FlowField | None:
         """Return the field of a pyramid in a store, where there is one."""
+        if not isinstance(place, (str, Path)) or Path(place).is_file():
+            return None  # which loads nothing
         from flowtex.pyramid import is_store, open_store
         from flowtex.pyramid.others import has_parts
 

@@ -16,8 +16,10 @@ from flowtex._util.array_types import Bools, Bytes, Floats
 from flowtex._util.blocks import block_means
 from flowtex.camera import Camera
 from flowtex.field import FlowField
-from flowtex.rendering.cpu import LookupMaker, Picture, render, shade
 from flowtex.rendering.cpu.raster import cover
+from flowtex.rendering.cpu.render import Picture, render
+from flowtex.rendering.cpu.shade import shade
+from flowtex.rendering.cpu.texture import LookupMaker
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
 from paper import measures

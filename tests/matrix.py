@@ -33,7 +33,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import Camera
 from flowtex.options import Appearance
-from flowtex.rendering.cpu import render
+from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.scene import Scene
 from flowtex.settings import Settings

@@ -18,9 +18,9 @@ from flowtex._util.array_types import Floats
 from flowtex.camera import Camera
 from flowtex.options import Appearance
 from flowtex.probe import Probe, locate, probe
-from flowtex.rendering.cpu import render
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.pixel import LoadedTextures, Window
+from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.scene import Scene
 from flowtex.settings import Settings

@@ -27,8 +27,8 @@ from flowtex.tiles import BLOCK_CELLS, block_places
 MAX_ERROR_PIXELS = 0.05
 #: What counts of an error of the outline, a quarter of a pixel across it; and of one along the
 #: surface, half a pixel: noise is looked up where a point lies, and only paths belong to a
-#: place that is off by this error.
-OUTLINE_SHARE, SLIDE_SHARE = 0.2, 0.1
+#: place that is off by this error. Or two pixels where fragments correct their place.
+OUTLINE_SHARE, SLIDE_SHARE, PLACED_SHARE = 0.2, 0.1, 0.025
 #: Error of a colour, as a share of the range of the colour map.
 MAX_COLOUR_ERROR = 1 / 100
 #: Longest side of a triangle, in heights of the view: single precision interpolates across it.
@@ -95,11 +95,13 @@ class MeshLevels:
         self.blocks = block_places(points)
 
     @classmethod
-    def of(cls, textures: TextureSet) -> MeshLevels:
-        """Return the levels of what a texture set draws."""
+    def of(cls, textures: TextureSet, *, placed: bool = False) -> MeshLevels:
+        """Return the levels of what a texture set draws, by fragments that correct their place."""
         geometry = textures.grid
         # A noise that lies on the nodes moves with them.
         slide = SLIDE_SHARE if textures.paper is None else 1.0
+        if placed:
+            slide = PLACED_SHARE
         return cls(geometry.points, geometry.cells, geometry.periodic, slide)
 
     def set_colours(self, *colours: Floats) -> None:
@@ -208,33 +210,34 @@ class MeshLevels:
 
         A level leaves out every second line of the one before. Its error is at most that one's
         and what the lines that are left out deviate from their neighbours. Where there are
-        directions, most counts what is along the normals, and across the outline.
+        directions, most counts what is along the normals; the outline is apart, across it.
         """
         count = BLOCK_CELLS.bit_length()
-        errors = np.zeros((count, len(self._rows.first), len(self._columns.first)))
+        errors = np.zeros((2, count, len(self._rows.first), len(self._columns.first)))
         rows, columns = (np.arange(n) for n in self._shape)
         for level in range(1, count):
             step = 1 << level
             next_rows, next_columns = (_lines(n, step) for n in self._shape)
             # Only lines that are left out have an error.
             left = ~np.isin(rows, next_rows)
-            size = np.zeros((len(rows), len(columns)))
+            size = np.zeros((2, len(rows), len(columns)))
             off = _deviation(values[:, columns], rows[left], next_rows)
-            size[left] = self._size(off, directions, np.ix_(rows[left], columns), border=1)
-            errors[level] = errors[level - 1] + self._greatest(size, rows, columns)
+            size[:, left] = self._size(off, directions, np.ix_(rows[left], columns), border=1)
+            errors[:, level] = errors[:, level - 1] + self._greatest(size, rows, columns)
             left = ~np.isin(columns, next_columns)
             kept = values[next_rows]
-            size = np.zeros((len(next_rows), len(columns)))
+            size = np.zeros((2, len(next_rows), len(columns)))
             off = _deviation(kept.swapaxes(0, 1), columns[left], next_columns).swapaxes(0, 1)
-            size[:, left] = self._size(off, directions, np.ix_(next_rows, columns[left]), border=0)
-            errors[level] += self._greatest(size, next_rows, columns)
+            at = np.ix_(next_rows, columns[left])
+            size[:, :, left] = self._size(off, directions, at, border=0)
+            errors[:, level] += self._greatest(size, next_rows, columns)
             twist = kept[:, next_columns]
             twist = twist[1:, 1:] + twist[:-1, :-1] - twist[1:, :-1] - twist[:-1, 1:]
             here = np.ix_(next_rows[:-1], next_columns[:-1])
             size = self._size(twist / 4, directions, here)
-            errors[level] += self._greatest(size, next_rows[:-1], next_columns[:-1])
+            errors[:, level] += self._greatest(size, next_rows[:-1], next_columns[:-1])
             rows, columns = next_rows, next_columns
-        return errors
+        return np.asarray(errors.max(axis=0))
 
     def _size(
         self,
@@ -244,27 +247,29 @@ class MeshLevels:
         *,
         border: int | None = None,
     ) -> Floats:
-        """Size of errors (J, I, C) at some nodes, where those along the surface count less.
+        """Size of errors (J, I, C) at some nodes and of the outline, (2, J, I).
 
-        ``border`` is the axis whose first and last nodes are on the outline.
+        Those along the surface count less. ``border`` is the axis whose first and last nodes are on
+        the outline.
         """
         size = norm(off)
+        both = np.stack([size, np.zeros_like(size)])
         if directions is None or not size.size:
-            return size
-        less: Floats = np.maximum(np.abs(dot(off, directions[0][at])), self._slide * size)
+            return both
+        np.maximum(np.abs(dot(off, directions[0][at])), self._slide * size, out=both[0])
         if border is not None:
             ends = (slice(None),) * border + ([0, -1],)
             along = np.broadcast_arrays(*at)
             line = directions[1 + border][along[0][ends], along[1][ends]]
             aside = np.sqrt(np.maximum(size[ends] ** 2 - dot(off[ends], line) ** 2, 0))
-            less[ends] = np.maximum(less[ends], OUTLINE_SHARE * aside)
-        return less
+            both[1][ends] = OUTLINE_SHARE * aside
+        return both
 
     def _greatest(self, values: Floats, rows: Indices, columns: Indices) -> Floats:
         """Greatest value in each block, of values on lines of nodes; a border counts for both."""
         if not values.size:
             return np.zeros((len(self._rows.first), len(self._columns.first)))
-        for axis, (lines, blocks) in enumerate(((rows, self._rows), (columns, self._columns))):
+        for axis, lines, blocks in ((-2, rows, self._rows), (-1, columns, self._columns)):
             first = np.minimum(np.searchsorted(lines, blocks.first), len(lines) - 1)
             inner = np.maximum.reduceat(values, first, axis=axis)
             last = np.minimum(np.searchsorted(lines, blocks.first + blocks.cells), len(lines) - 1)

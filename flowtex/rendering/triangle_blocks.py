@@ -46,8 +46,11 @@ class TriangleBlocks:
         return 3 * drawn[:, None] + np.arange(3)
 
 
-def mesh_levels_of(textures: TextureSet) -> MeshLevels | TriangleBlocks:
-    """Return the triangles of what a texture set draws, by level and block."""
+def mesh_levels_of(textures: TextureSet, *, placed: bool = False) -> MeshLevels | TriangleBlocks:
+    """Return the triangles of what a texture set draws, by level and block.
+
+    ``placed`` says that fragments correct their place between the nodes.
+    """
     if isinstance(textures.geometry, TriangleGeometry):
         return TriangleBlocks(textures.geometry)
-    return MeshLevels.of(textures)
+    return MeshLevels.of(textures, placed=placed)

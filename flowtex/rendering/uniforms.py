@@ -31,6 +31,8 @@ CLOCK_STEP, MOST_TURNS = 2.0**-12, 2.0**12
 #: neighbours part, their mean is slow.
 SLOWER = 4.0
 
+#: Texels along a pixel from which on some are skipped.
+SKIPPED_TEXELS = 2.0
 #: Heights of the view within which positions may be counted from another point than its middle.
 ANCHOR_RANGE = 8.0
 
@@ -61,6 +63,8 @@ class ViewState:
         Length that a pixel drawn covers at the focus; 0 stands for as near as can be.
     lags
         Number of lags of the slices that are drawn with, the shortest; ``None`` for all.
+    levels
+        Mip levels of the slices beside the finest that are drawn with; ``None`` for all.
     """
 
     focus: Floats = field(default_factory=lambda: np.zeros(3))
@@ -72,6 +76,7 @@ class ViewState:
     density: float = 1.0
     pixel: float = 0.0
     lags: int | None = None
+    levels: int | None = None
 
 
 def variants(
@@ -158,7 +163,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_eye": (*(float(c) for c in eye), float(view.eye[3])),
         "u_between": float(view.between),
         "u_slicesSize": (float(geometry.size[1]), float(geometry.size[0])),
-        "u_deepest": float(geometry.levels),
+        "u_deepest": float(geometry.levels if view.levels is None else view.levels),
         "u_lags": [float(lag) for lag in lags],
         "u_lagCount": len(lags),
         "u_rateLayer": textures.count_of(view.lags) - 1,
@@ -209,11 +214,7 @@ def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
 
     In perspective the nearest point of the surface counts, or of the ball around it.
     """
-    near = view.pixel
-    if view.eye[3]:
-        away, focus = view.eye[:3] - textures.geometry.center, view.eye[:3] - view.focus
-        gap = max(float(np.linalg.norm(away)) - 0.5 * textures.geometry.extent, 0.0)
-        near *= gap / float(np.linalg.norm(focus))
+    near = _pixel_at(textures, view, -0.5)
     side = settings.samples // 2 * _distance(textures, settings, view, near)
     return side < FAR_CELLS * textures.critical_cell
 
@@ -233,6 +234,27 @@ def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> in
     count = samples // 2 if sides == 2 else samples - 1
     longest = SLOWER * count * _distance(textures, settings, view, pixel)
     return int(np.searchsorted(store.lags[:-1], longest / textures.least_unit)) + 1
+
+
+def needed_levels(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:
+    """Return 0 where the finest mip level of the slices does for a view; ``None`` elsewhere.
+
+    As paths are smooth in space, a level too fine does no harm while the shorter side of a pixel,
+    the farthest one, skips no texel, but of a few cells.
+    """
+    if textures.store.steps > 1 or not textures.geometry.levels:
+        return None
+    near = _pixel_at(textures, view, 0.5) < SKIPPED_TEXELS * textures.grid.small_side
+    return 0 if near or not settings.lod else None
+
+
+def _pixel_at(textures: TextureSet, view: ViewState, extents: float) -> float:
+    """Length that a pixel covers so much farther away than the middle of the surface."""
+    if not view.eye[3]:
+        return view.pixel
+    away, focus = view.eye[:3] - textures.geometry.center, view.eye[:3] - view.focus
+    gap = max(float(np.linalg.norm(away)) + extents * textures.geometry.extent, 0.0)
+    return view.pixel * gap / float(np.linalg.norm(focus))
 
 
 def _samples(textures: TextureSet, settings: Settings) -> int:

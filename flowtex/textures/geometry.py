@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex._util.vectors import norm
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
@@ -25,6 +25,8 @@ from flowtex.field.surface import Surface
 
 #: Mip levels of a texture beside its finest one, at most, and of a tile's.
 DEEPEST, TILE_LEVELS = 5, 3
+#: Percentile of the sides of cells that small ones have.
+SMALL_CELLS = 5
 
 
 @dataclass(frozen=True)
@@ -265,6 +267,12 @@ class SurfaceGeometry(DrawnSurface):
         unit = np.where(length > 0, normal / safe, [0.0, 0.0, 1.0])
         return unit[self.drawn].astype(np.float32)
 
+    @cached_property
+    def small_side(self) -> float:
+        """Length of the longer sides of small cells."""
+        sides = norm(self.field.surface.tangents).max(axis=0)
+        return float(np.percentile(sides[self.field.valid], SMALL_CELLS))
+
     @property
     def is_smooth(self) -> bool:
         """Whether every node has a position, and a normal by those around it or is a pole."""
@@ -293,7 +301,7 @@ class SurfaceGeometry(DrawnSurface):
         """Return values at the vertices (V,) as an image of the nodes, here (J, I)."""
         return values.reshape(self.shape)
 
-    def write_texels(self, data: Floats32, texels: Floats32) -> None:
+    def write_texels(self, data: Floats32, texels: AnyArray) -> None:
         """Write data (J, I, C) of the nodes of :attr:`texels` into texels (H, W, C).
 
         Blanked nodes of ``data`` are filled in place.

@@ -1,14 +1,16 @@
-"""The next slices of a field that varies, computed while the present ones are shown.
+"""Slices computed before they are needed.
 
 Tracing a step and laying it into texels takes longer than a frame. One thread does it for the
-step that comes next in the direction in which time goes.
+first picture while its mesh and its shaders are made, and then for the step that comes next in the
+direction in which time goes.
 """
 
 from __future__ import annotations
 
+import contextvars
 from concurrent.futures import Future, ThreadPoolExecutor
 
-from flowtex._util.array_types import Floats32
+from flowtex._util.array_types import Halves
 from flowtex.textures.texture_set import TextureSet
 
 
@@ -18,25 +20,29 @@ class LayerPrefetch:
     def __init__(self, textures: TextureSet) -> None:
         self._textures = textures
         self._pool: ThreadPoolExecutor | None = None
-        self._ready: tuple[int, Future[Floats32]] | None = None
+        self._ready: tuple[tuple[int, int | None], Future[Halves]] | None = None
 
-    def prepare(self, step: int) -> None:
-        """Begin to compute the layers of a step; one that does not exist is none."""
+    def prepare(self, step: int, lags: int | None = None) -> None:
+        """Begin to compute the layers of a step, at so many lags; one that does not exist is none.
+
+        It stops where work in this thread would, as :func:`flowtex._util.progress.stoppable` says.
+        """
         if not 0 <= step < self._textures.store.steps:
             return
-        if self._ready is not None and self._ready[0] == step:
+        if self._ready is not None and self._ready[0] == (step, lags):
             return
         if self._ready is not None:
             self._ready[1].cancel()
         if self._pool is None:
             self._pool = ThreadPoolExecutor(max_workers=1, thread_name_prefix="flowtex-prefetch")
-        self._ready = (step, self._pool.submit(self._textures.layers, step))
+        make = contextvars.copy_context().run
+        self._ready = (step, lags), self._pool.submit(make, self._textures.layers, step, lags)
 
-    def take(self, step: int) -> Floats32:
+    def take(self, step: int, lags: int | None = None) -> Halves:
         """Layers of a step, (layers, H, W, 4): those that were prepared, or computed now."""
         ready = self._ready
-        if ready is None or ready[0] != step:
-            return self._textures.layers(step)
+        if ready is None or ready[0] != (step, lags):
+            return self._textures.layers(step, lags)
         self._ready = None
         return ready[1].result()
 

@@ -205,15 +205,16 @@ class TextureSet:
         for name in ("_displacements", "_length"):
             self.__dict__.pop(name, None)
 
-    def layers(self, step: int = 0, lags: int | None = None) -> Floats32:
+    def layers(self, step: int = 0, lags: int | None = None, dtype: type = np.float16) -> AnyArray:
         """Texels of the slice texture for one destination time, (layers, H, W, 4).
 
-        They are those of so many lags, the shortest, and of all by default.
+        They are those of so many lags, the shortest, and of all by default. They are rounded to
+        half precision here, as drivers may cut digits off, which moves a critical point.
         """
         whole = self.store.at(step, lags)
         slices, tangent = whole.part(*self.geometry.texels), self._tangent(whole)
         count = self.count_of(lags)
-        result = np.empty((count, *self.geometry.size, 4), np.float32)
+        result: AnyArray = np.empty((count, *self.geometry.size, 4), dtype)
 
         def make(layer: int) -> None:
             nodal = self._nodal(slices, tangent, layer)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex._util.blocks import bounds
 from flowtex.field import FlowField
 from flowtex.field.surface import Surface
@@ -150,7 +150,7 @@ class TriangleGeometry(DrawnSurface):
         image.reshape(-1)[self.triangles.ravel()] = values
         return image
 
-    def write_texels(self, data: Floats32, texels: Floats32) -> None:
+    def write_texels(self, data: Floats32, texels: AnyArray) -> None:
         """Write data (1, n, C) of the nodes into texels (H, W, C)."""
         flat = texels.reshape(-1, texels.shape[-1])
         flat[: data.shape[1]] = data[0]

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import Floats32
+from flowtex._util.array_types import Halves
 from flowtex._util.cache import ByteCache
 from flowtex._util.progress import Stopped, check, stoppable
 from flowtex.textures import TextureSet, TriangleGeometry
@@ -26,9 +26,8 @@ from flowtex.tiles.pyramid import Pyramid, TileKey
 
 #: Memory of the tiles that are kept, in bytes.
 BUDGET_BYTES = 1_000_000_000
-#: Memory of a texel, whose four numbers have single precision first and half of it later, and of a
-#: node beside it.
-TEXEL_BYTES, NODE_BYTES = 16, 200
+#: Memory of a texel, four numbers of half precision, and of a node beside it.
+TEXEL_BYTES, NODE_BYTES = 8, 200
 #: Memory of a triangle that has vertices of its own.
 TRIANGLE_BYTES = 250
 #: Tiles that are made at once for one view, at most. All views of a process together have as many,
@@ -67,7 +66,7 @@ class Tile:
     key: TileKey
     textures: TextureSet | None
     prepared: Any = None
-    layers: dict[int, Floats32 | None] = field(default_factory=dict)
+    layers: dict[int, Halves | None] = field(default_factory=dict)
 
     @property
     def nbytes(self) -> int:
@@ -81,15 +80,15 @@ class Tile:
             mesh += len(geometry.triangles) * TRIANGLE_BYTES
         return texels * TEXEL_BYTES * max(len(self.layers), 1) + mesh
 
-    def make(self, step: int) -> Floats32:
+    def make(self, step: int) -> Halves:
         """Make the layers of a destination time."""
         if self.textures is None:
-            return np.empty((0, 0, 0, 4), np.float32)
+            return np.empty((0, 0, 0, 4), np.float16)
         layers = self.textures.layers(step)
         self.textures.forget()
         return layers
 
-    def take(self, step: int) -> Floats32:
+    def take(self, step: int) -> Halves:
         """Hand the layers of a destination time over; they are not kept."""
         layers, self.layers[step] = self.layers.get(step), None
         return self.make(step) if layers is None else layers

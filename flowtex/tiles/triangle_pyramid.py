@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
+from flowtex.field.triangles.topology import corner_ends
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.tiles.boxes import Boxes
 from flowtex.tiles.clusters import Clusters, levels_of
@@ -158,8 +159,7 @@ class TrianglePyramid(Pyramid):
         with self._lock:
             if level not in self._parts:
                 this = self._clusters[level]
-                corners = this.field.points[0][this.triangles]
-                low, high = corners.min(axis=1), corners.max(axis=1)
+                low, high = corner_ends(this.field.points[0], this.triangles)
                 self._parts[level] = self._boxes.members(low, high, self._steps(level))
             return self._parts[level]
 
@@ -178,19 +178,18 @@ class TrianglePyramid(Pyramid):
     def _extents(self) -> tuple[Floats, Floats, Floats]:
         """Corners of what lies in the blocks of level 0, and the size of cells there."""
         this, parts = self._clusters[0], self._members(0)
-        points, some = this.field.points[0], np.array([len(part) > 0 for part in parts])
+        some = np.array([len(part) > 0 for part in parts])
         triangles = this.triangles[np.concatenate(parts)]
         first = np.cumsum([0, *(len(part) for part in parts)])[:-1][some]
         low, high = self._boxes.bounds(self._steps(0))
         inner = [np.full_like(low, np.inf), np.full_like(high, -np.inf)]
         size = np.zeros(len(parts))
         if len(first):
-            corners = [points[triangles[:, k]] for k in range(3)]
-            for ends, reduce in zip(inner, (np.minimum, np.maximum), strict=True):
-                ends[some] = reduce.reduceat(
-                    reduce(reduce(corners[0], corners[1]), corners[2]), first
-                )
-            sides = np.split(this.sides[triangles].max(axis=1), first[1:])
+            ends = corner_ends(this.field.points[0], triangles)
+            for corner, end, reduce in zip(inner, ends, (np.minimum, np.maximum), strict=True):
+                corner[some] = reduce.reduceat(end, first)
+            longest = np.maximum.reduce([this.sides[triangles[:, k]] for k in range(3)])
+            sides = np.split(longest, first[1:])
             # At the next level it is twice as much, a share of these bins.
             size[some] = [BIN_SHARE / 2 * _most(part) for part in sides]
         return np.maximum(low, inner[0]), np.minimum(high, inner[1]), size
@@ -212,10 +211,8 @@ class TrianglePyramid(Pyramid):
         near = self._boxes.members(low[None], high[None], self._steps(level))
         parts = self._members(level)
         some = np.concatenate([part for part, hit in zip(parts, near, strict=True) if len(hit)])
-        corners = points[this.triangles[some]]
-        inside = (corners.max(axis=1) >= low).all(axis=1) & (corners.min(axis=1) <= high).all(
-            axis=1
-        )
+        least, most = corner_ends(points, this.triangles[some])
+        inside = (most >= low).all(axis=1) & (least <= high).all(axis=1)
         return np.unique(some[inside])
 
 

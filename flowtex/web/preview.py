@@ -18,7 +18,7 @@ from flowtex._util.colours import rgb
 from flowtex.camera import Camera
 from flowtex.field.interpolation import steps_around
 from flowtex.options import NO_VALUE_COLOR
-from flowtex.rendering.cpu import Picture, render
+from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.map_overlay import SPACING_PX, SPACINGS, STROKES, map_lines
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData

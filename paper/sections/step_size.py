@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.rendering.cpu import LookupMaker
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.paper_noise import PaperImages, PaperNoise
+from flowtex.rendering.cpu.texture import LookupMaker
 from flowtex.textures import PaperTextures
 from paper import measures
 from paper.bench import PAPER, Bench

@@ -1,18 +1,22 @@
 #ifdef FLOWTEX_TRIANGLES
   flowtexSetCorners(flowtexCornersVSOutput);
 #endif
+  vec2 flowtexPlaced = flowtexCoordinateVSOutput;
+#ifdef FLOWTEX_PLACED
+  flowtexPlaced = flowtexPlace(flowtexPlaced, flowtexPositionVSOutput.xy);
+#endif
 #if defined(FLOWTEX_PAPER)
-  float flowtexTextured = flowtexValue(flowtexCoordinateVSOutput, flowtexNoiseVSOutput);
+  float flowtexTextured = flowtexValue(flowtexPlaced, flowtexNoiseVSOutput);
 #elif defined(FLOWTEX_PLANAR)
-  float flowtexTextured = flowtexValue(flowtexCoordinateVSOutput, flowtexPositionVSOutput, vec3(0.0, 0.0, 1.0));
+  float flowtexTextured = flowtexValue(flowtexPlaced, flowtexPositionVSOutput, vec3(0.0, 0.0, 1.0));
 #else
-  float flowtexTextured = flowtexValue(flowtexCoordinateVSOutput, flowtexPositionVSOutput, flowtexNormalVSOutput);
+  float flowtexTextured = flowtexValue(flowtexPlaced, flowtexPositionVSOutput, flowtexNormalVSOutput);
 #endif
   // VTK has set ambientColor and diffuseColor from the property or the scalars by now, each times
   // its share of the light, and lights them next.
   vec3 flowtexColour = (ambientColor + diffuseColor) / max(ambientIntensity + diffuseIntensity, FLOWTEX_LEAST_LIGHTNESS);
   if (u_mapped)
-    flowtexColour = flowtexMapped(flowtexCoordinateVSOutput);
+    flowtexColour = flowtexMapped(flowtexPlaced);
   if (u_showLevel)
     flowtexColour = flowtexLevelColour(flowtexNoiseLevel);
 #ifdef FLOWTEX_PICTURE

@@ -13,7 +13,7 @@ from strategies import field_arguments, field_of, property_test, setting_values
 import flowtex
 from flowtex import FlowField
 from flowtex.camera import Camera
-from flowtex.rendering.cpu import render
+from flowtex.rendering.cpu.render import render
 from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl.client_data import ClientData, Colours

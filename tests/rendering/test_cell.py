@@ -17,7 +17,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.locate import locate
 from flowtex.probe import probe
-from flowtex.rendering.cpu import render
+from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState, is_near
 from flowtex.scene import Scene
 from flowtex.settings import Settings

@@ -98,8 +98,9 @@ def uniforms_of(name: str) -> dict[str, Any]:
     values = uniforms(textures, settings, view)
     return {
         "header": {key: header[key] for key in NEEDED},
-        # A browser traces the lags that it draws with, and has no number of them.
-        "view": plain({name: value for name, value in vars(view).items() if name != "lags"}),
+        # A browser traces the lags that it draws with, with all mip levels, and has no number of
+        # either.
+        "view": plain({k: value for k, value in vars(view).items() if k not in ("lags", "levels")}),
         "noise": noise,
         "moving": values.pop("moving"),
         "near": values.pop("near"),

@@ -13,11 +13,14 @@ from scipy import ndimage
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.camera import Camera
-from flowtex.rendering.cpu import Lookup, LookupMaker, Sums, raster, render, shade
+from flowtex.rendering.cpu import raster
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.noise import SpaceNoise
 from flowtex.rendering.cpu.raster import Coverage, rasterise
+from flowtex.rendering.cpu.render import render
+from flowtex.rendering.cpu.shade import shade
+from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Sums
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore

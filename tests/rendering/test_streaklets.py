@@ -13,7 +13,7 @@ from flowtex._util.array_types import Floats
 from flowtex.camera import Camera
 from flowtex.field.locate import locator
 from flowtex.rendering import constants as const
-from flowtex.rendering.cpu import Picture, render
+from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.uniforms import is_sparse
 from flowtex.scene import Scene
 from flowtex.settings import Settings

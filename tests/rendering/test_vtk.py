@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import weakref
 from functools import cache
@@ -16,6 +17,7 @@ from plain_pyvista import off_colours
 
 import flowtex
 from flowtex.plotting.vtk_camera import look
+from flowtex.rendering import mesh_levels
 
 SIZE = (400, 300)
 
@@ -44,6 +46,23 @@ def test_the_way_to_a_view_does_not_show_in_it(plotter: Any) -> None:
         pictures.append(plotter.screenshot(return_img=True).astype(float))
     assert np.sqrt(np.mean((pictures[0] - pictures[3]) ** 2)) < 2
     assert np.abs(pictures[0] - pictures[2]).mean() > 10
+
+
+def test_a_far_view_after_a_near_one_has_all_mip_levels(opengl: Any) -> None:
+    velocity = np.random.default_rng(3).normal([1, 0], size=(160, 320, 2))
+    points = np.stack(np.meshgrid(np.linspace(0, 2, 320), np.linspace(0, 1, 160)), axis=-1)
+    field = flowtex.FlowField.from_arrays(points, velocity)
+    pictures: list[Any] = []
+    for zooms in ((1,), (30, 1)):
+        with contextlib.closing(pv.Plotter(off_screen=True, window_size=[80, 60])) as plotter:
+            handle = plotter.flowtex.add(field, scalars=False)
+            for zoom in zooms:
+                look(plotter, field, zoom=zoom)
+                plotter.render()
+                picture = plotter.screenshot(return_img=True)
+                assert (handle._surface._base.view.levels == 0) == (zoom > 1)
+            pictures.append(picture)
+    np.testing.assert_array_equal(pictures[0], pictures[1])
 
 
 def test_two_views_beside_each_other_share_the_camera(opengl: Any) -> None:
@@ -185,6 +204,28 @@ def test_a_frame_has_as_many_triangles_as_the_view_needs(plotter: Any) -> None:
     assert cells() == 2 * 128 * 256
     every = np.asarray(plotter.screenshot(return_img=True), dtype=float)
     assert np.abs(every - plain).max() <= 2
+
+
+@pytest.mark.parametrize("zoom", [1, 6])
+def test_large_triangles_of_a_crooked_grid_draw_what_small_ones_do(
+    opengl: Any, monkeypatch: pytest.MonkeyPatch, zoom: float
+) -> None:
+    s, t = np.meshgrid(np.linspace(0, 1, 240), np.linspace(0, 1, 120))
+    wave = 0.03 * np.sin(np.pi * s) * np.sin(np.pi * t)
+    x, y = 2 * (s + wave * np.sin(20 * t)), t + wave * np.sin(20 * s)
+    field = flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(gyre(x, y), -1))
+    pictures, counts = [], []
+    for share in (1.0, mesh_levels.PLACED_SHARE):
+        monkeypatch.setattr(mesh_levels, "PLACED_SHARE", share)
+        with contextlib.closing(pv.Plotter(off_screen=True, window_size=list(SIZE))) as plotter:
+            handle = plotter.flowtex.add(field, scalars=False)
+            look(plotter, field, zoom=zoom, focus=(0.63, 0.37))
+            plotter.render()
+            pictures.append(np.asarray(plotter.screenshot(return_img=True), float))
+            counts.append(sum(mesh.n_cells for mesh in handle.meshes))
+    assert counts[0] > 3 * counts[1]
+    off = np.abs(pictures[0] - pictures[1])[SIZE[1] // 10 : -SIZE[1] // 10]
+    assert np.sqrt(np.mean(off**2)) < 0.2
 
 
 def test_scalars_keep_their_colours_and_their_bar(plotter: Any) -> None:

@@ -45,7 +45,7 @@ def test_slopes_tend_to_the_tangent(make: object, parameter: str) -> None:
     field: FlowField = make()  # type: ignore[operator]
     slices = trace(field, lags=[1e-3, 0.5], parameter=parameter)
     made = textures(field, slices)
-    layers = made.layers()
+    layers = made.layers(dtype=np.float32)
     tangent = nodal(made, layers[0])[..., :3]
     size = np.linalg.norm(tangent, axis=-1)
     inside = (slices.reach[0] > 1e-3) & (size > 0.1 * np.median(size))
@@ -58,7 +58,7 @@ def test_slopes_tend_to_the_tangent(make: object, parameter: str) -> None:
 
 def test_arc_length_slopes_are_of_unit_length() -> None:
     made = textures(double_gyre_field(shape=(41, 81)))
-    size = np.linalg.norm(nodal(made, made.layers()[0])[..., :3], axis=-1)
+    size = np.linalg.norm(nodal(made, made.layers(dtype=np.float32)[0])[..., :3], axis=-1)
     np.testing.assert_allclose(size[1:-1, 1:-1].max(), 1, atol=1e-5)
     assert np.median(size) == pytest.approx(1, abs=1e-5)
 
@@ -67,7 +67,7 @@ def test_slope_times_lag_is_the_way_in_space() -> None:
     field = airfoil_field((33, 97))
     made = textures(field)
     slices = made.store.at(0)
-    layers = made.layers()
+    layers = made.layers(dtype=np.float32)
     for m in (0, 3):
         expected = field.surface.at(slices.nodes + slices.displacement[0, m]) - field.points
         lag = slices.lags[m] * slices.unit[..., None]
@@ -81,7 +81,7 @@ def test_fourth_channel_holds_unit_reach_and_speed() -> None:
     field = stretched()
     made = textures(field)
     slices = made.store.at(0)
-    layers = made.layers()
+    layers = made.layers(dtype=np.float32)
     np.testing.assert_allclose(nodal(made, layers[0])[..., 3] * made.unit, slices.unit, rtol=1e-5)
     last = 2 * slices.lags[-1]
     count = len(slices.lags)
@@ -101,8 +101,9 @@ def test_fourth_channel_holds_unit_reach_and_speed() -> None:
 def test_the_last_layer_is_the_velocity_in_cells() -> None:
     field = stretched()
     made = textures(field)
-    rate = nodal(made, made.layers()[-1])
-    in_cells = rate[..., :2] * rate[..., 3:] / nodal(made, made.layers()[0])[..., 3:] / made.cell
+    layers = made.layers(dtype=np.float32)
+    rate, first = nodal(made, layers[-1]), nodal(made, layers[0])
+    in_cells = rate[..., :2] * rate[..., 3:] / first[..., 3:] / made.cell
     flow = field.index_velocity.components[0] / made.typical_speed
     np.testing.assert_allclose(in_cells, flow, rtol=1e-5, atol=1e-6)
 
@@ -110,7 +111,7 @@ def test_the_last_layer_is_the_velocity_in_cells() -> None:
 def test_by_time_slopes_are_speeds_over_a_typical_speed() -> None:
     field = double_gyre_field(shape=(21, 41))
     made = textures(field, parameter="time")
-    tangent = nodal(made, made.layers()[0])[..., :3]
+    tangent = nodal(made, made.layers(dtype=np.float32)[0])[..., :3]
     np.testing.assert_allclose(
         np.linalg.norm(tangent, axis=-1) * made.pace, field.speed[0], atol=1e-6
     )
@@ -122,7 +123,7 @@ def test_periodic_axis_goes_on_by_its_own_period() -> None:
     columns, rows = made.grid.columns, made.grid.rows
     assert columns.periodic and not rows.periodic
     period = columns.nodes - 1
-    layers = made.layers()
+    layers = made.layers(dtype=np.float32)
     np.testing.assert_array_equal(layers[:, :, :-period], layers[:, :, period:])
     # Beyond the border of an open axis the last line is repeated.
     beyond = layers[:, rows.nodes :]
@@ -140,7 +141,7 @@ def test_paths_go_on_across_the_seam() -> None:
     field = FlowField.from_arrays(points, points[..., ::-1] * [-1, 1])
     assert field.periodic == (False, True)
     made = textures(field)
-    layers = made.layers()
+    layers = made.layers(dtype=np.float32)
     for layer in (0, 2, made.count // 2, made.count - 1):
         size = np.linalg.norm(nodal(made, layers[layer])[..., :2], axis=-1)
         np.testing.assert_allclose(size, np.broadcast_to(size[:, 30:31], size.shape), atol=2e-3)
@@ -149,7 +150,7 @@ def test_paths_go_on_across_the_seam() -> None:
 def test_layers_fill_whole_blocks_of_the_coarsest_level() -> None:
     made = textures(double_gyre_field(shape=(21, 41)))
     block = 2**made.geometry.levels
-    height, width = made.layers().shape[1:3]
+    height, width = made.layers(dtype=np.float32).shape[1:3]
     assert height % block == width % block == 0
     texel = made.geometry.coordinate * [width, height]
     i, j = np.meshgrid(np.arange(41), np.arange(21))
@@ -163,8 +164,8 @@ def test_flat_surfaces_lie_in_their_own_plane(rng: np.random.Generator) -> None:
     made = textures(field)
     assert made.geometry.planar
     assert np.abs(made.geometry.position[..., 2]).max() < 1e-6
-    assert not made.layers()[..., :, 2].any() or np.abs(made.layers()[..., 2]).max() < 1e-5
-    one = np.linalg.norm(nodal(made, made.layers()[5])[..., :3], axis=-1)
+    assert np.abs(made.layers(dtype=np.float32)[..., 2]).max() < 1e-5
+    one = np.linalg.norm(nodal(made, made.layers(dtype=np.float32)[5])[..., :3], axis=-1)
     plain = textures(flat)
     two = np.linalg.norm(nodal(plain, plain.layers()[5])[..., :3], axis=-1)
     np.testing.assert_allclose(one, two, atol=1e-3)
@@ -176,7 +177,7 @@ def test_curved_surfaces_keep_three_dimensions() -> None:
     velocity = np.stack([-np.sin(a), np.cos(a), 0 * z + 0.2], axis=-1)
     made = textures(FlowField.from_arrays(points, velocity, periodic=""))
     assert not made.geometry.planar
-    tangent = nodal(made, made.layers()[0])[..., :3]
+    tangent = nodal(made, made.layers(dtype=np.float32)[0])[..., :3]
     expected = velocity / np.linalg.norm(velocity, axis=-1, keepdims=True)
     np.testing.assert_allclose(tangent[1:-1, 1:-1], expected[1:-1, 1:-1], atol=2e-3)
 
@@ -187,7 +188,7 @@ def test_blanked_nodes_take_what_is_beside_them() -> None:
     valid[5:9, 10:14] = False
     masked = FlowField.from_arrays(field.points, field.velocity[0], valid=valid, periodic="")
     made = textures(masked)
-    layers = made.layers()
+    layers = made.layers(dtype=np.float32)
     assert np.isfinite(layers).all()
     for layer in layers[:4]:
         values = nodal(made, layer)
@@ -201,7 +202,7 @@ def test_layers_for_the_noise_texture_hold_ways_across_it(correction: bool) -> N
     made = textures(field, noise="texture", noise_correction=correction)
     assert made.paper is not None
     slices = made.store.at(0)
-    layers = made.layers()
+    layers = made.layers(dtype=np.float32)
     inner = (slice(None), slice(0, -1))  # The closing column repeats the first.
     expected = slices.rate[0] * made.paper.by_cell()
     np.testing.assert_allclose(nodal(made, layers[0])[inner][..., :2], expected[inner], rtol=1e-5)

@@ -123,7 +123,7 @@ def test_a_failure_is_told_and_tried_again_later() -> None:
 def test_tiles_fit_into_their_memory() -> None:
     source: Any = Source()
     source.go.set()
-    loader = TileLoader(source, budget=3000)
+    loader = TileLoader(source, budget=2200)
     for key in KEYS:
         loader.request([key], [0])
         loader.wait()

@@ -39,7 +39,7 @@ def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
     textures = TextureSet(
         SurfaceGeometry.of(field), SliceStore(field, slices=slices), whole_speed=like.whole_speed
     )
-    layers = textures.layers(step).astype(np.float64)
+    layers = textures.layers(step, dtype=np.float64)
     layers[0, ..., 3] *= textures.unit / like.unit
     rows, columns = textures.grid.rows, textures.grid.columns
     return layers[
@@ -49,7 +49,7 @@ def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
 
 def nodal(tile: TextureSet, step: int = 0) -> Floats:
     """Layers of the nodes that a tile draws."""
-    layers, geometry = tile.layers(step), tile.grid
+    layers, geometry = tile.layers(step, dtype=np.float32), tile.grid
     rows, columns = geometry.rows, geometry.columns
     return layers[
         :, rows.before : rows.before + rows.nodes, columns.before : columns.before + columns.nodes

@@ -13,7 +13,7 @@ import flowtex
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats
 from flowtex.camera import Camera
-from flowtex.rendering.cpu import render
+from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet

@@ -25,7 +25,7 @@ from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
 from flowtex.camera import Camera
-from flowtex.rendering.cpu import Picture, render
+from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet, as_picture

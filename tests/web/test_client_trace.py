@@ -19,7 +19,7 @@ from flowtex import FlowField, examples
 from flowtex._util.array_types import Floats
 from flowtex.camera import Camera
 from flowtex.options import Options
-from flowtex.rendering.cpu import render
+from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.velocity import can_trace

@@ -23,7 +23,7 @@ from flowtex.camera import Camera
 from flowtex.field.locate import locate
 from flowtex.options import Options
 from flowtex.probe import probe
-from flowtex.rendering.cpu import render
+from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene

@@ -60,6 +60,8 @@ def time_steps(
 
 def is_reader(source: Any) -> bool:
     """Whether this is one of PyVista's readers."""
+    if hasattr(type(source), "IsA"):  # of VTK: a mesh that is asked loads all accessors
+        return False
     return hasattr(source, "read") and (hasattr(source, "time_values") or hasattr(source, "reader"))
 
 

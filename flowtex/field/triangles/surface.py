@@ -58,10 +58,15 @@ class TriangleSurface(Surface):
         return neighbours(self.points[0], self.triangles)
 
     @cached_property
+    def flipped(self) -> Bools:
+        """Triangles that face the other way than the first one of their part, (M,)."""
+        return flipped(self.triangles, self.neighbours)
+
+    @cached_property
     def crosses(self) -> Floats:
         """Normals of the triangles, (M, 3), as long as twice their areas; neighbours face alike."""
         crosses = triangle_normals(self.points[0], self.triangles)
-        crosses[flipped(self.triangles, self.neighbours)] *= -1
+        crosses[self.flipped] *= -1
         return crosses
 
     @cached_property

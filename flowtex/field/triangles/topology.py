@@ -81,8 +81,25 @@ def needle_edges(points: Floats, triangles: Indices) -> Bools:
 
 def triangle_normals(points: Floats, triangles: Indices) -> Floats:
     """Return the cross product of two sides, (M, 3): the normal, as long as twice the area."""
-    a, b, c = (points[triangles[:, k]] for k in range(3))
-    return np.cross(b - a, c - a)
+    result, one, two = np.empty((len(triangles), 3)), [], []
+    # Column by column, which is several times as fast.
+    for column in np.ascontiguousarray(points.T):
+        a, b, c = (column[triangles[:, k]] for k in range(3))
+        one.append(b - a)
+        two.append(c - a)
+    for axis in range(3):
+        result[:, axis] = one[axis - 2] * two[axis - 1] - one[axis - 1] * two[axis - 2]
+    return result
+
+
+def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
+    """Return least and greatest coordinates of the corners of triangles, (M, 3) each."""
+    low, high = np.empty((2, 3, len(triangles)))
+    for axis, column in enumerate(np.ascontiguousarray(points.T)):
+        a, b, c = (column[triangles[:, k]] for k in range(3))
+        np.minimum(np.minimum(a, b), c, out=low[axis])
+        np.maximum(np.maximum(a, b), c, out=high[axis])
+    return low.T, high.T
 
 
 def neighbours(points: Floats, triangles: Indices) -> Indices:
@@ -124,8 +141,24 @@ def _straightest(
         result[sides] = sides[np.argmin(straight, axis=1)] // 3
 
 
+def _have_common_ways(triangles: Indices, beside: Indices) -> bool:
+    """Whether any triangle and one beside it go through their common edge in one direction."""
+    columns = list(np.ascontiguousarray(triangles.T))
+    for k in range(3):
+        begins, ends = columns[k - 2], columns[k - 1]
+        there = [column[beside[:, k]] for column in columns]
+        for n in range(3):
+            common = (there[n - 1] == begins) & (there[n] == ends)
+            if (common & (beside[:, k] >= 0)).any():
+                return True
+    return False
+
+
 def flipped(triangles: Indices, beside: Indices) -> Bools:
     """Return which triangles (M,) face the other way than the first one of their part."""
+    result = np.zeros(len(triangles), dtype=bool)
+    if not _have_common_ways(triangles, beside):
+        return result
     ahead = np.roll(triangles, -1, axis=1)  # of the edge opposite to a corner
     rows, corners = np.nonzero(beside >= 0)
     other = beside[rows, corners]
@@ -134,7 +167,6 @@ def flipped(triangles: Indices, beside: Indices) -> Bools:
     mutual = beside[other, back] == rows
     # Neighbours that face alike go through their common edge in opposite directions.
     turned = mutual & (ahead[other, back] == begins)
-    result = np.zeros(len(triangles), dtype=bool)
     if not turned.any():
         return result
     # Triangles that face alike are one patch; those an odd number of turns away face otherwise.

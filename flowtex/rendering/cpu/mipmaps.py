@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.array_types import AnyArray, Floats, Floats32, Indices
 
 
 class Mips:
@@ -19,7 +19,7 @@ class Mips:
 
     def __init__(
         self,
-        texels: Floats32,
+        texels: AnyArray,
         *,
         levels: int | None = None,
         repeat: tuple[bool, bool] = (False, False),
@@ -84,7 +84,7 @@ def _neighbours(
     return a, b, (x - base)[:, None]
 
 
-def _half(texels: Floats32) -> Floats32:
+def _half(texels: AnyArray) -> Floats32:
     return texels.astype(np.float16).astype(np.float32)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flowtex._util.array_types import Floats, Floats32, Indices
+from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.camera import Camera
 from flowtex.errors import FieldError
@@ -135,7 +135,7 @@ class Window(Mips):
     H and W are multiples of the coarsest level's block.
     """
 
-    def __init__(self, texels: Floats32, levels: int) -> None:
+    def __init__(self, texels: AnyArray, levels: int) -> None:
         self._texture, self._last, self._block = texels, levels, 2**levels
         self._window: tuple[int, ...] = ()
 

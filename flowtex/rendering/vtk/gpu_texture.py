@@ -8,14 +8,13 @@ let go with the window at the latest.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from vtkmodules.util.vtkConstants import VTK_FLOAT
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObject
 
-from flowtex._util.array_types import Floats32
+from flowtex._util.array_types import AnyArray
 
-#: OpenGL's numbers of internal formats, in half precision, by channels.
-FORMATS = {1: 0x822D, 2: 0x822F, 4: 0x881A}
+#: OpenGL's numbers of internal formats, in half precision, by channels; and of two in single.
+FORMATS, TWO_SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, 0x8230
 #: OpenGL's number of numbers in half precision.
 HALF_FLOAT = 0x140B
 
@@ -24,20 +23,23 @@ class GPUTexture:
     """One texture array with its mip levels; an image is an array of one layer.
 
     Of VTK's textures from memory the arrays alone get mip levels. The texels (layers, H, W,
-    channels), with 1, 2 or 4 channels, are stored in half precision. There are so many mip levels
-    beside the finest, or all of them; ``repeat`` says whether the texture goes around along (v, u).
+    channels), with 1, 2 or 4 channels, are stored in half precision; 2 may be in ``single``. There
+    are so many mip levels beside the finest, or all of them; ``repeat`` says whether the texture
+    goes around along (v, u).
     """
 
     def __init__(
         self,
-        texels: Floats32,
+        texels: AnyArray,
         *,
         levels: int | None = None,
         repeat: tuple[bool, bool] = (False, False),
+        single: bool = False,
     ) -> None:
-        # Drivers may cut digits off instead of rounding, which moves a critical point.
         with np.errstate(over="ignore"):
-            self._texels: NDArray[np.float16] | None = texels.astype(np.float16)
+            self._texels: AnyArray | None = np.ascontiguousarray(
+                texels, np.float32 if single else np.float16
+            )
         self._levels = levels
         self._repeat = repeat
         self._object: vtkTextureObject | None = None
@@ -70,7 +72,7 @@ class GPUTexture:
             raise RuntimeError(msg)
         target = vtkTextureObject()
         target.SetContext(window)
-        target.SetGenerateMipmap(True)
+        target.SetGenerateMipmap(self._levels != 0)
         target.SetMinificationFilter(vtkTextureObject.LinearMipmapLinear)
         target.SetMagnificationFilter(vtkTextureObject.Linear)
         repeat, clamp = vtkTextureObject.Repeat, vtkTextureObject.ClampToEdge
@@ -80,8 +82,11 @@ class GPUTexture:
         whole = max(height, width).bit_length() - 1
         # Left as it is, VTK's greatest level is 0, and there is no other level.
         target.SetMaxLevel(whole if self._levels is None else self._levels)
-        target.SetInternalFormat(FORMATS[channels])
-        # VTK has no name for half precision, and takes what was set for that of its own names.
-        target.SetDataType(HALF_FLOAT)
+        if texels.dtype == np.float32:
+            target.SetInternalFormat(TWO_SINGLE)
+        else:
+            target.SetInternalFormat(FORMATS[channels])
+            # VTK has no name for half precision, and takes what was set for that of its own names.
+            target.SetDataType(HALF_FLOAT)
         target.Create2DArrayFromRaw(width, height, channels, VTK_FLOAT, layers, texels)
         return target

@@ -23,7 +23,7 @@ import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from flowtex._util.array_types import Floats, Floats32, Ints
+from flowtex._util.array_types import Floats, Halves, Ints
 from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import TileView
@@ -35,6 +35,7 @@ from flowtex.rendering.uniforms import (
     is_near,
     is_sparse,
     needed_lags,
+    needed_levels,
     uniforms,
     variants,
 )
@@ -80,11 +81,6 @@ class FlowLayer:
         Gives the layers of a destination time, where the texture set is not to be asked.
     mesh_levels
         Those of the texture set, where they are there already.
-
-    Attributes
-    ----------
-    mesh_levels
-        The triangles of each level of the mesh.
     """
 
     def __init__(
@@ -93,7 +89,7 @@ class FlowLayer:
         renderer: Any,
         textures: TextureSet,
         settings: Settings,
-        layers: Callable[[int], Floats32] | None = None,
+        layers: Callable[[int], Halves] | None = None,
         mesh_levels: MeshLevels | TriangleBlocks | None = None,
     ) -> None:
         self._actor = actor
@@ -107,13 +103,12 @@ class FlowLayer:
         self._height = 1.0
         self._drawn = False
         self._variant: frozenset[str] | None = None
-        self.mesh_levels = mesh_levels or mesh_levels_of(textures)
+        self._mesh_levels = mesh_levels
         self._colours: MappedColours | None = None
         self._gpu: dict[str, GPUTexture] = {}
         self._retired: list[GPUTexture] = []
         self.view = ViewState()
         self._map_attributes()
-        self._write_text()
         update = self._observer("_before_draw")
         update.CallDataType = VTK_OBJECT
         self._observed = self._mapper.AddObserver("UpdateShaderEvent", update)
@@ -127,6 +122,14 @@ class FlowLayer:
         """What is drawn."""
         return self._textures
 
+    @property
+    def mesh_levels(self) -> MeshLevels | TriangleBlocks:
+        """The triangles of each level of the mesh."""
+        if self._mesh_levels is None:
+            placed = corrects_places(self._textures)
+            self._mesh_levels = mesh_levels_of(self._textures, placed=placed)
+        return self._mesh_levels
+
     def set_textures(self, textures: TextureSet) -> None:
         """Draw another texture set of the same surface from now on."""
         same = textures.same_paths(self._textures)
@@ -134,10 +137,9 @@ class FlowLayer:
         self._prefetch.close()
         self._prefetch = LayerPrefetch(textures)
         self.view.anchor = np.zeros(3)  # that of the mesh's new attributes
-        self.view.lags = None
+        self.view.lags = self.view.levels = None
         self._retire(*(["u_noiseImage"] if same else self._gpu))
         self._map_attributes()
-        self._write_text()
 
     def set_moment(self, before: int, after: int, between: float) -> None:
         """Show the time between two destination times of the slices.
@@ -194,6 +196,8 @@ class FlowLayer:
         variant = variants(
             self._textures, unsteady=unsteady, moving=moving, near=near, sparse=sparse
         )
+        if corrects_places(self._textures):
+            variant |= {"FLOWTEX_PLACED"}
         if variant == self._variant:
             return
         self._variant = variant
@@ -215,6 +219,7 @@ class FlowLayer:
         values = uniforms(self._textures, self._settings, self.view)
         if isinstance(geometry := self._textures.geometry, SurfaceGeometry):
             values["u_padding"] = float(geometry.columns.before), float(geometry.rows.before)
+            values["u_anchor"] = float(self.view.anchor[0]), float(self.view.anchor[1])
         values["u_mapped"] = self._colours is not None
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
@@ -243,6 +248,9 @@ class FlowLayer:
         loaders |= {
             "u_shares": lambda: GPUTexture(colours.shares(geometry) if colours else none, levels=0),
             "u_colours": lambda: GPUTexture(colours.colours() if colours else none, levels=0),
+            "u_nodes": lambda: GPUTexture(
+                np.nan_to_num(geometry.position[None, ..., :2]), levels=0, single=True
+            ),
         }
         if paper is not None:
             loaders["u_noiseImage"] = partial(
@@ -253,11 +261,10 @@ class FlowLayer:
 
     def _slices(self, number: int) -> GPUTexture:
         """Slices of the first or the second of the two steps."""
-        if self.view.lags is None:
-            layers = (self._take or self._prefetch.take)(self._steps[number])
-        else:
-            layers = self._textures.layers(self._steps[number], self.view.lags)
-        return GPUTexture(layers, levels=self._textures.geometry.levels)
+        step = self._steps[number]
+        layers = self._take(step) if self._take else self._prefetch.take(step, self.view.lags)
+        levels = self._textures.geometry.levels if self.view.levels is None else self.view.levels
+        return GPUTexture(layers, levels=levels)
 
     def look(self) -> None:
         """Choose the shader, and take the camera and the anchor into the mesh's own coordinates."""
@@ -277,18 +284,24 @@ class FlowLayer:
         scale = float(np.cbrt(abs(np.linalg.det(placed[:3, :3]))))
         self._height = _window_height(camera) / scale
         self.view.pixel = self._height / renderer.GetSize()[1]
-        self._choose_lags()
+        self._choose_slices()
         self._write_text()
         self._move_anchor(self._height)
 
-    def _choose_lags(self) -> None:
-        """Draw with as many lags as the first view needs, and with all once another needs more."""
-        needed = None if self._take else needed_lags(self._textures, self._settings, self.view)
+    def _choose_slices(self) -> None:
+        """Draw with the lags and mip levels that the first view needs, later perhaps with all."""
+        lags = levels = None
+        if not self._take:
+            lags = needed_lags(self._textures, self._settings, self.view)
+            levels = needed_levels(self._textures, self._settings, self.view)
         if "u_slices" not in self._gpu:
-            self.view.lags = needed
-        elif self.view.lags is not None and (needed is None or needed > self.view.lags):
-            self.view.lags = None
+            self.view.lags, self.view.levels = lags, levels
+        elif _is_more(lags, self.view.lags) or _is_more(levels, self.view.levels):
+            self.view.lags = self.view.levels = None
             self._retire("u_slices")
+        if "u_slices" not in self._gpu and not self._take:
+            # A thread of its own traces while this one goes on with meshes and shaders.
+            self._prefetch.prepare(self._steps[0], self.view.lags)
 
     def _move_anchor(self, seen: float) -> None:
         """Count positions from near the focus once their digits do not do from elsewhere."""
@@ -367,6 +380,17 @@ class FlowLayer:
 
 #: The layer that each window has drawn last.
 _last: weakref.WeakKeyDictionary[Any, weakref.ref[FlowLayer]] = weakref.WeakKeyDictionary()
+
+
+def corrects_places(textures: TextureSet) -> bool:
+    """Whether the shader of a texture set corrects the places of fragments between the nodes."""
+    geometry = textures.geometry
+    return isinstance(geometry, SurfaceGeometry) and geometry.planar and textures.paper is None
+
+
+def _is_more(needed: int | None, there: int | None) -> bool:
+    """Whether more is needed than is there, where ``None`` stands for all."""
+    return there is not None and (needed is None or needed > there)
 
 
 def _window_height(camera: Any) -> float:

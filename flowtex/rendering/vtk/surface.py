@@ -30,7 +30,7 @@ from flowtex.rendering.tile_choice import (
 )
 from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
 from flowtex.rendering.uniforms import ViewState
-from flowtex.rendering.vtk.layer import FlowLayer
+from flowtex.rendering.vtk.layer import FlowLayer, corrects_places
 from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
@@ -137,7 +137,7 @@ class FlowSurface:
         self._base.close()
         self._actor.mapper.SetInputData(surface_mesh(textures))
         self._base = FlowLayer(self._actor, self._renderer(), textures, self._settings)
-        self._base.view = replace(view, anchor=np.zeros(3), lags=None)
+        self._base.view = replace(view, anchor=np.zeros(3), lags=None, levels=None)
         self._base.set_moment(*self._moment)
         self.write_scalars()
 
@@ -203,7 +203,12 @@ class FlowSurface:
         for key, layer in layers.items():
             if key is None:
                 continue
-            layer.view = replace(self._base.view, anchor=layer.view.anchor, lags=layer.view.lags)
+            layer.view = replace(
+                self._base.view,
+                anchor=layer.view.anchor,
+                lags=layer.view.lags,
+                levels=layer.view.levels,
+            )
             layer.set_moment(*self._moment)
             layer.look()
         self._set_triangles(layers, shown, view)
@@ -316,7 +321,8 @@ class FlowSurface:
             if surface is not None and surface._scalars is not None:
                 surface._scalars[1](textures.geometry.field)  # which keeps the values at hand
             _ = textures.unit, textures.cell, textures.critical_cell  # which are kept as well
-            return surface_mesh(textures), mesh_levels_of(textures)
+            placed = corrects_places(textures)
+            return surface_mesh(textures), mesh_levels_of(textures, placed=placed)
 
         def notify() -> None:
             surface = this()

@@ -55,7 +55,8 @@ class Packing:
 
     def _packed(self, step: int) -> PackedStep:
         layers = self._textures.layers(step)
-        return PackedStep(half(layers[..., : self.channels]), half(layers[self.extra, :, :, 3]))
+        parts = layers[..., : self.channels], layers[self.extra, :, :, 3]
+        return PackedStep(*(np.ascontiguousarray(part, dtype="<f2") for part in parts))
 
 
 _packings: WeakCache[Packing] = WeakCache()
