@@ -197,13 +197,13 @@ class ClientData:
         """Return all that is no array; plain Python, for JSON.
 
         The camera is as :meth:`Camera.to_dict` has it, by default of the whole surface; the time
-        is in the field's own unit, by default the last; the clock of the streaming in seconds.
+        is in the field's own unit, by default the first; the clock of the streaming in seconds.
         """
         return {
             **self.constants(),
             "settings": dict(settings),
             "camera": self.first_camera().to_dict() if camera is None else dict(camera),
-            "time": float(self.times[-1] if time is None else time),
+            "time": float(self.times[0] if time is None else time),
             "clock": float(clock),
         }
 

@@ -309,6 +309,7 @@ def test_a_link_and_the_lines_of_python_name_both() -> None:
     app = page(one=small(steps=4), two=other(steps=4), three=other())
 
     async def story() -> None:
+        app.area.player.go_to(3.0)
         await beside(app, "two")
         app.state.send(colour="height")
         sharing = app.controllers.sharing
