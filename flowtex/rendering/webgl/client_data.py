@@ -33,7 +33,7 @@ from flowtex.rendering.webgl import velocity
 from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts, plain_list
-from flowtex.settings import TABLE, Settings
+from flowtex.settings import NEEDS, TABLE, Settings
 from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet, TriangleGeometry
 from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
 
@@ -509,7 +509,10 @@ def _shaders(variant: tuple[str, ...], *, traces: bool) -> dict[str, str]:
 
 def _table() -> list[dict[str, Any]]:
     """Return the table of settings, for controls."""
-    names = ("name", "label", "default", "affects", "text", "low", "high", "logarithmic")
+    names = (
+        *("name", "label", "default", "affects", "text", "low", "high", "logarithmic"),
+        "condition",
+    )
     return [
         {
             **{name: getattr(row, name) for name in names},
@@ -517,6 +520,7 @@ def _table() -> list[dict[str, Any]]:
             "control": "slider" if row.logarithmic else row.control,
             "whole": row.kind is int,
             "choices": list(row.choices),
+            "needs": [list(need) for need in NEEDS.get(row.name, ())],
         }
         for row in TABLE.values()
     ]
