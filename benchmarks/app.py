@@ -1,7 +1,8 @@
 """How smooth the page is: ``python benchmarks/app.py``.
 
-A browser drags the view for some seconds, and counts the pictures that arrive; then it lets go,
-and the time until the full picture is there is taken. The same is done with PyVista's own trame
+A browser drags the view for some seconds, and counts the pictures; then it lets go, and the time
+until the full picture is there is taken. The browser draws, and after that the server. The same is
+done with PyVista's own trame
 viewer and a plain sphere, where that is installed (``pip install trame-pyvista``). Server,
 browser and this program share the processors, as they do on a small machine.
 """
@@ -47,11 +48,27 @@ server.controller.on_server_ready.add(
     lambda **_: print(f"http://127.0.0.1:{server.port}/", flush=True))
 server.start(port=0, host="127.0.0.1", open_browser=False, show_connection_info=False)
 """
-#: Counts the pictures that an <img> shows, with the time of each.
+#: A page of ours, and the full picture of it.
+VIEW, SHARP = ".flowtex-views", '.flowtex[data-sharp="true"]'
+#: Has the server draw: without WebGL2 a page asks for its pictures.
+NO_WEBGL2 = """
+const getContext = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+  return kind === "webgl2" ? null : getContext.call(this, kind, ...more);
+};"""
+#: Counts the pictures that a view of ours draws or an <img> shows, with the time of each.
 COUNT = """selector => {
   window.seen = [];
   const image = document.querySelector(selector);
   const note = () => window.seen.push(performance.now());
+  if (image.first) {
+    const { renderer } = image.first;
+    for (const name of ["draft", "show"]) {
+      const draw = renderer[name].bind(renderer);
+      renderer[name] = (...values) => { note(); return draw(...values); };
+    }
+    return;
+  }
   new MutationObserver(note).observe(image, { attributeFilter: ["src"] });
 }"""
 
@@ -83,8 +100,10 @@ def drag(page: Any, seconds: float) -> tuple[float, float]:
     return len(seen) / seconds, statistics.quantiles(gaps, n=20)[-1] if len(gaps) > 2 else 0.0
 
 
-def measure(browser: Any, script: str, words: list[str], image: str, seconds: float) -> Smoothness:
-    """Start a page, drag it, and end it."""
+def measure(
+    browser: Any, script: str, words: list[str], image: str, seconds: float, *, served: bool
+) -> Smoothness:
+    """Start a page, drag it, and end it; tells what it was like where the server draws, or not."""
     process = subprocess.Popen(
         [sys.executable, "-c", script, *words], stdout=subprocess.PIPE, text=True
     )
@@ -93,18 +112,20 @@ def measure(browser: Any, script: str, words: list[str], image: str, seconds: fl
             found.group() for line in process.stdout if (found := re.search(r"http://\S+", line))
         )
         page = browser.new_page(viewport=SIZE)
+        if served:
+            page.add_init_script(NO_WEBGL2)
         page.goto(address)
         page.wait_for_selector(image, timeout=60_000)
         ours = script is OURS
         if ours:
-            page.wait_for_selector("[data-picture=sharp]", timeout=60_000)
+            page.wait_for_selector(SHARP, timeout=60_000)
         page.wait_for_timeout(1500)
         page.evaluate(COUNT, image)
         rate, gap = drag(page, seconds)
         sharp = None
         if ours:
             before = time.perf_counter()
-            page.wait_for_selector("[data-picture=sharp]", timeout=60_000)
+            page.wait_for_selector(SHARP, timeout=60_000)
             sharp = time.perf_counter() - before
         page.close()
         return Smoothness(rate, gap, sharp)
@@ -124,11 +145,15 @@ def main() -> None:
     table = Table("page", "pictures in a second", "gap, 95 %", "sharp after", title="Drag")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"))
-        cases = [(OURS, [flow], ".flowtex-view img", f"flowtex, {flow}") for flow in given.flows]
-        cases.append((BARE, [], "img", "PyVista, a sphere"))
-        for script, words, image, name in cases:
+        cases = [
+            (OURS, [flow], VIEW, f"flowtex, {flow}, drawn by the {painter}", painter == "server")
+            for painter in ("browser", "server")
+            for flow in given.flows
+        ]
+        cases.append((BARE, [], "img", "PyVista, a sphere", False))
+        for script, words, image, name, served in cases:
             try:
-                found = measure(browser, script, words, image, given.seconds)
+                found = measure(browser, script, words, image, given.seconds, served=served)
             except (StopIteration, TimeoutError) as error:
                 table.add_row(name, f"not to be had: {error}"[:60], "", "")
                 continue

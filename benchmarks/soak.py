@@ -1,7 +1,7 @@
 """An hour of use in a minute: ``python benchmarks/soak.py``.
 
 The program runs by itself and is used through its own connection, as a page would: what the page
-sends for a drag, a turn of the wheel, a move of the pointer, a setting or the button that plays.
+sends for a drag, a turn of the wheel, a point that is read, a setting or the button that plays.
 How much memory, how many threads and processes it has more afterwards is printed.
 """
 
@@ -11,6 +11,7 @@ import argparse
 import asyncio
 import os
 import random
+import re
 import signal
 import sys
 from pathlib import Path
@@ -25,6 +26,9 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
 from served import Link, Served, enter, start
 
 WIDE, HIGH = 160, 120
+#: The view in the text of the page, and what it calls by which name.
+ELEMENT = re.compile(r"<flowtex-client [^/]*/>")
+TRIGGER = re.compile(r"@?(\w+)=\"(?:trigger\(')?(trigger__\d+)")
 #: Interactions before memory is first looked at: by then every kind of noise has been shown once.
 WARM = 300
 
@@ -34,52 +38,62 @@ class User:
 
     def __init__(self, link: Link) -> None:
         self._link = link
-        self._view = link.key("picture").replace("picture", "view")
+        self._view = link.key("painter").replace("painter", "view")
+        # The names under which the page's view calls the server.
+        texts = (value for value in link.state.values() if isinstance(value, str))
+        element = next(found[0] for text in texts if (found := ELEMENT.search(text)))
+        self._triggers = dict(TRIGGER.findall(element))
         self._chance = random.Random(20061205)
         self._playing = False
+        self._settings: dict[str, Any] = {}
+        self._camera: dict[str, Any] = {}
 
     async def sit_down(self) -> None:
         """Open the page and wait for the first full picture."""
+        begun = await self._call("begin", "server")
+        self._settings = begun["settings"]
+        geometry = begun["scenes"][0]["header"]["geometry"]
+        x, y, z = geometry["center"]
+        away = geometry["extent"]
+        self._camera = {"position": [x, y, z + away], "focal_point": [x, y, z], "up": [0, 1, 0]}
+        self._camera |= {"parallel": True, "parallel_scale": away / 4, "view_angle": 30.0}
         size = {"w": WIDE, "h": HIGH, "p": 1}
         await self._link.call("trame.rca.size", self._view, "soak", size)
         await self.rest()
 
     async def rest(self) -> None:
         """Do nothing until the full picture is there."""
-        await self._link.until(
-            lambda: self._link.pictures > 0 and self._link.get("picture") == "sharp"
-        )
+        await self._link.until(lambda: self._link.sharp)
 
     async def act(self) -> None:
         """Do one thing."""
-        choices = (self._drag, self._drag, self._wheel, self._wheel, self._hover)
+        choices = (self._drag, self._drag, self._wheel, self._wheel, self._read)
         await self._chance.choice((*choices, self._setting, self._setting, self._play))()
 
     async def stop(self) -> None:
         """Play no more, and wait for the picture at rest."""
-        await self._link.set(playing=False)
-        await self._link.call("trame.rca.event", self._view, "soak", self._at("MouseMove"))
+        await self._call("playing", 0, "soak")
         await self.rest()
 
-    def _at(self, kind: str, **more: Any) -> dict[str, Any]:
-        x, y = self._chance.randrange(WIDE), self._chance.randrange(HIGH)
-        return {"type": kind, "w": WIDE, "h": HIGH, "x": x, "y": y, **more}
-
-    async def _send(self, *kinds: str, **more: Any) -> None:
-        for kind in kinds:
-            event = self._at(kind, **more)
-            await self._link.call("trame.rca.event", self._view, "soak", event)
+    async def _call(self, name: str, *values: Any) -> Any:
+        return await self._link.call("trame.trigger", self._triggers[name], list(values), {})
 
     async def _drag(self) -> None:
-        await self._send("LeftButtonPress", "MouseMove", "MouseMove", "LeftButtonRelease")
+        for _ in range(2):
+            move = self._chance.uniform(-0.1, 0.1) * self._camera["parallel_scale"]
+            for point in ("position", "focal_point"):
+                x, y, z = self._camera[point]
+                self._camera[point] = [x + move, y, z]
+            await self._call("camera", self._camera, "soak")
 
     async def _wheel(self) -> None:
         # As often out as in: nobody zooms into a billionth of a cell.
-        turn = self._chance.choice((-1.0, 1.0))
-        await self._send("StartMouseWheel", "MouseWheel", "EndMouseWheel", spinY=turn)
+        self._camera["parallel_scale"] *= 1.25 ** self._chance.choice((-1, 1))
+        await self._call("camera", self._camera, "soak")
 
-    async def _hover(self) -> None:
-        await self._send("MouseMove", "MouseMove")
+    async def _read(self) -> None:
+        place = [self._chance.uniform(-1, 1) for _ in range(2)]
+        await self._call("read", 0, {"place": place, "path": self._chance.random() < 0.5})
 
     async def _setting(self) -> None:
         name, values = self._chance.choice(
@@ -91,13 +105,14 @@ class User:
                 ("noise", ("procedural", "texture", "spots", "checkerboard")),
             )
         )
-        present = self._link.get(f"set_{name}")
+        present = self._settings[name]
         wanted = self._chance.choice([value for value in values if value != present])
-        await self._link.set(**{f"set_{name}": wanted})
+        self._settings[name] = wanted
+        await self._call("setting", [name, wanted], "soak")
 
     async def _play(self) -> None:
         self._playing = not self._playing
-        await self._link.set(playing=self._playing)
+        await self._call("playing", self._playing, "soak")
 
 
 def memory(process: int) -> int:

@@ -278,7 +278,10 @@ def app() -> None:
 
     def settle(page: Page) -> None:
         page.wait_for_timeout(900)  # hints fade
-        page.wait_for_selector("[data-picture=sharp]")
+        page.wait_for_function(
+            "() => document.querySelector('.flowtex[data-sharp]') &&"
+            " !document.querySelector('.flowtex[data-sharp=false]')"
+        )
         page.wait_for_timeout(900)
 
     def opened(size: tuple[int, int], name: str, address: str) -> Page:
@@ -302,16 +305,15 @@ def app() -> None:
         dark = opened((1200, 700), "cylinder", address)
         _page_picture(dark, "app_dark")
         compared = opened((1200, 700), "double gyre", address)
-        compared.locator(".flowtex-more", has_text="View").click()
+        compared.get_by_role("button", name="Compare, save, share").click()
         compared.locator("[data-setting=compare] .v-field").click()
         compared.get_by_text("Kernel: box").last.click()
         settle(compared)
-        compared.get_by_label("Controls").click()
-        compared.mouse.move(700, 650)
+        compared.keyboard.press("Escape")
+        compared.mouse.move(700, 690)
         settle(compared)
         _page_picture(compared, "app_compare")
         path = opened((1200, 700), "double gyre", address)
-        path.get_by_label("Controls").click()
         path.mouse.move(310, 350)
         for _ in range(4):
             path.mouse.wheel(0, -200)
@@ -326,7 +328,7 @@ def app() -> None:
         _page_picture(path, "app_path")
         narrow = opened((400, 760), "airfoil", address)
         narrow.get_by_label("Light or dark").click()
-        narrow.mouse.move(380, 600)
+        narrow.mouse.move(380, 60)
         settle(narrow)
         _page_picture(narrow, "app_narrow")
         browser.close()

@@ -26,8 +26,6 @@ from flowtex.errors import FieldError
 from flowtex.field import Surface
 
 Point = tuple[float, float, float]
-#: Left, bottom, right and top of a part of the view.
-ViewPart = tuple[float, float, float, float]
 
 #: The way from a curved surface to the camera, and what is up there.
 ASIDE, UP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
@@ -35,7 +33,6 @@ ASIDE, UP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
 WHOLE_GLOBE = (math.cos(math.radians(20)), 0.0, math.sin(math.radians(20)))
 #: Share of the radius from the middle of the globe, or its axis, from which a direction counts.
 LEAST_ASIDE = 0.2
-WHOLE_VIEW: ViewPart = (-1.0, -1.0, 1.0, 1.0)
 #: Farthest and nearest that a camera may be, in extents of the surface: beyond, numbers end.
 FARTHEST_REACH, NEAREST_REACH = 1e9, 1e-9
 
@@ -169,7 +166,6 @@ class Camera:
         toward: Point | None = None,
         up: Point | None = None,
         margin: float = CAMERA_LIMITS.margin,
-        free: ViewPart = WHOLE_VIEW,
     ) -> Self:
         """Return the camera that shows a surface.
 
@@ -188,8 +184,6 @@ class Camera:
             default a globe is seen from above its data, or the point to look at, with north up.
         margin
             Share of the picture that is left empty at each side, from 0 to less than a half.
-        free
-            Part of the view that the surface is fitted to, where something lies on the rest.
 
         Raises
         ------
@@ -210,23 +204,11 @@ class Camera:
             point = np.asarray(focus, dtype=float)
             center[: len(point)] = point
         if surface.frame is not None:
-            camera = cls._fit_flat(surface, surface.frame, center, aspect, zoom, share, free)
-        else:
-            closest = CAMERA_LIMITS.closest if focus is not None else 1.0
-            side = _side(center) if surface.on_globe else (ASIDE, UP)
-            camera = cls._fit_curved(
-                surface,
-                center,
-                aspect,
-                zoom,
-                closest,
-                toward or side[0],
-                up or side[1],
-                share,
-                free,
-            )
-        (x, y), _ = _middle_and_half(free)
-        return camera.pan(-x, -y, aspect)
+            return cls._fit_flat(surface, surface.frame, center, aspect, zoom, share)
+        closest = CAMERA_LIMITS.closest if focus is not None else 1.0
+        side = _side(center) if surface.on_globe else (ASIDE, UP)
+        toward, up = toward or side[0], up or side[1]
+        return cls._fit_curved(surface, center, aspect, zoom, closest, toward, up, share)
 
     @classmethod
     def _fit_flat(
@@ -237,18 +219,16 @@ class Camera:
         aspect: float,
         zoom: float,
         share: float,
-        free: ViewPart,
     ) -> Self:
         """Look straight on, without perspective, the surface's own axes to the right and up."""
         right, up = frame
         width, height = surface.plane_size
-        _, (wide, high) = _middle_and_half(free)
         return cls(
             position=_point(center + np.cross(right, up) * surface.extent),
             focal_point=_point(center),
             up=_point(up),
             parallel=True,
-            parallel_scale=float(0.5 * max(height / high, width / (aspect * wide)) / share / zoom),
+            parallel_scale=float(0.5 * max(height, width / aspect) / share / zoom),
         )
 
     @classmethod
@@ -262,7 +242,6 @@ class Camera:
         toward: Point,
         up: Point,
         share: float,
-        free: ViewPart,
     ) -> Self:
         """Look from a side, so far away that the whole surface just fits.
 
@@ -277,17 +256,9 @@ class Camera:
         half = np.tan(np.radians(CAMERA_LIMITS.view_angle / 2))
         axes = np.stack([right, np.cross(ahead, right), ahead])
         x, y, z = axes @ (surface.points[surface.valid] - surface.center).T
-        _, (wide, high) = _middle_and_half(free)
-        left, bottom, right_end, top = free
-        # Each side of the free part keeps the camera at a distance; what is near is seen larger.
-        across, upward = x / (half * aspect * share), y / (half * share)
-        sides = (
-            (right_end * z + across) / wide,
-            (-left * z - across) / wide,
-            (top * z + upward) / high,
-            (-bottom * z - upward) / high,
-        )
-        distance = float(np.max(sides))
+        # What is near is seen larger.
+        beside = np.maximum(np.abs(x) / aspect, np.abs(y)) / (half * share)
+        distance = float(np.max(z + beside))
         closer = min(zoom, closest)
         return cls(
             position=_point(center + ahead * (distance / closer)),
@@ -565,12 +536,6 @@ def _turned(vector: Floats, axis: Floats, degrees: float) -> Floats:
     along = axis * (axis @ vector)
     across = vector - along
     return np.asarray(along + across * math.cos(angle) + np.cross(axis, vector) * math.sin(angle))
-
-
-def _middle_and_half(part: ViewPart) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the middle of a part of the view, and half its width and height."""
-    left, bottom, right, top = part
-    return ((left + right) / 2, (bottom + top) / 2), ((right - left) / 2, (top - bottom) / 2)
 
 
 def _is_point(value: Any, coordinates: int = 3) -> bool:

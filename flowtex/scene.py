@@ -134,7 +134,7 @@ class Scene:
         self._textures: TextureSet | None = None
         self._version = 0  # of the textures
         self._notices: list[Notice] = []
-        self._time = float(field.times[-1])
+        self._time = float(field.times[0])
         self._end = self.settings.observe(self._setting_changed)
 
     @classmethod

@@ -24,22 +24,6 @@ Control = Literal["checkbox", "choice", "slider", "number"]
 #: A setting, and a value that it has or has not.
 Condition = tuple[str, Literal["==", "!="], Any]
 
-#: Settings of a panel by group, in order; those of the first one are always shown.
-GROUPS: dict[str, tuple[str, ...]] = {
-    "": ("lod", "noise", "samples", "contrast"),
-    "Texture": (
-        "texture",
-        "kernel",
-        "two_sided",
-        "grain",
-        "fixed_grain",
-        "spacing",
-        "strength",
-        "show_level",
-    ),
-    "Noise": ("seed", "tiles", "noise_correction", "resolution"),
-    "Motion": ("motion", "speed", "speed_in", "period", "lines", "parameter"),
-}
 #: Settings that make a difference only where one of these others has, or has not, a value.
 _NEEDS_TEXTURE: Condition = ("noise", "!=", "procedural")
 _NEEDS_DENSE: tuple[Condition] = (("texture", "==", "dense"),)
@@ -55,8 +39,6 @@ NEEDS: dict[str, tuple[Condition, ...]] = {
     "speed_in": _NEEDS_MOTION,
     "period": _NEEDS_MOTION,
 }
-#: Settings that make a difference only for flows that are steady (True), or that are not.
-STEADINESS = {"motion": True, "speed": True, "speed_in": True, "period": True, "lines": False}
 #: Labels that are not the name.
 LABELS = {"lod": "Level of detail"}
 #: Widest range of a slider, and steps of one, at most.

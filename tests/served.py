@@ -103,7 +103,7 @@ class Link:
     def __init__(self, socket: aiohttp.ClientWebSocketResponse) -> None:
         self.socket = socket
         self.state: dict[str, Any] = {}
-        self.pictures = 0
+        self.pictures, self.sharp = 0, False
         self._count = 0
         self._answers: dict[str, asyncio.Future[Any]] = {}
         self._news = asyncio.Event()
@@ -177,3 +177,4 @@ class Link:
             self.state |= message["result"]
         elif "trame.rca.topic.stream" in name:
             self.pictures += 1
+            self.sharp = message["result"]["meta"]["sharp"]

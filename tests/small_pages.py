@@ -78,6 +78,11 @@ def picture(app: Any) -> Any:
     return app.viewport.draw(width, height).astype(int)
 
 
+def panned(viewport: Any, x: float, y: float) -> None:
+    """Move what is seen by a part of the view."""
+    viewport.camera = viewport.camera.pan(x, y, viewport.aspect)
+
+
 def difference(one: Any, other: Any) -> float:
     return float(np.abs(np.asarray(one, int) - np.asarray(other, int)).mean())
 

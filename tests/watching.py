@@ -12,22 +12,43 @@ from waiting import wait_until
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-#: Ends when the picture that the page was given is on the screen.
-DECODED = """async () => {
-  const image = document.querySelector(".flowtex-view img");
-  if (image?.src) await image.decode().catch(() => null);
-  await new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)));
-}"""
+#: Ends when what the page draws is on the screen.
+DRAWN = "() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))"
 #: Ends when the server has answered what the page, which gathers for 0.1 s, has sent.
 SENT = """async () => {
   await new Promise((f) => setTimeout(f, 120));
   await window.trame.trigger("nothing");
 }"""
+#: Full pictures of all views so far; none before all of them have one.
+COUNT = """() => {
+  const views = [...document.querySelectorAll(".flowtex")];
+  const frames = views.map(({ dataset }) => Number(dataset.frames));
+  return frames.some((count) => !count) ? 0 : frames.reduce((sum, count) => sum + count, 0);
+}"""
+#: Whether the full picture of each view is there.
+SHARP = """() => [...document.querySelectorAll(".flowtex")].every((view) =>
+  view.matches('[data-sharp="true"][data-tiles="0"][data-lacking="0"]'))"""
+#: Takes WebGL2 away from a page.
+NO_WEBGL2 = """
+const getContext = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+  return kind === "webgl2" ? null : getContext.call(this, kind, ...more);
+};"""
+
+
+def server_draws(page: Any) -> None:
+    """Have the server draw what a page, or those of a context, will show."""
+    page.add_init_script(NO_WEBGL2)
 
 
 def count(page: Page) -> int:
     """Full pictures that the page has shown."""
-    return int(page.get_attribute("[data-sharp]", "data-sharp") or 0)
+    return int(page.evaluate(COUNT))
+
+
+def zoom_of(page: Page) -> float:
+    """How far in the first view is."""
+    return float(page.evaluate("document.querySelector('.flowtex-views').first.camera.zoom"))
 
 
 def difference(one: Any, other: Any) -> float:
@@ -50,17 +71,13 @@ class Watch:
     def settled(self, page: Page, before: int = 0) -> Any:
         """Wait for a full picture after so many that nothing follows, and return what is seen."""
         while True:
-            page.wait_for_function(
-                "n => Number(document.querySelector('[data-sharp]')?.dataset.sharp) > n"
-                " && document.querySelector('[data-picture=sharp]')",
-                arg=before,
-            )
+            page.wait_for_function(f"n => ({COUNT})() > n && ({SHARP})()", arg=before)
             seen = count(page)
             # What the page has still to send may move the picture once more.
             page.evaluate(SENT)
-            if page.query_selector("[data-picture=sharp]") and count(page) == seen:
+            if page.evaluate(SHARP) and count(page) == seen:
                 break
-        page.evaluate(DECODED)
+        page.evaluate(DRAWN)
         return self.shot(page)
 
     def comes_to(self, page: Page, wanted: Any) -> None:

@@ -18,11 +18,17 @@ const LEAST_SHARE = 0.999;
 /** Pixels of a letter and between labels at the lower border, and between labels at the left one. */
 const [LETTER_PX, GAP_PX, ROW_PX] = [6.5, 14, 34];
 const TICK_PX = 4;
+/** Pixels beside the picture. */
+const ASIDE_PX = 42;
 /** Most ticks of a border, and the widest scale bar, in pixels and as a share of the picture. */
 const [MOST_TICKS, BAR_PX, BAR_SHARE] = [9, 140, 0.3];
 /** Share of the half width of the view by which the scale of a map is measured. */
 const MIDDLE_SHARE = 0.02;
 const COORDINATES = ["x", "y", "z"];
+
+/** A name, without its unit where there is no room for that. */
+const fitting = (name: string, room: number) =>
+  name.length * LETTER_PX > room ? name.replace(/ .*/, "") : name;
 
 /** Values of a coordinate at even places of a border, and its name, or the letters of its two sides. */
 export interface Border {
@@ -100,7 +106,9 @@ export class Axes {
     }
     const [before, last] = ticks.slice(-2);
     const middle = ((before.share + (last ?? before).share) / 2) * width;
-    if (border.name && last) this.text(middle, height + TICK_PX + 2, border.name, "below name");
+    if (!border.name || !last) return;
+    const room = (last.share - before.share) * width - LETTER_PX * last.text.length - GAP_PX;
+    this.text(middle, height + TICK_PX + 2, fitting(border.name, room), "below name");
   }
 
   private drawAside(border: Border, height: number): void {
@@ -114,7 +122,7 @@ export class Axes {
     const [before, last] = ticks.slice(-2);
     if (!border.name || !last) return;
     const middle = (1 - (before.share + last.share) / 2) * height;
-    this.text(-TICK_PX - 3, middle, border.name, "aside name");
+    this.text(-TICK_PX - 3, middle, fitting(border.name, ASIDE_PX), "aside name");
   }
 
   private drawBar(header: Header, camera: Camera, width: number, height: number): void {

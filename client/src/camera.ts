@@ -318,6 +318,17 @@ export function widened(
   return camera;
 }
 
+/** The camera of a first picture: the one that a scene came with, or one that shows the whole surface. */
+export function firstLook(
+  surface: Surface,
+  limits: CameraLimits,
+  first: CameraState | null,
+  nodes: ArrayLike<number>,
+  aspect: number,
+): CameraState {
+  return first ? widened(surface, limits, first, nodes, aspect) : fitted(surface, limits, nodes, aspect);
+}
+
 /** Point of the plane of a flat surface at a place of the view. */
 export function pointInPlane({ center, frame }: Surface, camera: Camera, x: number, y: number): Vector {
   const [start, along] = camera.ray(x, y);

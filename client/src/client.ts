@@ -4,6 +4,6 @@ import { initialize, render } from "./widget.ts";
 
 export { decoded, partsOfFile } from "./protocol.ts";
 export { Viewer } from "./viewer.ts";
-export { mountPage } from "./views.ts";
+export { FlowtexView, mountPage } from "./element.ts";
 
 export default { initialize, render };

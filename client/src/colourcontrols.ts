@@ -23,8 +23,12 @@ export interface ColoursHost {
   readonly header: Header | null;
   readonly settings: Settings;
   readonly parts: ReadonlyMap<string, Part>;
+  readonly options: { onColours?: unknown };
   chooseColours(choice: ColourChoice): void;
 }
+
+const labelled = (name: string, input: HTMLElement) =>
+  dom("label", { class: "row" }, [dom("span", { class: "name" }, [name]), input]);
 
 export class ColourControls {
   readonly element = dom("div", { class: "colours" });
@@ -35,6 +39,12 @@ export class ColourControls {
     dom("input", { type: "number", step: "any", "aria-label": name }),
   );
   private readonly auto = dom("button", { type: "button", class: "link" }, ["auto"]);
+  /** What only a host can make. */
+  private readonly robust = dom("button", { type: "button", class: "link" }, ["robust"]);
+  private readonly log = dom("input", { type: "checkbox", role: "switch" });
+  private readonly opacity = dom("input", { type: "range", min: "0", max: "1", step: "0.05" });
+  private readonly logRow = labelled("Log scale", this.log);
+  private readonly opacityRow = labelled("Opacity", this.opacity);
   private readonly mapRow: HTMLElement;
   private readonly rangeRow: HTMLElement;
   private readonly lines = dom("div", { class: "colours" });
@@ -48,16 +58,21 @@ export class ColourControls {
     });
     for (const end of ends) lifetime.listen(end, "change", () => this.takeRange());
     lifetime.listen(auto, "click", () => viewer.chooseColours({ clim: null }));
+    lifetime.listen(this.robust, "click", () => viewer.chooseColours({ clim: "robust" }));
+    lifetime.listen(this.log, "change", () => viewer.chooseColours({ log_scale: this.log.checked }));
+    lifetime.listen(this.opacity, "input", () => viewer.chooseColours({ opacity: this.opacity.valueAsNumber }));
+    this.robust.title = "Leave out the least and the greatest values.";
     lifetime.listen(swatches, "click", (event: MouseEvent) => {
       const name = (event.target as HTMLElement).dataset.cmap;
       if (name) viewer.chooseColours({ cmap: name });
     });
     const row = (name: string, ...fields: HTMLElement[]) =>
       dom("div", { class: "row" }, [dom("span", { class: "name" }, [name]), ...fields]);
-    this.rangeRow = row("Range", dom("span", { class: "between" }, [...ends, auto]));
+    this.rangeRow = row("Range", dom("span", { class: "between" }, [...ends, auto, this.robust]));
     this.mapRow = row("Colour map", swatches);
     this.mapRow.classList.add("ranged");
-    this.element.append(row("Colour by", scalars), this.mapRow, this.rangeRow);
+    this.opacityRow.classList.add("ranged");
+    this.element.append(row("Colour by", scalars), this.mapRow, this.rangeRow, this.logRow, this.opacityRow);
   }
 
   /** Rows of all controls, from the topmost. */
@@ -101,7 +116,12 @@ export class ColourControls {
       ...options.map((each) => dom("option", { value: each.name }, [each.label])),
     );
     this.scalars.value = name ?? PLAIN;
+    const isHosted = this.viewer.options.onColours !== undefined;
     this.mapRow.hidden = this.rangeRow.hidden = name === null;
+    this.logRow.hidden = this.mapRow.hidden || !isHosted;
+    this.robust.hidden = !isHosted;
+    this.log.checked = header.scalars.log;
+    this.opacity.value = String(header.opacity);
     legendLimits(header.scalars).forEach((value, n) => {
       this.ends[n].value = String(Number(value.toPrecision(4)));
     });

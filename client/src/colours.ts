@@ -7,7 +7,9 @@ import { clamp } from "./vectors.ts";
 export interface ColourChoice {
   scalars?: string | false;
   cmap?: string;
-  clim?: [number, number] | null;
+  clim?: [number, number] | "robust" | null;
+  log_scale?: boolean;
+  opacity?: number;
   coastlines?: boolean;
   graticule?: boolean;
 }
@@ -54,7 +56,7 @@ export function recoloured(
     Object.assign(scalars, { name, label, unit, steps, number, auto: true });
   }
   if (choice.cmap) scalars.cmap = choice.cmap;
-  if (choice.clim) [scalars.low, scalars.high] = choice.clim;
+  if (Array.isArray(choice.clim)) [scalars.low, scalars.high] = choice.clim;
   if (choice.clim !== undefined) scalars.auto = !choice.clim;
   if (scalars.auto && scalars.choices[scalars.number]) {
     const { low, high } = scalars.choices[scalars.number];
@@ -65,7 +67,8 @@ export function recoloured(
   const mesh = narrowed(header.mesh, header.scalars, scalars);
   const { coastlines = header.earth?.coastlines, graticule = header.earth?.graticule } = choice;
   const earth = header.earth && { ...header.earth, coastlines, graticule };
-  const colours = { scalars, mesh, earth } as Partial<Header>;
+  const { opacity = header.opacity } = choice;
+  const colours = { scalars, mesh, earth, opacity } as Partial<Header>;
   const maps = parts.get("maps");
   if (!choice.cmap || !maps) return { colours, part: null };
   const data = mapOf(header, maps.data, choice.cmap);

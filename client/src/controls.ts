@@ -39,12 +39,23 @@ export function isUseful({ name, affects }: Row, header: Header, rebuild: boolea
   return USES[name]?.(header, rebuild) ?? (affects === "uniform" || rebuild);
 }
 
+/** Whether a setting makes a difference as the others are. */
+export function isInUse({ needs = [] }: Row, settings: Settings): boolean {
+  const holds = needs.map(([name, sign, value]) => (settings[name] === value) === (sign === "=="));
+  return !needs.length || holds.includes(true);
+}
+
 interface Control {
+  /** What it is for, and its line. */
+  row: Row;
+  line: HTMLElement;
   input: HTMLElement;
   show: (value: Value) => void;
   /** The value beside a slider. */
   output?: HTMLElement;
 }
+
+type Made = Omit<Control, "row" | "line">;
 
 /** The view whose settings are shown. */
 export interface ControlsHost {
@@ -69,41 +80,46 @@ export class Controls {
     const rebuild = this.viewer.options.rebuild ?? false;
     for (const row of header.table.filter((each) => isUseful(each, header, rebuild))) {
       const control = this.control(row);
-      this.controls.set(row.name, control);
       const { input, output } = control;
       const name = dom("span", { class: "name" }, [row.label]);
-      const attributes = { class: "row", title: row.text, "data-setting": row.name };
+      const attributes = { class: "row", "data-setting": row.name };
       const line = dom("label", attributes, [name, ...(output ? [output] : []), input]);
       line.classList.toggle("ranged", output !== undefined);
+      this.controls.set(row.name, { ...control, row, line });
       this.element.append(line);
     }
   }
 
   update(): void {
     const { settings } = this.viewer;
-    for (const [name, { show }] of this.controls) if (name in settings) show(settings[name]);
+    for (const [name, { row, line, show }] of this.controls) {
+      if (name in settings) show(settings[name]);
+      const isIdle = !isInUse(row, settings);
+      line.classList.toggle("idle", isIdle);
+      line.title = isIdle ? `${row.condition} ${row.text}` : row.text;
+    }
   }
 
-  private control(row: Row): Control {
+  private control(row: Row): Made {
     if (row.control === "checkbox") return this.switch(row);
     if (row.control === "choice") return this.menu(row);
     return row.control === "number" ? this.numberField(row) : this.slider(row);
   }
 
-  private switch({ name }: Row): Control {
+  private switch({ name }: Row): Made {
     const input = dom("input", { type: "checkbox", role: "switch" });
     this.viewer.lifetime.listen(input, "change", () => this.viewer.choose(name, input.checked));
     return { input, show: (value) => void (input.checked = Boolean(value)) };
   }
 
-  private menu({ name, choices }: Row): Control {
+  private menu({ name, choices }: Row): Made {
     const options = choices.map((choice) => dom("option", { value: choice }, [choice]));
     const input = dom("select", {}, options);
     this.viewer.lifetime.listen(input, "change", () => this.viewer.choose(name, input.value));
     return { input, show: (value) => void (input.value = String(value)) };
   }
 
-  private numberField({ name, whole, low, high }: Row): Control {
+  private numberField({ name, whole, low, high }: Row): Made {
     const [min, max] = [low ?? 0, high ?? 1];
     const step = whole ? "1" : "any";
     const input = dom("input", { type: "number", min: String(min), max: String(max), step });
@@ -114,7 +130,7 @@ export class Controls {
     return { input, show: (value) => void (input.value = String(value)) };
   }
 
-  private slider(row: Row): Control {
+  private slider(row: Row): Made {
     const { toSlider, fromSlider, min, max, step } = scaleOf(row);
     const range = { min: String(min), max: String(max), step: String(step) };
     const input = dom("input", { type: "range", ...range });

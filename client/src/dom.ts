@@ -15,6 +15,8 @@ export function dom<K extends keyof HTMLElementTagNameMap>(
 const ICONS = {
   play: "M8 5.2v13.6L19 12z",
   pause: "M8.5 6v12M15.5 6v12",
+  previous: "M17 6v12l-9-6zM6.5 6v12",
+  next: "M7 6v12l9-6zM17.5 6v12",
   home: "M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",
   lod: "M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8-4.1M4 16.3l8 4.1 8-4.1",
   levels: "M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",

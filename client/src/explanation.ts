@@ -2,6 +2,7 @@
 // are met along the path with their weights, and their sum. Its looks are the page's.
 
 import { dom, numberText } from "./dom.ts";
+import type { FlowtexView } from "./element.ts";
 import type { Options } from "./options.ts";
 import { pixelSum, type PixelSum, type Sample } from "./pixelsum.ts";
 import type { Value } from "./protocol.ts";
@@ -68,8 +69,6 @@ export class Explanation {
   constructor(element: HTMLElement) {
     this.options = {
       controls: false,
-      onFrame: () => this.begin(),
-      onCamera: () => this.follow(),
       explainer: {
         explain: (pixel) => this.tell(pixelSum(pixel)),
         clear: () => void this.tell(null),
@@ -83,8 +82,10 @@ export class Explanation {
   }
 
   /** Explain a view. */
-  attach(viewer: Viewer): void {
-    this.viewer = viewer;
+  attach(view: FlowtexView): void {
+    const viewer = (this.viewer = view.first);
+    view.addEventListener("frame", () => this.begin());
+    view.addEventListener("camera", () => this.follow());
     this.isBegun = false;
     viewer.setSettings(Object.fromEntries(this.chosen));
     for (const [name, show] of this.shows) if (name in viewer.settings) show(viewer.settings[name]);

@@ -10,6 +10,9 @@ export const CAMERA_KEYS: Record<string, string> = {
   "-": "farther",
   _: "farther",
   0: "whole",
+  d: "detail",
+  ".": "next",
+  ",": "previous",
 };
 
 export const PLAY_KEY = " ";
@@ -27,6 +30,12 @@ export const DIRECTIONS: Record<string, [number, number]> = {
 /** Whether a key is for the browser. */
 export function hasModifier(event: KeyboardEvent): boolean {
   return event.ctrlKey || event.metaKey || event.altKey;
+}
+
+/** Give a view keys that nothing else of the page wants, without a click on it. */
+export function forwardKeys(root: HTMLElement, event: KeyboardEvent): void {
+  const isFree = event.target === document.body && !event.defaultPrevented;
+  if (isFree && !root.dispatchEvent(new KeyboardEvent("keydown", event))) event.preventDefault();
 }
 
 /** Fill the screen with an element, or no longer. */

@@ -3,10 +3,9 @@
 // is loaded when the element comes into sight, and given up again when it is far from it. With
 // "data-plays" it streams, and "data-label" is what it is called by those who do not see it.
 
+import { FlowtexView, type SceneData } from "./element.ts";
 import { Explanation } from "./explanation.ts";
 import { partOfText, type Header, type NamedPart, type PartInfo } from "./protocol.ts";
-import type { Viewer } from "./viewer.ts";
-import { mountPage, type SceneData } from "./views.ts";
 
 /** A scene as its script hands it over; equal parts have their text once, large ones a script of their own. */
 interface Packed {
@@ -84,7 +83,7 @@ function groundAround(element: HTMLElement): number[] {
 class LiveView {
   private readonly element: HTMLElement;
   private readonly explanation: Explanation | null;
-  private viewer: Viewer | null = null;
+  private view: FlowtexView | null = null;
   private isWanted = false;
   private isLoading = false;
 
@@ -100,7 +99,7 @@ class LiveView {
 
   private async show(): Promise<void> {
     this.isWanted = true;
-    if (this.viewer || this.isLoading) return;
+    if (this.view || this.isLoading) return;
     this.isLoading = true;
     const { element } = this;
     try {
@@ -109,9 +108,11 @@ class LiveView {
       const ground = groundAround(element);
       for (const { header } of data) header.background = ground;
       const { explanation } = this;
-      const options = { guarded: true, label: element.dataset.label, ...explanation?.options };
-      this.viewer = mountPage(element, data, options);
-      explanation?.attach(this.viewer);
+      const view = (this.view = new FlowtexView());
+      view.options = { guarded: true, label: element.dataset.label, ...explanation?.options };
+      element.append(view);
+      view.scenes = data;
+      explanation?.attach(view);
       this.watch();
     } catch (error) {
       element.title = `This view is a picture only: ${error instanceof Error ? error.message : error}`;
@@ -128,7 +129,7 @@ class LiveView {
       seen.disconnect();
       element.dataset.live = "true";
       const isCalm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-      if ("plays" in element.dataset && !isCalm) this.viewer?.play();
+      if ("plays" in element.dataset && !isCalm) this.view?.first.play();
     };
     const seen = new MutationObserver(look);
     seen.observe(element, { subtree: true, attributeFilter: ["data-sharp"] });
@@ -136,17 +137,17 @@ class LiveView {
 
   private leave(): void {
     this.isWanted = false;
-    if (!this.viewer) return;
-    for (const viewer of this.viewer.together) viewer.dispose();
-    this.viewer = null;
+    if (!this.view) return;
+    this.view.dispose();
+    this.view.remove();
+    this.view = null;
     delete this.element.dataset.live;
-    this.element.querySelector(".flowtex-pair")?.remove();
   }
 
   /** Follow the page from light to dark. */
   recolour(): void {
     const background = groundAround(this.element);
-    for (const viewer of this.viewer?.together ?? []) viewer.recolour({ background });
+    for (const viewer of this.view?.viewers ?? []) viewer.recolour({ background });
   }
 }
 

@@ -3,7 +3,8 @@
 import type { Header, NamedPart } from "./protocol.ts";
 import { Embedded } from "./sources/embedded.ts";
 import type { Source } from "./sources/source.ts";
-import { mountPage } from "./views.ts";
+import { mountPage } from "./element.ts";
+import { forwardKeys } from "./keyboard.ts";
 
 /** Opens the store in which the rest of a page lies. */
 export type OpenStore = (header: Header) => Source;
@@ -43,10 +44,7 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
     let isComing = true;
     const { root, together } = mountPage(place, scenes, { isComing: () => isComing });
     // Keys are the view's from the beginning, without a click.
-    document.addEventListener("keydown", (event) => {
-      const isFree = event.target === document.body;
-      if (isFree && !root.dispatchEvent(new KeyboardEvent("keydown", event))) event.preventDefault();
-    });
+    document.addEventListener("keydown", (event) => forwardKeys(root, event));
     // Meanwhile the shaders are built.
     for (const [n, viewer] of together.entries()) {
       const view = together.length > 1 ? ` of view ${n + 1}` : "";

@@ -4,7 +4,9 @@ import type { CameraState } from "./camera.ts";
 import type { ColourChoice } from "./colours.ts";
 import type { Point } from "./picking.ts";
 import type { PixelPlace, Sample } from "./pixelsum.ts";
+import type { PointPath } from "./pointpath.ts";
 import type { Value } from "./protocol.ts";
+import type { PathSample } from "./samples.ts";
 import type { Source } from "./sources/source.ts";
 
 /** A view that has the bar for another one as well. */
@@ -13,6 +15,7 @@ interface Leader {
   readonly panel: { readonly isShown: boolean; toggle(): void };
   play(): void;
   pause(): void;
+  step(count: number): void;
 }
 
 export interface Explainer {
@@ -20,6 +23,23 @@ export interface Explainer {
   /** No point is chosen any more. */
   clear(): void;
 }
+
+/** A point as a host has read it, with the path through it where that was asked for. */
+export interface Reading {
+  point: Point;
+  path?: PointPath;
+  samples?: PathSample[];
+  /** Whether the path is that of one view alone, whose flow is another one. */
+  alone?: boolean;
+  /** What is told of the samples: words and numbers. */
+  words?: [string, string][];
+}
+
+/** Reads a point: at a place of the view from -1 to 1, or one that was found. */
+export type Reader = (
+  at: { place: [number, number] } | Pick<Point, "index" | "position">,
+  path: boolean,
+) => Promise<Reading | null>;
 
 export interface Options {
   onCamera?: (camera: CameraState) => void;
@@ -33,9 +53,17 @@ export interface Options {
   source?: Source;
   /** A picture is complete. */
   onFrame?: () => void;
+  /** Something cannot be shown, and why. */
+  onError?: (problem: string, detail: string) => void;
   onSetting?: (name: string, value: Value) => void;
   /** Whether parts are still on their way, which nobody has to ask for. */
   isComing?: () => boolean;
+  /** A host that knows more of a point than is here. */
+  reader?: Reader;
+  /** Whether the host draws, and hands over pictures. */
+  streamed?: boolean;
+  /** Whether the name of the flow stands beside the view already. */
+  named?: boolean;
   /** Colours are chosen, which the host changes. */
   onColours?: (choice: ColourChoice) => void;
   onControls?: (shown: boolean) => void;

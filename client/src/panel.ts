@@ -22,6 +22,8 @@ const LATE_MS = 4000;
 const SAVED_MS = 5000;
 /** Height of a view from which on the bar and the legend stand outside the picture. */
 const LEAST_FRAMED_PX = 280;
+/** How many times faster than usual time may go by. */
+const PACES = [0.25, 0.5, 1, 2, 4];
 const KEY = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘" : "Ctrl";
 const HINT = `Click, or hold ${KEY}, to zoom with the wheel`;
 const TIME_RANGE = { min: "0", max: "1", step: "any", "aria-label": "Time" };
@@ -40,8 +42,13 @@ export interface PanelHost extends ControlsHost, ColoursHost {
   readonly lacking: string[];
   readonly tiles: { pending: number; wanted: number } | null;
   readonly parts: ReadonlyMap<string, Part>;
-  readonly together: readonly { readonly canvas: HTMLCanvasElement; readonly panel: Panel }[];
+  readonly together: readonly {
+    readonly canvas: HTMLCanvasElement;
+    readonly panel: Panel;
+    readonly player: Player;
+  }[];
   togglePlaying(): void;
+  step(count: number): void;
   scrub(share: number): void;
   reset(): void;
 }
@@ -57,6 +64,15 @@ export class Panel {
   private readonly axesRow = dom("label", { class: "row" }, [
     dom("span", { class: "name" }, ["Axes"]),
     this.axesMenu,
+  ]);
+  private readonly paceMenu = dom(
+    "select",
+    {},
+    PACES.map((pace) => dom("option", { value: `${pace}` }, [`${pace}×`])),
+  );
+  private readonly paceRow = dom("label", { class: "row", title: "How fast time goes by." }, [
+    dom("span", { class: "name" }, ["Pace"]),
+    this.paceMenu,
   ]);
   private readonly controls: Controls;
   private readonly colours: ColourControls;
@@ -78,6 +94,7 @@ export class Panel {
   private readonly bar: HTMLElement;
   private readonly handle: HTMLElement;
   private readonly playButton: HTMLButtonElement;
+  private readonly stepButtons: HTMLButtonElement[];
   private readonly toggles: Record<"lod" | "show_level", HTMLButtonElement>;
   private readonly gear: HTMLButtonElement;
   private readonly slider = dom("input", { type: "range", ...TIME_RANGE });
@@ -99,6 +116,11 @@ export class Panel {
     this.handle = this.button("show", "Show the bar (h)", () => this.toggle());
     this.handle.classList.add("handle", "glass");
     this.playButton = this.button("play", "Play (space)", () => viewer.togglePlaying());
+    this.stepButtons = [
+      this.button("previous", "A step back (,)", () => viewer.step(-1)),
+      this.button("next", "A step on (.)", () => viewer.step(1)),
+    ];
+    viewer.lifetime.listen(this.paceMenu, "change", () => (viewer.player.pace = Number(this.paceMenu.value)));
     viewer.lifetime.listen(this.slider, "input", () => viewer.scrub(Number(this.slider.value)));
     const toggle = (name: string) => () => viewer.choose(name, !viewer.settings[name]);
     this.toggles = {
@@ -131,7 +153,9 @@ export class Panel {
   private makeBar(): HTMLElement {
     const { viewer } = this;
     return dom("div", { class: "bar glass", role: "toolbar", "aria-label": "Controls" }, [
+      this.stepButtons[0],
       this.playButton,
+      this.stepButtons[1],
       this.track,
       this.button("home", "Show everything (0)", () => viewer.reset()),
       this.toggles.lod,
@@ -148,7 +172,7 @@ export class Panel {
     if (!header) return;
     this.note.hidden = true;
     this.controls.build(header);
-    this.controls.element.prepend(...this.colours.rows, this.axesRow);
+    this.controls.element.prepend(...this.colours.rows, this.axesRow, this.paceRow);
     this.showLegend();
     this.update();
     this.arrange();
@@ -169,9 +193,11 @@ export class Panel {
     this.playButton.setAttribute("aria-label", title);
     const streams = header !== null && hasStreaming(header);
     // The bar keeps its width when playing begins, and the button its place.
-    this.playButton.hidden = this.track.hidden = !varies && !streams;
+    this.playButton.hidden = this.track.hidden = this.paceRow.hidden = !varies && !streams;
+    for (const button of this.stepButtons) button.hidden = !varies;
+    this.paceMenu.value = String(this.viewer.player.pace);
     this.slider.disabled = !varies && settings.motion === "off";
-    const width = (header && this.date(header)?.length) || 8 + (header?.slices.timeUnit ?? "").length;
+    const width = (header && this.date(header)?.length) || 8 + withUnit("", header?.slices.timeUnit ?? "").length;
     this.timeText.style.minWidth = `${varies ? width : 7}ch`;
     this.tick();
   }
@@ -185,22 +211,37 @@ export class Panel {
       const value = settings[name];
       return `${label}: ${typeof value === "boolean" ? (value ? "on" : "off") : value}`;
     });
-    const title = differences.join(", ") || header?.name || "";
-    this.title.textContent = title;
-    this.title.hidden = !title;
-    const label = options.label ?? title;
+    const name = header?.name ?? "";
+    const title = differences.join(", ") || (options.named && this.viewer.together.length < 2 ? "" : name);
+    // In a second view that is at a time of its own, that is told here: the bar has the first one's.
+    const { first } = this;
+    const isApart = first !== this.viewer.player && this.viewer.player.time !== first.time;
+    const moment = header && isApart && this.viewer.player.varies ? this.moment(header) : "";
+    this.title.textContent = [title, moment].filter(Boolean).join(" · ");
+    this.title.hidden = !this.title.textContent;
+    const label = options.label ?? (title || name);
     root.setAttribute("aria-label", label ? `Flow texture: ${label}` : "Flow texture");
+  }
+
+  /** The player of the first view. */
+  private get first(): Player {
+    return this.viewer.together[0]?.player ?? this.viewer.player;
   }
 
   tick(): void {
     const { header, player, settings } = this.viewer;
     if (!header || this.track.hidden) return;
+    if (this.first !== player) this.name();
     const { first, last, now } = player.range(settings);
     this.slider.value = String((now - first) / (last - first || 1));
-    const unit = header.slices.timeUnit;
-    const moment = this.date(header) ?? `${numberText(now)} ${unit}`;
-    const text = player.varies ? moment : `${now.toFixed(1)} s`;
+    const text = player.varies ? this.moment(header) : `${now.toFixed(1)} s`;
     if (this.timeText.textContent !== text) this.timeText.textContent = text;
+  }
+
+  /** The time that is shown, in words. */
+  private moment(header: Header): string {
+    const { player } = this.viewer;
+    return this.date(header) ?? withUnit(numberText(player.time), header.slices.timeUnit);
   }
 
   /** The date that is shown, where times are dates. */
@@ -342,11 +383,12 @@ export class Panel {
     this.note.hidden = false;
     this.busy.hidden = true;
     this.viewer.root.dataset.failed = "true";
+    this.viewer.options.onError?.(problem, detail);
   }
 
   fullscreen(): void {
-    const { root } = this.viewer;
-    toggleFullscreen(root.closest(".flowtex-pair") ?? root);
+    const { root, together } = this.viewer;
+    toggleFullscreen((together.length > 1 && root.parentElement) || root);
   }
 
   private async save(): Promise<void> {

@@ -16,6 +16,8 @@ export class Player {
   /** Seconds of a steady flow that streams. */
   clock = 0;
   playing = false;
+  /** How many times faster than usual time goes by. */
+  pace = 1;
   private times: number[] = [0];
   private lastFrame = 0;
   private hasHeader = false;
@@ -54,6 +56,15 @@ export class Player {
     this.time = clamp(time, ...this.span);
   }
 
+  /** Time of the step after the present time, or of the one before it, round and round. */
+  stepFrom(count: number): number {
+    const { times, time } = this;
+    const after = times.findIndex((each) => (count > 0 ? each > time : each >= time));
+    const steps = times.length;
+    const at = after < 0 ? steps : after;
+    return times[(count > 0 ? at : at - 1 + steps) % steps];
+  }
+
   start(): void {
     this.playing = true;
     this.lastFrame = 0;
@@ -71,7 +82,7 @@ export class Player {
    * steps of a moment are there: what is on the way is waited for, not jumped over.
    */
   advance(now: number, ready: (steps: [number, number]) => boolean): boolean {
-    const passed = this.lastFrame ? Math.min((now - this.lastFrame) / 1000, LONGEST_GAP_S) : 0;
+    const passed = this.lastFrame ? Math.min((now - this.lastFrame) / 1000, LONGEST_GAP_S) * this.pace : 0;
     this.lastFrame = now;
     if (!this.varies) {
       this.clock += passed;

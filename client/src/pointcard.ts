@@ -4,12 +4,13 @@ import type { Camera } from "./camera.ts";
 import { dom, numberText, withUnit } from "./dom.ts";
 import type { Lifetime, Timer } from "./lifetime.ts";
 import { eastNorth, lonLatOf, lonLatText } from "./lonlat.ts";
-import type { Options } from "./options.ts";
+import type { Options, Reading } from "./options.ts";
 import { pathShapes, type Dot, type Line, type Place } from "./pathlines.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
 import type { Sample } from "./pixelsum.ts";
 import { pathThrough, type PointPath } from "./pointpath.ts";
 import type { Header, Part, Settings } from "./protocol.ts";
+import { samplesOf } from "./samples.ts";
 import type { Layer } from "./tiles.ts";
 import type { Moment } from "./uniforms.ts";
 import type { Vector } from "./vectors.ts";
@@ -87,7 +88,11 @@ export class PointCard {
   readonly overlay = document.createElementNS(SVG, "svg");
   private readonly host: CardHost;
   private readonly list = dom("dl");
+  private readonly samples = dom("div");
   private chosen: Found | null = null;
+  /** The point that was read last, where a host reads them, and the number of what it was asked. */
+  private read: Point | null = null;
+  private asked = 0;
   private later: Timer | null = null;
   /** The path that is drawn, and its point. */
   private drawn: { path: PointPath; point: Vector; samples: Sample[] } | null = null;
@@ -98,13 +103,18 @@ export class PointCard {
     this.overlay.setAttribute("class", "path");
     const button = dom("button", { type: "button", class: "link" }, ["Close"]);
     button.addEventListener("click", () => this.close());
-    this.element.append(dom("div", { class: "first" }, [dom("span", {}, [TITLE]), button]), this.list);
+    this.element.append(dom("div", { class: "first" }, [dom("span", {}, [TITLE]), button]), this.samples, this.list);
   }
 
   /** Show the path through what is at (x, y), from -1 to 1, right and up, or none. */
   choose(x: number, y: number, until = performance.now() + PATIENCE_MS): Point | null {
-    const { lifetime, canPick } = this.host;
+    const { lifetime, canPick, options } = this.host;
     lifetime.cancel(this.later);
+    if (options.streamed) {
+      this.close();
+      void this.ask({ place: [x, y] });
+      return null;
+    }
     if (!canPick && performance.now() < until) {
       // The program that finds points is still being compiled.
       this.later = lifetime.later(() => this.choose(x, y, until), RETRY_MS);
@@ -113,9 +123,37 @@ export class PointCard {
     const found = this.host.find(x, y);
     if (found) this.host.options.onPoint?.(found.point);
     this.close();
-    this.chosen = found;
-    this.update();
+    if (found && options.reader) void this.ask(found.point);
+    else {
+      this.chosen = found;
+      this.update();
+    }
     return found?.point ?? null;
+  }
+
+  /** Show the path that a host reads. */
+  private async ask(at: Parameters<NonNullable<Options["reader"]>>[0]): Promise<void> {
+    const { options, header } = this.host;
+    const number = (this.asked += 1);
+    const found = await options.reader?.(at, true).catch(() => null);
+    const { camera } = this.host;
+    if (number !== this.asked || header !== this.host.header || !header || !camera) return;
+    if (!found?.path) return this.close();
+    if ("place" in at) options.onPoint?.(found.point);
+    this.read = found.point;
+    const { point, path, samples, words = [] } = found;
+    this.tell(point, path, header, camera, words);
+    const position = point.position as Vector;
+    this.samples.replaceChildren(...(samples ? [samplesOf(samples, position, camera)] : []));
+    this.share(path, position, [], found.alone ? [{ card: this }] : this.host.together);
+  }
+
+  /** Draw a path in views, by default in all. */
+  private share(path: PointPath, point: Vector, samples: Sample[], views: CardHost["together"] = this.host.together): void {
+    for (const { card } of views) {
+      card.drawn = { path, point, samples };
+      card.draw();
+    }
   }
 
   /** Show no path, in no view. */
@@ -125,7 +163,8 @@ export class PointCard {
 
   private clear(): void {
     this.host.lifetime.cancel(this.later);
-    this.chosen = this.drawn = null;
+    this.chosen = this.drawn = this.read = null;
+    this.asked += 1;
     this.element.hidden = true;
     this.overlay.replaceChildren();
     this.host.options.explainer?.clear();
@@ -134,7 +173,8 @@ export class PointCard {
   /** Show the path as things are now; where the point's tile has gone it stays as it was. */
   update(): void {
     const { chosen } = this;
-    const { options, camera, shown, header, tiles, settings, stage, together } = this.host;
+    if (this.read) return void this.ask(this.read);
+    const { options, camera, shown, header, tiles, settings, stage } = this.host;
     if (!chosen || options.bare || !camera || !shown || !header) return;
     const { point, layer, place } = chosen;
     const scene = tiles?.layers.find(({ key }) => String(key) === String(layer.key))?.scene;
@@ -145,13 +185,16 @@ export class PointCard {
     this.tell({ ...point, values: valuesAt(scene, shown, scene.cornersAt(place)) }, path, header, camera);
     const pixel = { at, settings, camera, rows: stage.clientHeight };
     const samples = options.explainer?.explain(pixel) ?? [];
-    for (const { card } of together) {
-      card.drawn = { path, point: position, samples };
-      card.draw();
-    }
+    this.share(path, position, samples);
   }
 
-  private tell(point: Point, { velocity }: PointPath, header: Header, camera: Camera): void {
+  private tell(
+    point: Point,
+    { velocity }: PointPath,
+    header: Header,
+    camera: Camera,
+    words: NonNullable<Reading["words"]> = [],
+  ): void {
     const { label, unit } = header.speed;
     const size = Math.hypot(...velocity);
     const lines = new Map<string, string>();
@@ -173,6 +216,7 @@ export class PointCard {
       const named = header.scalars.choices.find((each) => each.name === name) ?? header.scalars;
       lines.set(named.label, withUnit(numberText(value), named.unit));
     }
+    for (const [word, text] of words) lines.set(word, text);
     this.list.replaceChildren(
       ...[...lines].flatMap(([word, value]) => [dom("dt", {}, [word]), dom("dd", {}, [value])]),
     );

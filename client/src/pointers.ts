@@ -57,6 +57,8 @@ export class Pointers {
   readonly down = new Map<number, Place>();
   private readonly viewer: PointerHost;
   private isOther = false;
+  /** What a host was asked for last. */
+  private asked: object | null = null;
   private press = { x: 0, y: 0, time: 0, isDrag: false };
   private lastLook = 0;
   private look: Timer | null = null;
@@ -200,7 +202,14 @@ export class Pointers {
       this.look = null;
       this.lastLook = performance.now();
       const { x, y } = place;
-      if (viewer.sharp && viewer.canPick) viewer.panel.read(viewer.point(x, y), viewer.ground(x, y));
+      const { streamed, reader } = viewer.options;
+      if (streamed) {
+        const asked = (this.asked = {});
+        const show = (point: Point | null) => {
+          if (asked === this.asked && !this.down.size) viewer.panel.read(point, viewer.ground(x, y));
+        };
+        void reader?.({ place: [x, y] }, false).then((found) => show(found?.point ?? null), () => null);
+      } else if (viewer.sharp && viewer.canPick) viewer.panel.read(viewer.point(x, y), viewer.ground(x, y));
       else if (!viewer.player.playing) this.hover(place);
     };
     this.look = viewer.lifetime.later(look, Math.max(rest, viewer.sharp ? 0 : HOVER_MS));
@@ -233,6 +242,8 @@ export class Pointers {
       camera.zoomBy(command === "closer" ? notch : 1 / notch);
       viewer.reportCamera();
     } else if (command === "whole") viewer.reset();
+    else if (command === "next" || command === "previous") viewer.step(command === "next" ? 1 : -1);
+    else if (command === "detail") viewer.choose("lod", !viewer.settings.lod);
     else if (key === PLAY_KEY) viewer.togglePlaying();
     else if (key === FULLSCREEN_KEY) panel.fullscreen();
     else if (key === "h") (options.follows?.panel ?? panel).toggle();

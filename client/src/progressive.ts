@@ -119,6 +119,13 @@ export class ProgressiveRenderer {
     back.height = height;
   }
 
+  /** Show a part of a picture that was drawn elsewhere. */
+  show(picture: ImageBitmap, left: number, width: number, isSharp: boolean): void {
+    const { canvas, pen } = this;
+    pen?.drawImage(picture, left, 0, width, picture.height, 0, 0, canvas.width, canvas.height);
+    if (isSharp) this.frames += 1;
+  }
+
   dispose(): void {
     for (const canvas of [this.canvas, this.back, this.last, this.coarse, this.front]) canvas.width = canvas.height = 0;
   }

@@ -52,6 +52,9 @@ export interface Row {
   default: Value;
   affects: string;
   text: string;
+  /** Other settings with one of which it makes a difference, where it needs any, and that in words. */
+  needs?: [name: string, sign: "==" | "!=", value: Value][];
+  condition?: string;
   low: number | null;
   high: number | null;
   choices: string[];
@@ -294,6 +297,8 @@ export interface Header {
     shading: Shading;
   };
   mesh: MeshLimits;
+  /** What is added to the time of the first view, in a second one; null if that has its own. */
+  timeShift?: number | null;
   /** Null for a flow that is elsewhere. */
   earth: Earth | null;
   /** Null where the whole surface is here. */

@@ -5,9 +5,10 @@
 //                     Camera, Player, Panel (what is seen around the picture), Pointers
 
 import { coloursOf, recoloured, type ColourChoice } from "./colours.ts";
-import { Camera, copyOf, fitted, isSamePlace, widened, type CameraState } from "./camera.ts";
+import { Camera, copyOf, firstLook, isSamePlace, type CameraState } from "./camera.ts";
 import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts";
 import { groundAt } from "./earthlayer.ts";
+import { HeldParts } from "./heldparts.ts";
 import { Lifetime } from "./lifetime.ts";
 import type { Options } from "./options.ts";
 import { Panel } from "./panel.ts";
@@ -19,12 +20,9 @@ import { ProgressiveRenderer } from "./progressive.ts";
 import {
   EARTH_LINES,
   FORMAT,
-  isOfStep,
-  stepOf,
   tilePart,
   type Header,
   type NamedPart,
-  type Part,
   type Settings,
   type Value,
 } from "./protocol.ts";
@@ -32,14 +30,12 @@ import { CARD_PRICE_MS } from "./quality.ts";
 import { Scene } from "./scene.ts";
 import { Requests } from "./sources/source.ts";
 import { Tiles } from "./tiles.ts";
-import { flowsOf } from "./tracer.ts";
 import type { Program } from "./programs.ts";
 import { isNear, variantOf, type Moment, type ViewState } from "./uniforms.ts";
-import { subtract, toFrame, type Vector } from "./vectors.ts";
+import type { Vector } from "./vectors.ts";
+import { viewState } from "./viewstate.ts";
 
 const STILL_MS = 160; // for which a view that was moved counts as being moved
-/** Time steps that are held where the host can send the others again, and where memory is short. */
-const STEPS_HELD = { slices: [12, 4], flow: [100, 24] };
 
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
 
@@ -56,7 +52,8 @@ export class Viewer implements User {
   readonly card: PointCard = new PointCard(this);
   readonly panel: Panel;
   readonly pointers: Pointers;
-  readonly parts = new Map<string, Part>();
+  readonly held = new HeldParts(this.graphics);
+  readonly parts = this.held.all;
   header: Header | null = null;
   settings: Settings = {};
   scene: Scene | null = null;
@@ -70,6 +67,8 @@ export class Viewer implements User {
   together: Viewer[] = [this];
   private readonly renderer: ProgressiveRenderer;
   private busyUntil = 0;
+  /** Whether the host has drawn what it was last asked for. */
+  private isPainted = true;
   /** The camera that the scene came with. */
   private firstCamera: CameraState | null = null;
   /** Steps that the player goes on to. */
@@ -93,7 +92,7 @@ export class Viewer implements User {
     this.pointers = new Pointers(this);
     this.graphics.users.add(this);
     this.observe();
-    if (!this.graphics.gl) {
+    if (!this.graphics.gl && !options.streamed) {
       this.panel.fail(
         "This browser has no WebGL2, which the picture is drawn with.",
         "Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.",
@@ -130,13 +129,11 @@ export class Viewer implements User {
     this.tiles = null;
     this.scene?.dispose();
     this.scene = null;
-    for (const name of [...this.parts.keys()]) this.remove(name);
+    this.held.clear();
     this.graphics.leave(this);
     this.renderer.dispose();
     this.root.remove();
   }
-
-  // --- what is shown ---
 
   setHeader(header: Header): void {
     if (header.format !== FORMAT) {
@@ -161,7 +158,7 @@ export class Viewer implements User {
     if (isElsewhere) [this.firstCamera, this.camera] = [header.camera, null];
     if (old && old.generation !== header.generation) {
       // What is the same at all times is sent again only where it differs.
-      for (const name of [...this.parts.keys()]) if (name.includes("/")) this.remove(name);
+      this.held.clear((name) => isElsewhere || name.includes("/"));
     }
     this.panel.build();
     this.resize(); // at once, so that no picture is drawn in the size without the bar
@@ -190,18 +187,16 @@ export class Viewer implements User {
   }
 
   private makeScene(header: Header): void {
+    if (this.options.streamed) return;
     this.scene = new Scene(this.graphics, header, this.parts);
     this.tiles = new Tiles(this, this.scene);
   }
 
   setPart(part: NamedPart): void {
-    const { name, digest } = part;
+    const { name } = part;
     const tile = tilePart(name);
     if (tile) return void this.tiles?.setPart(tile[0], { ...part, name: tile[1] });
-    if (digest && this.parts.get(name)?.digest === digest) return;
-    const held = this.graphics.hold(part);
-    this.remove(name);
-    this.parts.set(name, held);
+    if (!this.held.set(part)) return;
     this.scene?.forget(name);
     this.trim();
     if (name === "cmap") this.tiles?.recolour();
@@ -209,26 +204,9 @@ export class Viewer implements User {
     this.change();
   }
 
-  private remove(name: string): void {
-    this.graphics.release(this.parts.get(name));
-    this.parts.delete(name);
-  }
-
-  /** Hold a few time steps where the others can be traced, or sent by the host, again. */
+  /** Hold a few time steps where there are others to come. */
   private trim(): void {
-    const { header, options } = this;
-    const { hasSteps = false, memory = 0 } = options.source ?? {};
-    if (!header || !hasSteps) return;
-    const kind = header.slices.trace ? "flow" : "slices";
-    const named = (some: string) => [...this.parts.keys()].filter((name) => name.startsWith(some));
-    const needed = this.player.moment.slice(0, 2).flatMap((step) => flowsOf(header, step));
-    for (const name of named(`${kind}/`).slice(0, -STEPS_HELD[kind][Number(memory > 0)])) {
-      const step = stepOf(name);
-      if (needed.includes(step)) continue;
-      for (const held of [kind, "extra"]) this.remove(`${held}/${step}`);
-      const values = memory ? named("scalars/") : [];
-      for (const other of values) if (isOfStep(other, step, header)) this.remove(other);
-    }
+    this.held.trim(this.header, this.options.source, this.player.moment.slice(0, 2));
   }
 
   setSettings(settings: Settings): void {
@@ -250,14 +228,18 @@ export class Viewer implements User {
     this.options.onSetting?.(name, value);
   }
 
-  // --- the camera ---
-
   get cameraState(): CameraState | null {
     const state = this.camera?.state ?? this.firstCamera;
     return state ? copyOf(state) : null;
   }
 
-  setCamera(state: CameraState): void {
+  /** Look from a camera, or so that the whole surface is seen. */
+  setCamera(state: CameraState | null): void {
+    if (!state) {
+      this.firstCamera = null;
+      this.place();
+      return this.change(true);
+    }
     if (!this.camera) this.firstCamera = copyOf(state);
     else if (isEqual(this.camera.state, state)) return;
     else this.camera.state = copyOf(state);
@@ -283,13 +265,12 @@ export class Viewer implements User {
     const nodes = this.parts.get("position")?.data;
     if (!header || !nodes) return;
     const { geometry, limits } = header;
-    const state = first
-      ? widened(geometry, limits, first, nodes, aspect)
-      : fitted(geometry, limits, nodes, aspect);
+    const state = firstLook(geometry, limits, first, nodes, aspect);
     const globe = header.earth && !header.earth.map ? header.earth.radius : 0;
     this.camera = new Camera(state, limits, geometry.planar, aspect, globe);
     this.camera.pick = (x, y) =>
       (this.point(x, y)?.position as Vector | undefined) ?? this.ground(x, y);
+    this.panel.showAxes();
     // A host holds the camera that is shown.
     if (!first || !isEqual(first, state)) this.options.onCamera?.(copyOf(state));
   }
@@ -297,8 +278,6 @@ export class Viewer implements User {
   private get aspect(): number {
     return Math.max(this.stage.clientWidth, 1) / Math.max(this.stage.clientHeight, 1);
   }
-
-  // --- time ---
 
   get playing(): boolean {
     return this.player.playing;
@@ -308,6 +287,25 @@ export class Viewer implements User {
     this.player.seek(time);
     this.panel.tick();
     this.change();
+  }
+
+  /** Follow the time of another view, unless this one has its own. */
+  followTime(time: number): void {
+    const { timeShift = 0 } = this.header ?? {};
+    if (timeShift === null) return;
+    const [first, last] = this.player.span;
+    const own = time + timeShift;
+    this.setTime(first <= own && own <= last ? own : last);
+  }
+
+  /** Go to the next step, 1, or to the one before, -1. */
+  step(count: number): void {
+    const { player, options } = this;
+    if (options.follows) return options.follows.step(count);
+    if (!player.varies) return;
+    this.pause();
+    this.setTime(player.stepFrom(count));
+    options.onTime?.(player.time);
   }
 
   /** Go to a share of the times, or of the clock's period, as the slider asks. */
@@ -357,8 +355,6 @@ export class Viewer implements User {
     if (leader.playing) leader.pause();
     else leader.play();
   }
-
-  // --- drawing ---
 
   /** Draw drafts alone for a while, as the view or a control is being moved. */
   private holdDraft(): void {
@@ -482,6 +478,7 @@ export class Viewer implements User {
   }
 
   frame(now: number, until: number): void {
+    if (this.options.streamed) return this.wait(now);
     if (this.lifetime.isOver || this.graphics.isLost || !this.graphics.gl || !this.isVisible) return;
     if (!this.header || !this.scene || this.canvas.width < 2) return;
     try {
@@ -491,6 +488,24 @@ export class Viewer implements User {
       this.pause();
       this.panel.fail("The picture could not be drawn.", String(error));
     }
+  }
+
+  /** Have a place, and go on with time once the picture before is there. */
+  private wait(now: number): void {
+    if (!this.camera) this.place();
+    if (this.playing && this.isPainted) this.advance(now);
+  }
+
+  /** Show a part of a picture that the host has drawn. */
+  paint(picture: ImageBitmap, left: number, width: number, isSharp: boolean): void {
+    this.renderer.show(picture, left, width, isSharp);
+    this.isPainted = true;
+    this.root.dataset.drawn = "true";
+    this.root.dataset.frames = String(this.renderer.frames);
+    this.panel.wait([], true, !isSharp);
+    if (isSharp) this.panel.clear();
+    this.setSharp(isSharp && !this.playing);
+    if (this.playing) this.request();
   }
 
   /** The program that draws at the present settings, from near or from afar. */
@@ -537,9 +552,11 @@ export class Viewer implements User {
     const { player, options } = this;
     const isMade = (steps: number[]) => {
       this.next = steps;
+      if (options.streamed) return true;
       return !this.missing(steps).length && !!this.scene?.make(steps, now);
     };
     this.next = [];
+    this.isPainted = false;
     if (!player.playing || !player.advance(now, isMade)) return;
     if (player.varies) options.onTime?.(player.time);
     else options.onClock?.(player.clock);
@@ -552,25 +569,9 @@ export class Viewer implements User {
   view(shown: Moment, density: number): ViewState {
     const { header, camera, scene, player } = this;
     if (!header || !camera) throw new Error("there is nothing to look at yet");
-    const { geometry, constants } = header;
-    const focus = camera.state.focal_point;
-    const local = toFrame(geometry.frame, subtract(focus, geometry.center));
-    const old = scene?.anchor ?? [0, 0, 0];
-    const range = constants.anchorRange * 2 * camera.height;
-    const isFar = (v: Vector) => v.some((c) => Math.abs(c) > range);
-    return {
-      focus,
-      anchor: !isFar(subtract(local, old)) ? old : isFar(local) ? local : [0, 0, 0],
-      eye: camera.eye,
-      between: shown[2],
-      time: player.timeOf(shown),
-      clock: player.clock,
-      density,
-      pixel: (2 * camera.height) / Math.max(this.stage.clientHeight * density, 1),
-    };
+    const anchor = scene?.anchor ?? [0, 0, 0];
+    return viewState({ header, camera, anchor, player, rows: this.stage.clientHeight }, shown, density);
   }
-
-  // --- under the pointer ---
 
   /** Whether the programs that find points are built. */
   get canPick(): boolean {

@@ -4,11 +4,11 @@
 import type { CameraState } from "./camera.ts";
 import { sharedGraphics } from "./context.ts";
 import { pictureOf } from "./dom.ts";
+import { FlowtexView } from "./element.ts";
 import { throttled, type Timer } from "./lifetime.ts";
 import { decoded, type Header, type NamedPart, type PartInfo, type Value } from "./protocol.ts";
 import { Messages, type Loaded } from "./sources/messages.ts";
 import type { Viewer } from "./viewer.ts";
-import { viewersIn } from "./views.ts";
 
 /** Milliseconds between two messages about the camera, and about the time. */
 const CAMERA_MS = 100;
@@ -113,6 +113,7 @@ function cameraOf(state: unknown): CameraState | null {
 
 class WidgetView {
   private readonly model: Model;
+  private readonly view = new FlowtexView();
   private readonly viewers: Viewer[];
   private readonly first: Viewer;
   /** Values on their way to the kernel, which sends them back. */
@@ -130,7 +131,8 @@ class WidgetView {
   constructor(model: Model, element: HTMLElement) {
     this.model = model;
     const beside = model.get("_header_beside") as Header | undefined;
-    this.viewers = this.makeViewers(element, beside?.format ? 2 : 1);
+    element.append(this.view);
+    this.viewers = this.makeViewers(beside?.format ? 2 : 1);
     [this.first] = this.viewers;
     // The first view takes what has come; further ones ask.
     const key = model.get("_key");
@@ -147,27 +149,30 @@ class WidgetView {
     if (!whole) model.send({ kind: "ready" });
   }
 
-  private makeViewers(element: HTMLElement, count: number): Viewer[] {
-    const { model } = this;
-    const slowly = <T>(wait: number, call: (value: T) => void) =>
-      throttled((later, delay) => this.first.lifetime.later(later, delay), wait, call);
-    const options = {
+  private makeViewers(count: number): Viewer[] {
+    const { model, view } = this;
+    view.options = {
       rebuild: true,
       guarded: true,
       controls: (model.get("bar") as boolean | undefined) ?? true,
-      onCamera: slowly<CameraState>(CAMERA_MS, (camera) => this.send("camera", camera)),
-      onTime: slowly<number>(TIME_MS, (time) => this.send("time", time)),
-      onClock: slowly<number>(TIME_MS, (clock) => this.send("clock", clock)),
-      onPlaying: (playing: boolean) => this.send("playing", playing),
-      onPoint: (point: unknown) => this.send("point", point),
-      onSetting: (name: string, value: Value) => this.send(name, value),
       onColours: (changes: unknown) => model.send({ kind: "appearance", changes }),
-      onControls: (shown: boolean) => this.send("bar", shown),
     };
-    return viewersIn(element, count, options, (n) => ({
-      source: this.sources[n],
-      onFrame: () => this.planFrame(),
-    }));
+    view.open(count, (n) => ({ source: this.sources[n] }));
+    const hear = <T>(name: string, take: (value: T) => void) =>
+      view.addEventListener(name, (event) => take((event as CustomEvent<T>).detail));
+    const slowly = <T>(name: string, wait: number) => {
+      const later = (call: () => void, delay: number) => view.first.lifetime.later(call, delay);
+      hear(name, throttled<T>(later, wait, (value) => this.send(name, value)));
+    };
+    slowly<CameraState>("camera", CAMERA_MS);
+    slowly<number>("time", TIME_MS);
+    slowly<number>("clock", TIME_MS);
+    hear<boolean>("playing", (playing) => this.send("playing", playing));
+    hear<unknown>("point", (point) => this.send("point", point));
+    hear<[string, Value]>("setting", ([name, value]) => this.send(name, value));
+    hear<boolean>("controls", (shown) => this.send("bar", shown));
+    hear("frame", () => this.planFrame());
+    return view.viewers;
   }
 
   private send(name: string, value: unknown): void {
@@ -247,11 +252,10 @@ class WidgetView {
 
   private resize(): void {
     const [width, height] = (this.model.get("size") as [number, number] | undefined) ?? [0, 0];
-    const { root } = this.first;
-    const frame = root.closest<HTMLElement>(".flowtex-pair") ?? root;
-    frame.style.width = width ? `${width}px` : "100%";
-    frame.style.height = `${height || HEIGHT_PX}px`;
-    frame.parentElement?.classList.toggle("flowtex-room", !width);
+    const { style, parentElement } = this.view;
+    style.width = width ? `${width}px` : "100%";
+    style.height = `${height || HEIGHT_PX}px`;
+    parentElement?.classList.toggle("flowtex-room", !width);
   }
 
   private takeHeader(n: number): void {
@@ -293,6 +297,7 @@ class WidgetView {
     for (const [event, call] of this.handlers) this.model.off(event, call);
     discard(this.early);
     document.adoptedStyleSheets = document.adoptedStyleSheets.filter((s) => s !== this.sheet);
-    for (const viewer of this.viewers) viewer.dispose();
+    this.view.dispose();
+    this.view.remove();
   }
 }

@@ -2,12 +2,10 @@
 
 import assert from "node:assert/strict";
 import { afterEach, mock, test } from "node:test";
-import { eventOf, FakeButton, FakeElement, observers, page, root, shown, type Drawn } from "./fakepage.ts";
+import { asked, eventOf, FakeElement, page, root, server, shown, type Drawn } from "./fakepage.ts";
 import { browser } from "../src/app/browser.ts";
-import { covers } from "../src/app/covers.ts";
 import { hints } from "../src/app/hints.ts";
 import { keys } from "../src/app/keys.ts";
-import { inset, path } from "../src/app/path.ts";
 import { upload } from "../src/app/upload.ts";
 
 afterEach(() => mock.restoreAll());
@@ -15,78 +13,33 @@ const settled = () => new Promise((resolve) => setImmediate(resolve));
 
 // --- keys ---
 
-test("keys are commands, unless somebody else wants them", () => {
+test("keys change the page, unless somebody else wants them", () => {
   page.location.hash = "#state";
   const { told, leave } = shown(keys, null);
-  const press = (key: string, more: object = {}) => {
-    const event = eventOf("keydown", { key, ctrlKey: false, metaKey: false, altKey: false, ...more });
+  const press = (key: string, more: { target?: FakeElement; ctrlKey?: boolean } = {}) => {
+    const modifiers = { ctrlKey: false, metaKey: false, altKey: false };
+    const composedPath = () => [more.target ?? page];
+    const event = eventOf("keydown", { key, ...modifiers, ...more, composedPath });
     page.dispatchEvent(event);
     return event.defaultPrevented;
   };
-  assert.ok(press("ArrowLeft") && press("d") && press("t") && press(" "));
+  assert.ok(press("t") && press("?"));
   assert.ok(!press("Escape")); // dialogs close by it as well
   const field = new FakeElement("input");
-  const taken = [press("q"), press("d", { ctrlKey: true }), press("d", { target: field })];
+  const taken = [press("d"), press("t", { ctrlKey: true }), press("t", { target: field })];
   assert.deepEqual(taken, [false, false, false]);
-  assert.ok(!press(" ", { target: new FakeButton() }));
   press("Escape", { target: field });
-  let isFull = 0;
-  Object.assign(root, { requestFullscreen: () => Promise.resolve((isFull += 1)) });
-  assert.ok(press("f"));
   leave();
-  assert.ok(!press("d"));
+  assert.ok(!press("t"));
   assert.deepEqual(told, [
     ["linked", "#state"],
-    ["command", "left"],
-    ["command", "detail"],
     ["toggle", "theme"],
-    ["toggle", "play"],
+    ["toggle", "help"],
     ["toggle", "close"],
     ["toggle", "close"],
   ]);
-  assert.equal(isFull, 1);
   page.location.hash = "";
   assert.deepEqual(shown(keys, null).told, []);
-});
-
-// --- panels that cover the picture ---
-
-test("what covers the picture is told once, in shares of it", () => {
-  const whole = new FakeElement();
-  whole.box = { left: 0, top: 0, width: 1000, height: 500 };
-  const put = (kind: string, left: number, top: number, width: number, height: number) => {
-    const panel = new FakeElement(kind);
-    panel.box = { left, top, width, height };
-    return panel;
-  };
-  const player = put(".flowtex-player", 0, 450, 1000, 50);
-  const corner = put(".flowtex-corner", 4, 104, 600, 100);
-  whole.inside = [corner, put(".flowtex-panel", 804, 4, 300, 100), put(".flowtex-title", 9, 9, 0, 9), player];
-  const own = new FakeElement();
-  own.parentElement = whole;
-  const { told, leave } = shown(covers, own);
-  const watcher = observers[observers.length - 1];
-  assert.equal(watcher.watched.size, 1 + 4);
-  watcher.tell();
-  watcher.tell(); // nothing is different
-  const expected = [
-    [0, 0.2, 0.208, 0.416], // of the colour bar only a part, however long its numbers are
-    [0.8, 0, 1, 1], // unfolds down to the end
-    [0, 0.892, 1, 1],
-  ];
-  assert.deepEqual(told, [["change", expected]]);
-  assert.equal(whole.style["--foot"], "50px");
-  whole.box.width = 0; // out of sight
-  watcher.tell();
-  whole.box.width = 1000;
-  whole.inside = [corner];
-  watcher.tell();
-  assert.deepEqual(told[1], ["change", expected.slice(0, 1)]);
-  leave();
-  assert.equal(watcher.watched.size, 0);
-  const lost = shown(covers, new FakeElement()); // not in a page
-  observers[observers.length - 1].tell();
-  assert.deepEqual([lost.told, observers[observers.length - 1].watched.size], [[], 0]);
 });
 
 // --- hints ---
@@ -197,190 +150,170 @@ test("files are sent one after the other, and what goes wrong is told", async ()
   assert.ok(!drag("drop", { dataTransfer: files }));
 });
 
-// --- paths ---
+// --- the view ---
 
-const over = {
-  path: [[[-1, 0], [1, 0]]],
-  sampled: [[[-0.5, 0], [0.5, 0]]],
-  directed: true,
-  point: [0, 0],
-  samples: [{ x: 0, y: 0, weight: 1, grey: "#888" }],
-  panes: 2,
-  shown: [1],
-  aspect: 2,
-};
-
-test("a path lies in its pane, with the size that the page has now", () => {
-  const props: { over: unknown } = { over: null };
-  const { draw, leave } = shown(path, new FakeElement(), props);
-  const watcher = observers[observers.length - 1];
-  assert.equal((draw() as Drawn).content.length, 1); // nothing is drawn
-  watcher.tell(...([[{ contentRect: { width: 400, height: 100 } }]] as never[]));
-  props.over = over;
-  const svg = (draw() as Drawn).content[1] as Drawn;
-  const panes = svg.content[0] as Drawn[];
-  const [, [clip, ...marks]] = panes[0].content as [object, Drawn[]];
-  const { content } = clip.content[1] as Drawn;
-  assert.deepEqual(content, [{ x: 200, y: 0, width: 200, height: 100 }]);
-  const attributes = marks.flatMap((mark) => mark.content) as Record<string, unknown>[];
-  const [whole] = attributes.filter((each) => each.class === "whole");
-  const [point] = attributes.filter((each) => each.class === "point");
-  assert.deepEqual([whole.points, point.cx, point.cy], ["200.0,50.0 400.0,50.0", 300, 50]);
-  props.over = { ...over, point: null };
-  const bare = ((draw() as Drawn).content[1] as Drawn).content[0] as Drawn[];
-  assert.ok(!JSON.stringify(bare).includes('"point"'));
-  leave();
-  assert.equal(watcher.watched.size, 0);
-  shown(path, null, { over: null }).leave();
-});
-
-test("the enlarged path fits, though it be one point", () => {
-  const circles = (given: object) => {
-    const { draw } = shown(inset, null, { over: given });
-    const [svg] = (draw() as Drawn).content[0] as Drawn[];
-    return (svg.content[1] as Drawn[]).flatMap(({ kind, content }) => (kind === "circle" ? content : []));
-  };
-  const [alone, point] = circles(over) as Record<string, number>[];
-  assert.deepEqual([alone.cx, alone.cy, point.cx, point.cy], [116, 56, 116, 56]);
-  const row = [-1, 0, 1].map((x) => ({ x, y: x, weight: 1, grey: "" }));
-  const found = circles({ ...over, samples: row, point: null }) as Record<string, number>[];
-  assert.equal(found.length, 3);
-  assert.deepEqual([found[0].cy, found[2].cy], [103, 9]); // up is up
-  const none = shown(inset, null, { over: null }).draw() as Drawn;
-  assert.deepEqual(none.content, [[]]);
-});
-
-// --- drawing in the browser ---
-
-/** Stands for the client, whose viewers it keeps. */
+/** Stands for the client, whose elements it keeps. */
 const CLIENT = `data:text/javascript,
-  export class Viewer {
-    constructor(element, options) {
-      Object.assign(this, { options, log: [], sharp: false, playing: false, header: null });
-      this.root = { style: {} };
-      globalThis.viewers.push(this);
-      for (const name of ["setHeader", "setSettings", "setCamera", "setTime", "setPart", "lack", "play", "pause", "dispose"])
+  class Viewer {
+    constructor(log, own) {
+      Object.assign(this, { log, own, header: null, playing: false, root: {}, stage: {}, canvas: { width: 300, height: 200 } });
+      for (const name of ["setHeader", "followSetting", "setCamera", "setTime", "followTime", "setClock",
+        "setPart", "play", "pause", "change", "resize"])
         this[name] = (...values) => this.log.push([name, ...values]);
     }
   }
+  export class FlowtexView extends EventTarget {
+    constructor() {
+      super();
+      Object.assign(this, { viewers: [], log: [] });
+      globalThis.views.push(this);
+      for (const name of ["dispose", "remove", "paint"]) this[name] = (...values) => this.log.push([name, ...values]);
+    }
+    get first() { return this.viewers[0]; }
+    open(count, own) { this.viewers = Array.from({ length: count }, (_, n) => new Viewer(this.log, own(n))); }
+  }
   export const partsOfFile = (file) => [file];`;
 interface FakeViewer {
-  options: Record<string, (...values: unknown[]) => void> & {
-    source: { hasSteps: boolean; load: (...values: unknown[]) => Promise<unknown> };
-  };
-  log: unknown[][];
-  sharp: boolean;
   playing: boolean;
-  header: unknown;
+  own: { reader: (at: object, path: boolean) => Promise<unknown>; source?: object };
 }
-const viewers: FakeViewer[] = [];
-Object.assign(globalThis, { viewers });
+interface FakeView extends EventTarget {
+  options: { streamed: boolean; onColours: (choice: object) => void };
+  viewers: FakeViewer[];
+  log: unknown[][];
+}
+const views: FakeView[] = [];
+Object.assign(globalThis, { views });
 
-const source = { client: CLIENT, header: "header", parts: "/parts." };
-const properties = { source, settings: {}, camera: null, time: 0, playing: false };
+let generation = 0;
+const scene = (name: string) => ({ header: { name, generation: (generation += 1) }, parts: `/${name}.` });
+const one = scene("one");
+const start = { client: CLIENT, area: "view", scenes: [one], settings: { grain: 3 }, camera: null, time: 0 };
 
-async function begun(given: object = {}) {
-  mock.method(globalThis, "fetch", (address: string) =>
-    Promise.resolve({ ok: !address.includes("9,"), status: 404, arrayBuffer: () => Promise.resolve(address) }),
-  );
-  const element = new FakeElement();
-  const component = shown(browser, element, { ...properties, ...given });
+const place = () => Object.assign(new FakeElement(), { append: () => undefined });
+
+async function rested(): Promise<void> {
   for (let n = 0; n < 20; n += 1) await settled();
-  const viewer = viewers[viewers.length - 1];
-  const taken = () => viewer.log.splice(0);
-  return { ...component, viewer, taken };
 }
 
-test("the browser draws what the server gives, and follows it", async () => {
-  const { change, taken, viewer, leave } = await begun({ playing: true });
-  assert.deepEqual(taken(), [["setHeader", "header"], ["setPart", "/parts.whole"], ["play"]]);
-  change({ settings: { grain: 3 } });
-  change({ camera: { position: [1, 2, 3] } });
-  change({ camera: null });
-  change({ time: 2 });
-  viewer.playing = true;
-  change({ time: 3 }); // a view that plays has a time of its own
-  viewer.playing = false;
-  change({ playing: false });
-  change({ playing: true });
+function serve(webgl: boolean): void {
+  server.answer = { ...start, timeBeside: null, clock: 0, playing: false };
+  server.webgl = webgl;
+  asked.length = 0;
+  mock.method(globalThis, "fetch", (address: string) =>
+    Promise.resolve({ ok: true, arrayBuffer: () => Promise.resolve(address) }),
+  );
+}
+
+async function begun(webgl = true) {
+  serve(webgl);
+  const component = shown(browser, place(), { begin: "begin", read: "read" });
+  await rested();
+  const view = views[views.length - 1];
+  const methods = component.exposed as { take: (changes: object) => void; paint: (painter: string) => void };
+  return { ...component, view, ...methods, taken: () => view.log.splice(0).map(([name, ...rest]) => [name, ...rest]) };
+}
+
+test("the view shows what the server hands over, and follows it", async () => {
+  const { view, take, taken, leave } = await begun();
+  assert.deepEqual(asked[0], ["begin", "browser"]);
+  assert.ok(!view.options.streamed && view.viewers[0].own.source);
+  const seen = taken();
+  assert.deepEqual(seen[0], ["setHeader", one.header]);
+  assert.ok(seen.some(([name, part]) => name === "setPart" && part === "/one.whole"));
+  take({ settings: { grain: 4 }, camera: { position: [1, 2, 3] }, time: 2, playing: true });
   assert.deepEqual(taken(), [
-    ["setSettings", { grain: 3 }],
+    ["followSetting", "grain", 4],
     ["setCamera", { position: [1, 2, 3] }],
-    ["setTime", 2],
-    ["pause"],
+    ["followTime", 2],
     ["play"],
   ]);
-  change({ source: { ...source, header: "other", parts: "/other." } });
-  await settled();
-  assert.deepEqual(taken().slice(0, 2), [["setHeader", "other"], ["setPart", "/other.whole"]]);
+  view.viewers[0].playing = true;
+  take({ time: 3, clock: 1, playing: false }); // a view that plays has a time of its own
+  assert.deepEqual(taken(), [["pause"]]);
+  take({ scenes: [{ ...one, parts: "/coloured." }] });
+  await rested();
+  assert.ok(taken().some(([name, part]) => name === "setPart" && part === "/coloured.colours"));
+  const two = scene("two");
+  take({ scenes: [one, two], timeBeside: 5 });
+  await rested();
+  assert.equal(view.viewers.length, 2);
+  const names = taken().filter(([name]) => name === "setHeader" || name === "setTime");
+  assert.deepEqual(names, [["setHeader", one.header], ["setHeader", two.header], ["setTime", 5]]);
+  await view.viewers[1].own.reader({ place: [0, 1] }, true);
+  assert.deepEqual(asked.at(-1), ["read", 1, { place: [0, 1], path: true }]);
   leave();
-  assert.deepEqual(taken(), [["dispose"]]);
+  assert.deepEqual(taken().at(-1), ["dispose"]);
 });
 
-test("what a person does is told to the server, and not taken back from it", async (context) => {
+test("what changes while the client is loaded is taken over after that", async () => {
+  serve(true);
+  const { exposed, leave } = shown(browser, place(), { begin: "begin", read: "read" });
+  await Promise.resolve();
+  await Promise.resolve();
+  (exposed as { take: (changes: object) => void }).take({ scenes: [scene("late")], time: 9 });
+  await rested();
+  const { log } = views[views.length - 1];
+  const headers = log.filter(([name]) => name === "setHeader").map(([, header]) => (header as { name: string }).name);
+  assert.deepEqual(headers, ["one", "late"]);
+  assert.ok(log.some(([name, time]) => name === "followTime" && time === 9));
+  leave();
+});
+
+test("what a person does is told to the server", async (context) => {
   context.mock.timers.enable({ apis: ["setTimeout"] });
-  const { told, change, taken, viewer, draw } = await begun();
-  const { onCamera, onTime, onPlaying, onPoint, onSetting } = viewer.options;
+  const { view, told, take, taken } = await begun();
   taken();
-  onCamera({ position: [4, 5, 6] });
-  onTime(7);
-  change({ camera: { position: [4, 5, 6] } });
-  change({ time: 7 });
-  assert.deepEqual(taken(), []);
-  onPlaying(true);
-  onSetting("grain", 2);
-  onPoint({ index: [1, 2], position: [9, 9, 9] });
-  viewer.header = { geometry: { triangles: true } };
-  onPoint({ index: [1, 2], position: [9, 9, 9] });
-  const watcher = observers[observers.length - 1];
-  watcher.tell();
-  viewer.sharp = true;
-  watcher.tell();
-  const { ref, onPointermove, onPointerleave } = (draw() as Drawn).content[0] as {
-    ref: { value: unknown };
-    onPointermove: (event: object) => void;
-    onPointerleave: () => void;
-  };
-  onPointermove({ clientX: 75, clientY: 25, buttons: 0 });
-  ref.value = null; // it has gone meanwhile
-  onPointermove({ clientX: 0, clientY: 0, buttons: 0 });
-  const [sharp, ...others] = [told.filter(([name]) => name === "sharp"), ...told];
-  assert.ok(sharp.length === 1 && Number(sharp[0][1]) >= 0);
-  assert.deepEqual(
-    others.filter(([name]) => name !== "sharp"),
-    [
-      ["update:camera", { position: [4, 5, 6] }],
-      ["update:time", 7],
-      ["update:playing", true],
-      ["setting", ["grain", 2]],
-      ["point", [1, 2]],
-      ["point", [9, 9, 9]],
-      ["hover", [0.5, 0]],
-    ],
-  );
-  onPointerleave();
+  const tell = (name: string, detail: unknown) => view.dispatchEvent(Object.assign(new Event(name), { detail }));
+  tell("camera", { position: [4, 5, 6] });
+  tell("camera", { position: [7, 8, 9] }); // soon after, and told later
+  tell("time", 7);
+  tell("playing", true);
+  tell("setting", ["grain", 2]);
+  view.options.onColours({ cmap: "magma" });
   context.mock.timers.tick(100);
-  assert.deepEqual(told.at(-1), ["hover", null]);
+  const { page: own } = told[0][1] as { page: string };
+  assert.ok(own && told.every(([, value]) => (value as { page: string }).page === own));
+  assert.deepEqual(told.map(([name, value]) => [name, (value as { value: unknown }).value]), [
+    ["camera", { position: [4, 5, 6] }],
+    ["time", 7],
+    ["playing", true],
+    ["setting", ["grain", 2]],
+    ["colours", { cmap: "magma" }],
+    ["camera", { position: [7, 8, 9] }],
+  ]);
+  take({ time: 7, by: own });
+  assert.deepEqual(taken(), []);
+  take({ time: 7, by: "another" });
+  assert.deepEqual(taken(), [["followTime", 7]]);
 });
 
-test("parts are files of the server", async () => {
-  const { viewer, change } = await begun();
-  const { load, hasSteps } = viewer.options.source;
-  const { signal } = new AbortController();
-  assert.ok(hasSteps);
-  assert.deepEqual(await load(null, [1], signal), ["/parts.whole.1"]);
-  assert.deepEqual(await load([0, 1, 2], [3, 4], signal), ["/parts.0,1,2.3.4"]);
-  await assert.rejects(load([9, 1, 2], [3], signal), /9,1,2.3: 404/);
-  change({ source: { ...source, parts: "/other." } });
-  assert.deepEqual(await load(null, [1], signal), ["/other.whole.1"]);
+test("without WebGL2 the server draws, and a person may choose", async () => {
+  const { view, paint, taken } = await begun(false);
+  assert.deepEqual(asked[0], ["begin", "server"]);
+  assert.ok(view.options.streamed && !view.viewers[0].own.source);
+  assert.ok(taken().some(([name, part]) => name === "setPart" && part === "/one.controls"));
+  assert.deepEqual(server.called, ["trame.rca.size", ["view", "view", { w: 300, h: 200, p: 1 }]]);
+  const picture = { width: 300, height: 200, close: () => undefined };
+  Object.assign(globalThis, { createImageBitmap: () => Promise.resolve(picture) });
+  const frame = { name: "view", meta: { type: "image/jpeg", sharp: true }, content: new Uint8Array(2) };
+  server.push(frame);
+  server.push({ ...frame, name: "another" });
+  await rested();
+  assert.deepEqual(taken(), [["paint", picture, 2, true]]);
+  paint("browser");
+  await rested();
+  assert.deepEqual(taken(), [["dispose"], ["remove"]]);
+  server.push(frame);
+  await rested();
+  assert.ok(!views[views.length - 1].log.some(([name]) => name === "paint"));
+  assert.deepEqual(asked.at(-1), ["begin", "browser"]);
 });
 
 test("a view that goes while it is loaded is not made", async () => {
-  const before = viewers.length;
-  const component = shown(browser, new FakeElement(), { ...properties });
-  component.change({ time: 5 }); // before there is a view
-  component.leave();
-  for (let n = 0; n < 20; n += 1) await settled();
-  assert.equal(viewers.length, before);
-  shown(browser, null, properties).leave();
+  const before = views.length;
+  shown(browser, place(), { begin: "begin", read: "read" }).leave();
+  await rested();
+  assert.equal(views.length, before);
+  shown(browser, null, {}).leave();
 });

@@ -191,3 +191,17 @@ test("nothing of a viewer outlives it", (context) => {
   assert.deepEqual(lifetime.stats(), { listeners: 0, observers: 0, timers: 0 });
   assert.deepEqual([lifetime.isOver, watching.size], [true, 0]);
 });
+
+test("a setting that makes no difference is dimmed, and says where it would", () => {
+  const needs: Row["needs"] = [["noise", "!=", "procedural"], ["lod", "==", false]];
+  const { rows, settings, sheet } = sheetOf([row("shown", { text: "Text.", needs, condition: "Only there." })]);
+  const look = () => {
+    sheet.update();
+    const [line] = rows as (MadeElement & { title: string })[];
+    return [line.title, line.classes.at(-1)];
+  };
+  Object.assign(settings, { noise: "procedural", lod: true });
+  assert.deepEqual(look(), ["Only there. Text.", ["idle", true]]);
+  settings.lod = false;
+  assert.deepEqual(look(), ["Text.", ["idle", false]]);
+});

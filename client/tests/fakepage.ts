@@ -57,7 +57,14 @@ export class FakeElement extends EventTarget {
   }
 }
 
-export class FakeButton extends FakeElement {}
+/** The server: what it was asked by triggers, its answer, what was called of it, and its stream. */
+export const asked: unknown[][] = [];
+export const server = {
+  answer: {} as object,
+  webgl: true,
+  called: [] as unknown[],
+  push: (frame: object): void => void frame,
+};
 
 /** Observers, of sizes and of changes, in the order of their making; `tell` is what the browser would do. */
 export const observers: FakeObserver[] = [];
@@ -86,23 +93,43 @@ export const page = Object.assign(new EventTarget(), {
   Vue: {
     h: (kind: string, ...content: unknown[]) => ({ kind, content }),
     ref: (value: unknown) => ({ value }),
-    watch: (source: () => unknown, call: () => void) => watched.push([source, call]),
     onMounted: (call: () => void) => mounting.push(call),
     onBeforeUnmount: (call: () => void) => leaving.push(call),
   },
 });
 export const root = new FakeElement();
+const session = {
+  call: (...values: unknown[]) => {
+    server.called = values;
+    return Promise.resolve();
+  },
+  subscribe: (_: string, call: (frames: object[]) => void) => {
+    server.push = (frame) => call([frame]);
+    return call;
+  },
+  unsubscribe: () => undefined,
+};
+Object.assign(page, {
+  trame: {
+    trigger: (name: string, args: unknown[]) => {
+      asked.push([name, ...args]);
+      return Promise.resolve(server.answer);
+    },
+    client: { getConnection: () => ({ getSession: () => session }) },
+  },
+});
 const mounting: (() => void)[] = [];
 const leaving: (() => void)[] = [];
-const watched: [source: () => unknown, call: () => void][] = [];
 
 Object.assign(globalThis, {
   window: page,
-  document: Object.assign(new EventTarget(), { documentElement: root, baseURI: "http://page.test/" }),
+  document: Object.assign(new EventTarget(), {
+    documentElement: root,
+    baseURI: "http://page.test/",
+    createElement: () => ({ getContext: () => (server.webgl ? {} : null) }),
+  }),
   Element: FakeElement,
-  HTMLButtonElement: FakeButton,
   ResizeObserver: FakeObserver,
-  MutationObserver: FakeObserver,
   innerWidth: 400,
   innerHeight: 300,
 });
@@ -115,8 +142,8 @@ export interface Drawn {
 export interface Shown {
   told: unknown[][];
   draw: () => Drawn | null;
-  /** Change properties, as the page does. */
-  change(values: object): void;
+  /** What the component offers to be called. */
+  exposed: object;
   leave(): void;
 }
 
@@ -127,20 +154,16 @@ export function shown(
   props: object = {},
 ): Shown {
   const told: unknown[][] = [];
-  for (const list of [mounting, leaving, watched]) list.length = 0;
+  const exposed = {};
+  for (const list of [mounting, leaving]) list.length = 0;
   const emit = (...values: unknown[]) => told.push(values);
-  const draw = component.setup(props as never, { emit } as never) as Shown["draw"];
+  const expose = (methods: object) => Object.assign(exposed, methods);
+  const draw = component.setup(props as never, { emit, expose } as never) as Shown["draw"];
   const [first = {}] = (draw()?.content ?? []) as { ref?: { value: unknown } }[];
   if (first.ref) first.ref.value = element;
   mounting.forEach((call) => call());
-  const mine = [...watched];
   const ends = [...leaving];
-  const change = (values: object) => {
-    const before = mine.map(([source]) => source());
-    Object.assign(props, values);
-    mine.forEach(([source, call], n) => source() !== before[n] && call());
-  };
-  return { told, draw, change, leave: () => ends.forEach((call) => call()) };
+  return { told, draw, exposed, leave: () => ends.forEach((call) => call()) };
 }
 
 /** An event with what tells more about it. */

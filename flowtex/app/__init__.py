@@ -2,15 +2,15 @@
 
 ::
 
-    browser    drags, wheel, controls                       pictures (JPEG)
-                  |                                             ^
-    trame      state of the controls               remote controlled area
-                  |                                             |
-    FlowApp    Controllers, signals of the Context -> FlowArea -> FrameStream    when to draw
-                                                      |         |
-                                                      |      ViewPainter         how well
-                                                      v         v
-                                                    Viewport: panes, colours, camera, window (VTK)
+    browser    <flowtex-view>: drags, wheel, controls       pictures (JPEG), without WebGL2
+                  |                ^                            ^
+    trame      triggers         scenes, changes        remote controlled area
+                  v                |                            |
+    FlowApp    Controllers -> FlowArea: Element, PointReader -> FrameStream      when to draw
+                                          |                     |
+                                          |                  ViewPainter         how well
+                                          v                     v
+                                       Viewport: panes, colours, camera, window (VTK)
 
 :class:`FlowApp` is a whole page, :class:`FlowArea` the view alone, for other trame applications.
 :func:`serve` runs pages on one port of this machine, each with a state of its own, behind a

@@ -87,11 +87,11 @@ class FlowApp(NotebookPage):
             self.viewport.camera = ViewOptions(camera=camera).first_camera(field.surface)
         self.context = Context(self.state, self.area, library.branch())
         self.server.state.trame__favicon = None
-        self.state.set(panel=None, group=None, help=False, problem="")
+        self.state.set(panel=False, group="View", help=False, problem="")
         self.controllers = Controllers(self.context, name, choice, self.restore)
         self.context.field_changed.connect(self._name_page)
         self._name_page()
-        self._build_page()
+        self.layout = build_page(self.controllers)
 
     @property
     def viewport(self) -> Viewport:
@@ -127,7 +127,7 @@ class FlowApp(NotebookPage):
                 controller.restore(state)
         except FieldError as error:
             self.context.complain(error)
-        self.stream.changed()
+        self.area.changed()
 
     def close(self) -> None:
         """End the tasks and free the graphics card."""
@@ -138,18 +138,6 @@ class FlowApp(NotebookPage):
 
     def _name_page(self) -> None:
         self.server.state.trame__title = f"{self.field.name or 'flow'} - flowtex"
-
-    def _build_page(self) -> None:
-        static = str(Path(__file__).parent / "ui" / "static")
-        self.server.enable_module(
-            {
-                "serve": {"__flowtex": static},
-                "styles": ["__flowtex/flowtex.css"],
-                "scripts": ["__flowtex/flowtex.js"],
-                "vue_use": ["flowtex_page"],
-            }
-        )
-        self.layout = build_page(self.controllers)
 
 
 def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Choice]:

@@ -42,7 +42,7 @@ def render(
         Width and height in pixels; each of two views has half the width.
     time
         Time to show of a field that varies in time, or a date such as ``"2000-01-02 12:00"`` where
-        its times are dates; its last step by default.
+        its times are dates; its first step by default.
     clock
         Moment of the streaming of a steady flow, in seconds (see the setting ``motion``).
     supersampling

@@ -111,76 +111,44 @@ gl.DEPTH_TEST),gl.clearBufferuiv(gl.COLOR,0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_
 height);return gl.readPixels(0,0,width,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null),
 bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=new Graphics}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
 attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
-12z",pause:"M8.5 6v12M15.5 6v12",home:"M4 11.5 12 5l8 6.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8\
--4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M\
-4 7h8M17 7h3M4 17h3M12 17h8M14.5 4.8v4.4M9.5 14.8v4.4",save:"M12 4v11M7.5 10.8 12 15.3l4.5-4.5M5 19.5h14",full:"M4 9V4h5\
-M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"M6 14.5l6-6 6 6"};function icon(name){let space="http://www.\
-w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.setAttribute("viewBox","0 0 24 24"),svg.setAttribute("ari\
-a-hidden","true");let path=document.createElementNS(space,"path");return path.setAttribute("d",ICONS[name]),name==="play"&&
-path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x,digits=4){if(!Number.isFinite(x))return"–";
-let size=Math.abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace("e+","e"):String(Number(x.toPrecision(
-digits)))}var UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=UNIT_LENGTH?`${text} ${unit2}`:text}
-function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(Math.round(size*canvas.width),1)),height=Math.
-max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.reduce((sum,width)=>sum+width,0),height),pen=all.
-getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())pen?.drawImage(canvas,left,0,widths[n],height),
-left+=widths[n];return all.convertToBlob(format)}var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
-controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
-1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
-()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
-timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
-let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
-this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
-for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};function throttled(later,wait,call){let next=null,
-running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;next=null,call(value),later(run,wait)};return value=>{
-next={value},running||run()}}var EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,
-int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-
-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,
-log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(
-low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
-name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(
-number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,
-row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
-let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
-{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.
-keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let[infos,
-first]=infosOfFile(new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);
-return start+=info.bytes,info.stride===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){
-let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(
-4,first))),first]}function partOfPlanes(info,planes){let count2=info.shape.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:
-1,{stride=1}=info,steps=count2/stride;if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed\
- as it tells`);let bytes=new Uint8Array(planes.length);for(let n=0,from=0;n<width*stride;n+=1){let[plane,channel]=[Math.
-floor(n/stride),n%stride];for(let k=0;k<steps;k+=1)bytes[(k*stride+channel)*width+plane]=planes[from++]}return decoded(info,
-summed(info,bytes,width))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function summed(info,bytes,width){let{
-differences=0,stride=1,scale:scale3=null}=info,numbers=new UNSIGNED[width](bytes.buffer);for(let order=0;order<differences;order+=
-1)for(let n=stride;n<numbers.length;n+=1)numbers[n]+=numbers[n-stride];return scale3===null?bytes.buffer:Float32Array.from(
-new Int32Array(bytes.buffer),n=>n*2**scale3).buffer}var Messages=class{hasSteps=!0;send;requests=new Map;constructor(send){this.send=send}load=(key,steps,signal)=>{let request=String(
-Math.random());return this.send({kind:"load",request,key,steps}),signal.addEventListener("abort",()=>{this.requests.delete(
-request),this.send({kind:"drop",request})}),new Promise((resolve,reject)=>{this.requests.set(request,error=>error?reject(
-new Error(error)):resolve([]))})};end({request,error}){this.requests.get(request)?.(error),this.requests.delete(request)}};var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+12z",pause:"M8.5 6v12M15.5 6v12",previous:"M17 6v12l-9-6zM6.5 6v12",next:"M7 6v12l9-6zM17.5 6v12",home:"M4 11.5 12 5l8 6\
+.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8-4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 \
+17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M4 7h8M17 7h3M4 17h3M12 17h8M14.5 4.8v4.4M9.5 14.8v4.4",
+save:"M12 4v11M7.5 10.8 12 15.3l4.5-4.5M5 19.5h14",full:"M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"\
+M6 14.5l6-6 6 6"};function icon(name){let space="http://www.w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.
+setAttribute("viewBox","0 0 24 24"),svg.setAttribute("aria-hidden","true");let path=document.createElementNS(space,"path");
+return path.setAttribute("d",ICONS[name]),name==="play"&&path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x,digits=4){
+if(!Number.isFinite(x))return"–";let size=Math.abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace(
+"e+","e"):String(Number(x.toPrecision(digits)))}var UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=
+UNIT_LENGTH?`${text} ${unit2}`:text}function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(
+Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.
+reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())
+pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(format)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
 colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
 let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
 Math.min(share,1)}}function mapOf(header,maps,name){let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
 4*count2).fill(255);for(let n=0;n<count2;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
 let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
 choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
-unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),choice.clim&&([scalars.low,scalars.high]=choice.
-clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.
-choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.
-low,scalars.high]=widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),{coastlines=header.
-earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},colours={
-scalars,mesh,earth},maps=parts.get("maps");if(!choice.cmap||!maps)return{colours,part:null};let part={name:"cmap",data:mapOf(
-header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.
-knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/
-SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+
-v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,light],[range,slope]]=[shading.base,
-shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],cones=times(colour.map(c=>toLinear(
-c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+strength*(dark+(light-
-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(
-base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],
-shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),
-mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*
-Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(
-colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
+unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
+high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{
+low,high}=scalars.choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,
+high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),{coastlines=header.
+earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{
+opacity=header.opacity}=choice,colours={scalars,mesh,earth,opacity},maps=parts.get("maps");if(!choice.cmap||!maps)return{
+colours,part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.
+cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){
+let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[
+0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,
+light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],
+cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+
+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*
+contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),
+roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*
+fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from(
+{length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.
+paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")}\
+)`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
 this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
 state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.
@@ -226,22 +194,23 @@ high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(
 planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/(1-2*limits.margin),view_angle:limits.
 view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,extent,planar}=surface,camera=copyOf(state);
 if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&state.parallel){let[high,usual,all]=[
-1e9,limits.aspect,aspect].map(shape=>fitted(surface,limits,positions2,shape).parallel_scale),isUsual=Math.abs(state.parallel_scale/
+1e9,limits.aspect,aspect].map(shape2=>fitted(surface,limits,positions2,shape2).parallel_scale),isUsual=Math.abs(state.parallel_scale/
 usual-1)<.001;state.parallel_scale>.98*high&&(camera.parallel_scale=isUsual?all:Math.max(state.parallel_scale,all))}else if(!state.
 parallel&&state.view_angle>.9*limits.view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(
-state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function pointInPlane({center,frame},camera,x,y){
-let[start,along]=camera.ray(x,y),normal=fromFrame(frame,[0,0,1]);return add(start,along,dot2(subtract2(center,start),normal)/
-dot2(along,normal))}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.extent,ratio=a.extent/
-b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){let{state,aspect}=camera,
-{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(toFrame(
-frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,m=new Array(
-16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),up.map(c=>c/
-half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<3;n+=
-1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(subtract2(
-middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-near),b=-2*
-far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*
-a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,
-m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
+state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function firstLook(surface,limits,first,nodes,aspect){
+return first?widened(surface,limits,first,nodes,aspect):fitted(surface,limits,nodes,aspect)}function pointInPlane({center,
+frame},camera,x,y){let[start,along]=camera.ray(x,y),normal=fromFrame(frame,[0,0,1]);return add(start,along,dot2(subtract2(
+center,start),normal)/dot2(along,normal))}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.
+extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){
+let{state,aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
+toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
+m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
+up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<
+3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(
+subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-
+near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),
+m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*
+m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
 let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&65535,low[k]+place[k]/65535*size[k]));lines[lines.length-1].push(
 point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along=0,kept=line.filter((point,n)=>{
 let before=along;return n&&(along+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along/spacing)>Math.floor(
@@ -254,10 +223,31 @@ low[n%3],points[n]),high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map(
 hypot(...low.map((least,k)=>(high[k]-least)/2));groups.push({first,count:count2,middle,radius})}return groups}function visibleRuns(groups,planes){
 let runs=[];for(let{first,count:count2,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.
 hypot(a,b,c);if(planes.some(isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count2:runs.
-push([first,count2])}return runs}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+push([first,count2])}return runs}var EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,
+int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-
+low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,
+log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(
+low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
+name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(
+number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,
+row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
+let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
+{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expect\
+ed ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){
+let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,
+info.bytes);return start+=info.bytes,info.stride===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){
+let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(
+4,first))),first]}function partOfPlanes(info,planes){let count2=info.shape.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:
+1,{stride=1}=info,steps=count2/stride;if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed\
+ as it tells`);let bytes=new Uint8Array(planes.length);for(let n=0,from=0;n<width*stride;n+=1){let[plane,channel]=[Math.
+floor(n/stride),n%stride];for(let k=0;k<steps;k+=1)bytes[(k*stride+channel)*width+plane]=planes[from++]}return decoded(info,
+summed(info,bytes,width))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function summed(info,bytes,width){let{
+differences=0,stride=1,scale:scale3=null}=info,numbers=new UNSIGNED[width](bytes.buffer);for(let order=0;order<differences;order+=
+1)for(let n=stride;n<numbers.length;n+=1)numbers[n]+=numbers[n-stride];return scale3===null?bytes.buffer:Float32Array.from(
+new Int32Array(bytes.buffer),n=>n*2**scale3).buffer}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
 let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
-return result2}function coordinates({shape,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},
-(_,n)=>(n+before+.5)/size);return grid(middles(shape[1],columns),middles(shape[0],rows))}function noiseCoordinates({alongI,
+return result2}function coordinates({shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},
+(_,n)=>(n+before+.5)/size);return grid(middles(shape2[1],columns),middles(shape2[0],rows))}function noiseCoordinates({alongI,
 alongJ}){return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(
 scalars);return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(
 share)?share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-
@@ -313,23 +303,170 @@ cells.data:cellCorners(cells);gl.bindVertexArray(drawn.array);let points=positio
 [this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,corners)],drawn.count=corners.length,gl.enableVertexAttribArray(
 0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};function cellCorners({data,shape:[rows,columns]}){let corners=[];
 for(let n=0;n<rows*columns;n+=1){if(!data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,
-low+1,high+1,low,high+1,high)}return Uint32Array.from(corners)}var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
+low+1,high+1,low,high+1,high)}return Uint32Array.from(corners)}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
+abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
+part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
+let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
+.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
+v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
+texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}function makeLayers(gl,texture,size){let{width,height,layers,channels,levels}=size,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),
+mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(width,height)>most||layers>mostLayers)throw new Error(
+`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most} x ${most}\
+ in ${mostLayers}; show fewer nodes`);let target=gl.TEXTURE_2D_ARRAY;gl.bindTexture(target,texture),gl.texStorage3D(target,
+levels+1,channels===1?gl.R16F:gl.RGBA16F,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
+gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
+texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE)}function sendLayer(gl,{width,height,channels,levels},layer,texels){
+let format=channels===1?gl.RED:gl.RGBA;gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);for(let[level,w,h]=[0,width,height];;level+=
+1){if(gl.texSubImage3D(gl.TEXTURE_2D_ARRAY,level,0,0,layer,w,h,1,format,gl.HALF_FLOAT,texels),level===levels)return;[texels,
+w,h]=halved(texels,w,h,channels)}}var Poles=class{size;poles;rays;nodes;isAlongJ;cells;lines;constructor(poles,nodes,rays){let[rows,columns]=nodes;this.poles=
+poles,this.nodes=nodes,this.rays=rays,this.isAlongJ=poles[0]?.component!==0,[this.lines,this.cells]=this.isAlongJ?[rows,
+columns-1]:[columns,rows-1];let more=poles.reduce((sum,pole)=>sum+this.depth(pole)+1,0);this.size={width:columns+(this.isAlongJ?
+0:more),height:rows+(this.isAlongJ?more:0)}}laidOut(own){if(!this.poles.length)return own;let[rows,columns]=this.nodes,{
+width,height}=this.size,result2=new Float32Array(4*width*height);for(let j=0;j<rows;j+=1)result2.set(own.subarray(4*columns*
+j,4*columns*(j+1)),4*width*j);return this.poles.forEach((pole,n)=>this.fill(result2,pole,n)),result2}fastest(texels){let most=0;
+for(let line=0;line<(this.isAlongJ?this.size.height:this.size.width);line+=1){let isNear2=pole=>(line-pole.line)*pole.inward<
+pole.near;if(!(line<this.lines&&this.poles.some(isNear2)))for(let k=0;k<=this.cells;k+=1){let at=this.at(line,k);most=Math.
+max(most,Math.abs(texels[at]),Math.abs(texels[at+1]))}}return most}at(line,around2){return 4*(this.isAlongJ?line*this.size.
+width+around2:around2*this.size.width+line)}depth({near}){return Math.min(near+3,this.lines-1)}shift(n){let before=this.
+poles.slice(0,n).reduce((sum,pole)=>sum+this.depth(pole)+1,0),{inward,line}=this.poles[n];return this.lines+before-(inward>
+0?line:line-this.depth(this.poles[n]))}ray(n,around2){let at=2*(n*(this.cells+1)+around2);return[this.rays[at],this.rays[at+
+1]]}fill(texels,pole,n){let{cells}=this,{line,inward,component}=pole,[shift,still]=[this.shift(n),this.still(texels,pole,
+n)];for(let depth=0;depth<=this.depth(pole);depth+=1)for(let k=0;k<=cells;k+=1){let from=this.at(line+inward*depth,k),to=this.
+at(line+inward*depth+shift,k),[around2,across]=[texels[from+1-component],texels[from+component]],[ray,next,last]=[k,(k+1)%
+cells,(k+cells-1)%cells].map(m=>this.ray(n,m));for(let c of[0,1]){let turn=(next[c]-last[c])/2;texels[to+c]=depth?inward*
+across*ray[c]+around2*depth*turn:still[c]}texels.copyWithin(to+2,from+2,from+4)}}still(texels,{line,inward,component},n){
+let[a,b,c,x,y]=[0,0,0,0,0];for(let k=0;k<this.cells;k+=1){let[p,q]=this.ray(n,k),square=p*p+q*q,part=texels[this.at(line,
+k)+component]*inward;[x,y]=[x+part*p,y+part*q],[a,b,c]=[a+p*p/square,b+p*q/square,c+q*q/square]}let determinant2=a*c-b*b;
+return[(c*x-b*y)/determinant2,(a*y-b*x)/determinant2]}get raysSize(){return[this.cells+1,Math.max(this.poles.length,1)]}get angles(){
+let{cells}=this,[width,height]=this.raysSize,result2=new Float32Array(4*width*height);return this.poles.forEach((_,n)=>{
+let angles=[];for(let k=0;k<=cells;k+=1){let[p,q]=this.ray(n,k),angle=Math.atan2(q,p);for(;angle<angles[k-1];)angle+=2*Math.
+PI;angles.push(angle)}angles.forEach((angle,k)=>{let turn=angles[0]+2*Math.PI*k/cells+1e-6,line=angles.findLastIndex(other=>other<=
+turn);result2.set([angle,Math.hypot(...this.ray(n,k)),line],4*(n*width+k))})}),result2}get uniforms(){let numbers=this.poles.
+flatMap(({line,inward,near},n)=>[line,inward,near,this.shift(n)]),planes=this.poles.flatMap(({plane})=>plane);for(;numbers.
+length<8;)numbers.push(0);for(;planes.length<12;)planes.push(0);return{u_poles:numbers,u_planes:planes,u_polar:Number(this.
+isAlongJ)}}};var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=8,
+DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,ENDLESS=1e30,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape2){
+let[rows,columns]=shape2,width=padded.shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,
+n=0;j<rows;j+=1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.
+middle[k%3]}return{data,shape:[rows,columns,3]}}function normalOf(padded,trace,shape2){let[rows,columns]=shape2,width=3*
+padded.shape[1],[top,left]=trace.drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=
+1,n+=3){let at=width*(j+top+1)+3*(i+left+1),along=step=>[0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(
+along(3),along(width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}for(let{
+component,line,inward}of trace.poles??[]){let[at,last]=component?[line-top,columns]:[line-left,rows];if(at<0||at>=(component?
+rows:columns))continue;let offset=(across,around2)=>3*(component?across*columns+around2:around2*columns+across),sum=[0,0,
+0];for(let m=0;m<last;m+=1)for(let k=0;k<3;k+=1)sum[k]+=data[offset(at+inward,m)+k];let size=length2(sum)||1,mean=sum.map(
+x=>Math.round(x/size*NORMAL_MAX));for(let m=0;m<last;m+=1)data.set(mean,offset(at,m))}return{data,shape:[rows,columns,3]}}
+function flowsOf({slices},step){let{trace,times:times2,lags}=slices;if(!trace?.pathlines||!trace.timed)return[step];let reach=lags[lags.
+length-1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-times2[step])<reach),isNeeded=n=>near[n]||near[n-1]||near[n+
+1];return[...times2.keys()].filter(isNeeded)}function stretches({slices},step,side,from,to){let{trace,times:times2}=slices;
+if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,1]}];let result2=[],{unit:unit2}=trace.timed,
+lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in times2),end=isLast?to:
+lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between2=isLast?[0,1]:[lagOf(n),end],isWhole=end>=to-LAG_ROUNDING*
+to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between2}),from=isWhole?to:end}return result2}
+function programsOf({programs,floats},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,get=(fragment,...variant)=>{
+let names=variant.filter(name=>typeof name=="string"),program=programs.get(fullVertex,fragment,...names);if(program.error)
+throw new Error(`the tracer cannot be built: ${program.error}`);return program},target=floats&&"FLOWTEX_FLOATS",polar=trace.
+poles!==void 0&&"FLOWTEX_POLES";return{follow:get(path,polar,trace.pathlines&&"FLOWTEX_PATHLINES"),compose:trace.pathlines?
+null:get(path,polar,"FLOWTEX_COMPOSED"),slopes:get(layers,"FLOWTEX_SLOPES",target),tangents:get(layers,polar,target)}}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;poles;constructor(graphics,header,trace,find,step){
+this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.poles=new Poles(trace.poles??[],trace.nodes,
+find("rays")?.data??[]),this.passes=this.slices(step)}advance(until){if(!Object.values(programsOf(this.graphics,this.header,
+this.trace)).every(program=>program?.ready??!0))return null;let gl=this.graphics.context;try{do{let{done,value}=this.passes.
+next();if(gl.isContextLost())return null;if(done)return this.result=null,value}while(performance.now()<until);return null}finally{
+this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",texture);for(let frame of this.frames)
+this.graphics.free("Framebuffer",frame);this.result&&!this.graphics.context.isContextLost()&&this.graphics.context.deleteTexture(
+this.result),this.result=null,this.textures.clear(),this.frames.length=0}data(name){let part=this.find(name);if(!part)throw new Error(
+`the part "${name}" of the scene is missing`);return part.data}texture(width,height,inner,data){let gl=this.graphics.context,
+texture=this.graphics.counted(gl.createTexture());return this.textures.add(texture),gl.activeTexture(gl.TEXTURE0),gl.bindTexture(
+gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
+gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.texSubImage2D(gl.TEXTURE_2D,0,0,0,
+width,height,gl.RGBA,gl.FLOAT,data),texture}frame(){let gl=this.graphics.context,frame=this.graphics.counted(gl.createFramebuffer());
+return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,frame),frame}target(width,height){let gl=this.graphics.
+context,texture=this.texture(width,height,gl.RGBA32UI,null),frame=this.frame();return gl.framebufferTexture2D(gl.FRAMEBUFFER,
+gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.graphics.context;for(let n=0;n<UNITS;n+=
+1)gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,null),gl.bindTexture(gl.TEXTURE_2D_ARRAY,null);gl.bindFramebuffer(
+gl.FRAMEBUFFER,null)}flow(step){let{trace}=this,data=this.data(`flow/${step}`),unit2=this.data("unit"),channels=data.length/
+unit2.length,flow=new Float32Array(4*unit2.length);for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=HALVES[data[at+
+2]],size=HALVES[unit2[n]]*trace.unit;flow[4*n]=HALVES[data[at]]*speed/size,flow[4*n+1]=HALVES[data[at+1]]*speed/size,flow[4*
+n+2]=speed,flow[4*n+3]=trace.timed?trace.timed.unit:size}let result2=this.poles.laidOut(flow);return trace.timed&&(this.
+fastest=Math.max(this.fastest,this.poles.fastest(result2)*trace.timed.speed*trace.timed.unit)),result2}wholeSpeed(step){
+let data=this.data(`flow/${step}`),nodes=this.data("unit").length,channels=data.length/nodes,whole=new Float32Array(4*nodes);
+for(let n=0;n<nodes;n+=1)whole[4*n]=HALVES[data[(n+1)*channels-1]];return whole}cells(){let[rows,columns]=this.trace.nodes,
+[open,nearest]=["open","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<
+rows*columns;n+=1){cells[4*n]=open?open[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest?nearest[2*n+k]:0}return cells}padded(){
+let data=this.data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=
+1)result2[4*n+k]=data[3*n+k];return result2}flowTexture(step){let{width,height}=this.poles.size,gl=this.graphics.context,
+texture=this.flows.get(step)??this.texture(width,height,gl.RGBA32F,this.flow(step));this.flows.delete(step),this.flows.set(
+step,texture);for(let[other,old]of this.flows){if(this.flows.size<=FLOWS_HELD)break;this.flows.delete(other),this.textures.
+delete(old),this.graphics.free("Texture",old)}return texture}partsOf({from,to}){let count2=clamp(Math.ceil((to-from)*this.
+fastest/PASS_CELLS),1,MOST_PARTS),at=n=>n===count2?to:from+(to-from)*n/count2;return Array.from({length:count2},(_,n)=>[
+at(n),at(n+1)])}layerTarget(result2,size){let gl=this.graphics.context,{width,height}=size;if(this.graphics.floats){let frame2=this.
+frame();return{begin:n=>(gl.bindFramebuffer(gl.FRAMEBUFFER,frame2),gl.framebufferTextureLayer(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,
+result2,0,n),[width,height]),end:()=>{},finish:()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),
+size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}}}let pairs=Math.ceil(width/2),[,frame]=this.target(pairs,height),read=new Uint32Array(
+pairs*height*4),halves=new Uint16Array(read.buffer),texels=new Uint16Array(4*width*height);return{begin:()=>(gl.bindFramebuffer(
+gl.FRAMEBUFFER,frame),[pairs,height]),end:n=>{gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,read);for(let row=0;row<
+height;row+=1){let first=8*pairs*row;texels.set(halves.subarray(first,first+4*width),4*width*row)}gl.activeTexture(gl.TEXTURE0),
+gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),sendLayer(gl,size,n,texels)},finish:()=>{}}}*slices(step){let{graphics,trace,
+header}=this,gl=graphics.context,{geometry,slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.size,
+geometry.columns.size],size={width,height,layers:slices.count,channels:4,levels:geometry.levels},result2=gl.createTexture();
+this.result=result2,gl.activeTexture(gl.TEXTURE0),makeLayers(gl,result2,size);let{poles}=this,own=this.texture(poles.size.
+width,poles.size.height,gl.RGBA32F,this.flow(step)),rays=this.texture(...poles.raysSize,gl.RGBA32F,poles.angles),constant=[
+this.texture(columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.padded()),this.texture(
+columns,rows,gl.RGBA32F,this.wholeSpeed(step))],pool=[0,1,2,3,4].map(()=>this.target(columns,rows)),{lags,sides,count:count2}=slices,
+uniforms2={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_flowNext:6,u_rays:7,...poles.uniforms,
+u_longest:trace.longest??ENDLESS,u_nodes:[columns,rows],u_closed:[Number(trace.closed[1]),Number(trace.closed[0])],u_first:[
+trace.first[1],trace.first[0]],u_texels:[width,height],u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.offset.slice(3,
+6),u_timed:trace.timed?.speed??0,u_rest:trace.rest,u_pace:trace.pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(
+geometry.planar),u_mostReach:2*lags[lags.length-1]},draw=([w,h],textures,pass,values)=>{gl.viewport(0,0,w,h);for(let ability of[
+gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);textures.forEach((texture,n)=>{gl.activeTexture(
+gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(null),graphics.programs.use(pass,{...uniforms2,
+...values}),gl.drawArrays(gl.TRIANGLES,0,3)},layers=this.layerTarget(result2,size),layer=(n,pass,textures,values)=>{draw(
+layers.begin(n),[own,...constant,...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=programsOf(graphics,
+header,trace);layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});for(let side=0;side<
+sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];for(let[m,lag]of lags.
+entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:null,at=now;for(let stretch of stretches(
+header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(n)),parts=composer?[[from,lag]]:this.partsOf(
+stretch);for(let[begin,end]of parts){let next=pool.find(each=>![first,before,now,at].includes(each))??pool[0];gl.bindFramebuffer(
+gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],before[0],far,rays],composer??follow,{u_lagEarlier:earlier,
+u_from:begin,u_to:end,u_side:sign,u_between:stretch.between}),gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(
+4)),at=next,yield}}[before,now]=[now,at],m||(first=now);let fourth=m===1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],
+now[0]],{u_fourth:fourth,u_lag:sign*lag})}layer(start,slopes,[first[0],now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.
+finish(),result2}};var STEPS_HELD={slices:[12,4],flow:[100,24]},HeldParts=class{all=new Map;graphics;constructor(graphics){this.graphics=graphics}set(part){
+let{name,digest}=part;if(digest&&this.all.get(name)?.digest===digest)return!1;let held=this.graphics.hold(part);return this.
+remove(name),this.all.set(name,held),!0}remove(name){this.graphics.release(this.all.get(name)),this.all.delete(name)}clear(isGone=()=>!0){
+for(let name of[...this.all.keys()])isGone(name)&&this.remove(name)}trim(header,source,shown){let{hasSteps=!1,memory=0}=source??
+{};if(!header||!hasSteps)return;let kind=header.slices.trace?"flow":"slices",named=some=>[...this.all.keys()].filter(name=>name.
+startsWith(some)),needed=shown.flatMap(step=>flowsOf(header,step));for(let name of named(`${kind}/`).slice(0,-STEPS_HELD[kind][+(memory>
+0)])){let step=stepOf(name);if(needed.includes(step))continue;for(let held of[kind,"extra"])this.remove(`${held}/${step}`);
+let values=memory?named("scalars/"):[];for(let other of values)isOfStep(other,step,header)&&this.remove(other)}}};var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
+1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
+()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
+timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
+let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
+this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
+for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};function throttled(later,wait,call){let next=null,
+running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;next=null,call(value),later(run,wait)};return value=>{
+next={value},running||run()}}var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
 t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count2){let at=share*(count2-1),first=clamp(Math.
-floor(at)-1,0,count2-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape},position){let[rows,columns]=shape,
-[i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[0,0,0];return upward.
-forEach((v2,n)=>{across.forEach((u,m)=>{for(let k=0;k<3;k+=1)way[k]+=u*v2*data[3*((j+n)*columns+i+m)+k]})}),way}function lonLatOf(earth,position,places){
-if(earth.map&&!places)return null;let[x,y,z]=earth.map&&places?wayOn(earth.map,places,position):position,lonLat=[Math.atan2(
-y,x),Math.atan2(z,Math.hypot(x,y))];return lonLat.every(Number.isFinite)?[lonLat[0]*DEGREES,lonLat[1]*DEGREES]:null}function eastNorth(earth,position,velocity,places){
-let[from,change]=[position,velocity];if(earth.map&&places){let{map,radius}=earth,time=NEAR*(map[2]-map[0])/(Math.hypot(...velocity)||
-1),[before,after]=[-time,time].map(t=>wayOn(map,places,position.map((p,k)=>p+t*velocity[k])));from=wayOn(map,places,position),
-change=after.map((way,k)=>radius*(way-before[k])/(2*time))}let[x,y,z]=from,[across,away]=[Math.hypot(x,y)||1,Math.hypot(
-x,y,z)||1],east=(x*change[1]-y*change[0])/across,outward=(x*change[0]+y*change[1])/across;return[east,(across*change[2]-
-z*outward)/away]}function lonLatText([lon,lat],apart){let decimals=clamp(Math.ceil(-Math.log10(apart)),FEWEST_DECIMALS,MOST_DECIMALS),
-told=(degrees,[before,after])=>`${Math.abs(degrees).toFixed(decimals)}° ${degrees<0?before:after}`;return`${told(lon,"W\
-E")}, ${told(lat,"SN")}`}function dateText({start,dates,step},times2,time){if(start===null){if(!dates.length)return null;
-let apart=times2.map(each=>Math.abs(each-time));return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}\
-Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%
-DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:19).replace("T"," ")}var STEPS=[1,2,2.5,5],DEGREES2=[1,2,5,10,15,30,60,90],DECADES=[[1],[1,3],[1,2,5]],SAME=1e-9,BEYOND=.004,[LARGE,SMALL]=[1e6,
+floor(at)-1,0,count2-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape:shape2},position){let[rows,
+columns]=shape2,[i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[
+0,0,0];return upward.forEach((v2,n)=>{across.forEach((u,m)=>{for(let k=0;k<3;k+=1)way[k]+=u*v2*data[3*((j+n)*columns+i+m)+
+k]})}),way}function lonLatOf(earth,position,places){if(earth.map&&!places)return null;let[x,y,z]=earth.map&&places?wayOn(
+earth.map,places,position):position,lonLat=[Math.atan2(y,x),Math.atan2(z,Math.hypot(x,y))];return lonLat.every(Number.isFinite)?
+[lonLat[0]*DEGREES,lonLat[1]*DEGREES]:null}function eastNorth(earth,position,velocity,places){let[from,change]=[position,
+velocity];if(earth.map&&places){let{map,radius}=earth,time=NEAR*(map[2]-map[0])/(Math.hypot(...velocity)||1),[before,after]=[
+-time,time].map(t=>wayOn(map,places,position.map((p,k)=>p+t*velocity[k])));from=wayOn(map,places,position),change=after.
+map((way,k)=>radius*(way-before[k])/(2*time))}let[x,y,z]=from,[across,away]=[Math.hypot(x,y)||1,Math.hypot(x,y,z)||1],east=(x*
+change[1]-y*change[0])/across,outward=(x*change[0]+y*change[1])/across;return[east,(across*change[2]-z*outward)/away]}function lonLatText([
+lon,lat],apart){let decimals=clamp(Math.ceil(-Math.log10(apart)),FEWEST_DECIMALS,MOST_DECIMALS),told=(degrees,[before,after])=>`${Math.
+abs(degrees).toFixed(decimals)}° ${degrees<0?before:after}`;return`${told(lon,"WE")}, ${told(lat,"SN")}`}function dateText({
+start,dates,step},times2,time){if(start===null){if(!dates.length)return null;let apart=times2.map(each=>Math.abs(each-time));
+return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(
+first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:
+19).replace("T"," ")}var STEPS=[1,2,2.5,5],DEGREES2=[1,2,5,10,15,30,60,90],DECADES=[[1],[1,3],[1,2,5]],SAME=1e-9,BEYOND=.004,[LARGE,SMALL]=[1e6,
 .001];function ticksOf(low,high,log=!1,most=5){return high-low>SAME*Math.max(Math.abs(low),Math.abs(high))?log&&decades(
 low,high,most)||evenly(low,high,most):Number.isFinite(low)?[{value:low,text:textOf(low,Math.abs(low)/1e3||1)}]:[]}function evenly(low,high,most){
 let least=10**Math.floor(Math.log10((high-low)/most));for(let power=least;;power*=10)for(let factor of STEPS){let step=factor*
@@ -349,105 +486,117 @@ abs(value)){if(value===0)return"0";let digits=-Math.floor(Math.log10(step)+SAME)
 1:0;if(size>=LARGE||size<SMALL){let mantissa=Math.max(Math.floor(Math.log10(Math.abs(value))+SAME)+digits+isHalf,0),[number,
 power]=value.toExponential(Math.min(mantissa,15)).split("e");return`${minus(number)}e${Number(power)}`}return minus(value.
 toFixed(Math.max(digits+isHalf,0)))}var minus=text=>text.replace("-","−");var AXES=["ticks","scale","none"],SVG="http://www.w3.org/2000/svg",PARTS=48,LEAST_SHARE=.999,[LETTER_PX,GAP_PX,ROW_PX]=[
-6.5,14,34],TICK_PX=4,[MOST_TICKS,BAR_PX,BAR_SHARE]=[9,140,.3],MIDDLE_SHARE=.02,COORDINATES=["x","y","z"];function placedTicks({
-values,letters},most){let finite=values.filter(Number.isFinite);if(finite.length<2)return[];let[low,high]=[Math.min(...finite),
-Math.max(...finite)];return(letters?degreeTicks(low,high,letters,most):ticksOf(low,high,!1,most)).flatMap(tick=>{let n=values.
-findIndex((value,at)=>isBetween(tick.value,value,values[at+1]));if(n<0)return[];let part=(tick.value-values[n])/(values[n+
-1]-values[n]||1);return[{...tick,share:(n+part)/(values.length-1)}]})}var isBetween=(value,a,b)=>Math.min(a,b)<=value&&value<=
-Math.max(a,b);function hasTicks({geometry,earth}){return geometry.planar&&(!earth||earth.map!==null)}var Axes=class{element=document.
-createElementNS(SVG,"svg");host;constructor(host){this.host=host,this.element.setAttribute("class","axes"),this.element.
-setAttribute("aria-hidden","true")}draw(kind){let{header,camera,stage}=this.host;this.element.replaceChildren();let[width,
-height]=[stage.clientWidth,stage.clientHeight];if(kind==="none"||!header||!camera||!width||!height)return;if(this.element.
-style.cssText=`width: ${width}px; height: ${height}px`,kind==="scale")return this.drawBar(header,camera,width,height);let below=borderOf(
-this.host,[-1,-1],[1,-1]),aside=borderOf(this.host,[-1,-1],[-1,1]);below&&this.drawBelow(below,width,height),aside&&this.
-drawAside(aside,height)}drawBelow(border,width,height){let isTooWide=ticks2=>ticks2.some(({share,text},n)=>{let apart=n?
-Math.abs(share-ticks2[n-1].share)*width:width,letters=Math.max(text.length,ticks2[n-1]?.text.length??0);return apart<letters*
-LETTER_PX+GAP_PX}),most=MOST_TICKS,ticks=placedTicks(border,most);for(;most>2&&ticks.length&&isTooWide(ticks);)ticks=placedTicks(
-border,most-=1);for(let{share,text}of ticks)this.line(share*width,height,share*width,height+TICK_PX),this.text(share*width,
-height+TICK_PX+2,text,"below");let[before,last]=ticks.slice(-2),middle=(before.share+(last??before).share)/2*width;border.
-name&&last&&this.text(middle,height+TICK_PX+2,border.name,"below name")}drawAside(border,height){let most=Math.min(Math.
-max(Math.floor(height/ROW_PX),2),MOST_TICKS),ticks=placedTicks(border,most);for(let{share,text}of ticks){let y=(1-share)*
-height;this.line(-TICK_PX,y,0,y),this.text(-TICK_PX-3,y,text,"aside")}let[before,last]=ticks.slice(-2);if(!border.name||
-!last)return;let middle=(1-(before.share+last.share)/2)*height;this.text(-TICK_PX-3,middle,border.name,"aside name")}drawBar(header,camera,width,height){
-let{earth,lengthUnit}=header,pixel=2*camera.height/height*scaleOf(this.host,header,camera),most=Math.min(BAR_PX,BAR_SHARE*
-width)*pixel,power=10**Math.floor(Math.log10(most)),size=power*([5,2].find(factor=>factor*power<=most)??1),[x,y]=[size/pixel,
-height+TICK_PX+4];this.line(0,y,x,y);for(let end of[0,x])this.line(end,y-TICK_PX,end,y+TICK_PX);let isLong=(earth!==null||
-lengthUnit==="m")&&size>=1e3,text=withUnit(String(Number((isLong?size/1e3:size).toPrecision(3))),isLong?"km":lengthUnit);
-this.text(x+8,y-5,text,"beside")}line(x1,y1,x2,y2){let line=document.createElementNS(SVG,"line");for(let[name,value]of Object.
-entries({x1,y1,x2,y2}))line.setAttribute(name,value.toFixed(1));this.element.append(line)}text(x,y,words,kind){let text=document.
-createElementNS(SVG,"text");text.setAttribute("x",x.toFixed(1)),text.setAttribute("y",y.toFixed(1)),text.setAttribute("c\
-lass",kind),text.textContent=words,this.element.append(text)}};function scaleOf({parts},header,camera){let{earth}=header;
-if(!earth?.map)return 1;let[a,b]=[-1,1].map(x=>pointInPlane(header.geometry,camera,MIDDLE_SHARE*x,0)),[from,to]=[a,b].map(
-place=>lonLatOf(earth,place,parts.get("lonlat")));if(!from||!to)return 1;let[east,north]=[to[0]-from[0],to[1]-from[1]].map(
-degrees=>degrees*Math.PI/180),middle=(from[1]+to[1])/2*Math.PI/180;return Math.hypot(Math.sin(east/2)*2*Math.cos(middle),
-north)*earth.radius/length2(subtract2(b,a))||1}function borderOf(host,from,to){let{header,camera,parts}=host;if(!header||
-!camera||!hasTicks(header))return null;let places=Array.from({length:PARTS+1},(_,n)=>pointInPlane(header.geometry,camera,
-from[0]+(to[0]-from[0])*n/PARTS,from[1]+(to[1]-from[1])*n/PARTS)),{earth,lengthUnit}=header;if(earth?.map){let along=from[1]===
-to[1]?0:1,[low,high]=[earth.map.slice(0,2),earth.map.slice(2)],degrees=places.map(place=>{if(place[along]<low[along]||place[along]>
-high[along])return NaN;let inside=place.map((c,n)=>n<2?clamp(c,low[n],high[n]):c);return lonLatOf(earth,inside,parts.get(
-"lonlat"))?.[along]??NaN});return{letters:along?"NS":"EW",values:unwrapped(degrees)}}let way=subtract2(places[PARTS],places[0]),
-axis=way.map(Math.abs).indexOf(Math.max(...way.map(Math.abs)));if(Math.abs(way[axis])<LEAST_SHARE*length2(way))return null;
-let[right,up]=camera.axes,border=from[1]===to[1]?right:up,normal=header.geometry.frame.slice(6).map(Math.abs),across=[0,
-1,2].find(n=>n!==axis&&n!==normal.indexOf(Math.max(...normal)));return Math.abs(border[across??0])>1-LEAST_SHARE?null:{name:withUnit(
-COORDINATES[axis],lengthUnit&&`(${lengthUnit})`),values:places.map(place=>place[axis])}}function unwrapped(degrees){let turns=0;
-return degrees.map((value,n)=>(n&&Number.isFinite(value-degrees[n-1])&&(turns-=Math.round((value-degrees[n-1])/360)),value+
-360*turns))}var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},ColourControls=class{element=dom("di\
-v",{class:"colours"});viewer;scalars=dom("select",{"aria-label":"Colour by"});swatches=dom("div",{class:"swatches",role:"\
-group"});ends=["Lowest value","Highest value"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto=dom(
-"button",{type:"button",class:"link"},["auto"]);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){this.
-viewer=viewer;let{scalars,swatches,ends,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours(
-{scalars:scalars.value===PLAIN?!1:scalars.value,clim:null})});for(let end of ends)lifetime.listen(end,"change",()=>this.
-takeRange());lifetime.listen(auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(swatches,"click",event=>{
-let name=event.target.dataset.cmap;name&&viewer.chooseColours({cmap:name})});let row=(name,...fields)=>dom("div",{class:"\
-row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=row("Range",dom("span",{class:"between"},[...ends,auto])),
-this.mapRow=row("Colour map",swatches),this.mapRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),
-this.mapRow,this.rangeRow)}get rows(){return[this.element,this.lines]}updateLines(){let{header,parts,lifetime}=this.viewer,
-names=EARTH_LINES.filter(name=>header?.earth&&parts.has(name));this.lines.hidden=!names.length,this.lines.children.length!==
-names.length&&this.lines.replaceChildren(...names.map(name=>{let input=dom("input",{type:"checkbox",role:"switch"});lifetime.
-listen(input,"change",()=>this.viewer.chooseColours({[name]:input.checked}));let label=dom("span",{class:"name"},[LINE_NAMES[name]]);
-return dom("label",{class:"row","data-lines":name},[label,input])})),names.forEach((name,n)=>{let input=this.lines.children[n].
-querySelector("input");input&&(input.checked=header?.earth?.[name]??!1)})}update(){let{header,parts}=this.viewer;this.updateLines();
-let maps=parts.get("maps");if(this.element.hidden=!header?.scalars.choices.length||!maps,!header||!maps||this.element.hidden)
-return;let{choices,name,auto,cmap}=header.scalars,options=[...choices,{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(
-...options.map(each=>dom("option",{value:each.name},[each.label]))),this.scalars.value=name??PLAIN,this.mapRow.hidden=this.
-rangeRow.hidden=name===null,legendLimits(header.scalars).forEach((value,n)=>{this.ends[n].value=String(Number(value.toPrecision(
-4)))}),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.viewer;this.swatches.replaceChildren(...header.
-scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("button",{...{type:"button",title:each,"aria-label":each,
-"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=rampOf(mapOf(header,maps.data,each),header,settings,
-STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);this.rangeRow.title="",low<high?this.viewer.
-chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is not below ${numberText(high)}`;for(let end of this.
-ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
+6.5,14,34],TICK_PX=4,ASIDE_PX=42,[MOST_TICKS,BAR_PX,BAR_SHARE]=[9,140,.3],MIDDLE_SHARE=.02,COORDINATES=["x","y","z"],fitting=(name,room)=>name.
+length*LETTER_PX>room?name.replace(/ .*/,""):name;function placedTicks({values,letters},most){let finite=values.filter(Number.
+isFinite);if(finite.length<2)return[];let[low,high]=[Math.min(...finite),Math.max(...finite)];return(letters?degreeTicks(
+low,high,letters,most):ticksOf(low,high,!1,most)).flatMap(tick=>{let n=values.findIndex((value,at)=>isBetween(tick.value,
+value,values[at+1]));if(n<0)return[];let part=(tick.value-values[n])/(values[n+1]-values[n]||1);return[{...tick,share:(n+
+part)/(values.length-1)}]})}var isBetween=(value,a,b)=>Math.min(a,b)<=value&&value<=Math.max(a,b);function hasTicks({geometry,
+earth}){return geometry.planar&&(!earth||earth.map!==null)}var Axes=class{element=document.createElementNS(SVG,"svg");host;constructor(host){
+this.host=host,this.element.setAttribute("class","axes"),this.element.setAttribute("aria-hidden","true")}draw(kind){let{
+header,camera,stage}=this.host;this.element.replaceChildren();let[width,height]=[stage.clientWidth,stage.clientHeight];if(kind===
+"none"||!header||!camera||!width||!height)return;if(this.element.style.cssText=`width: ${width}px; height: ${height}px`,
+kind==="scale")return this.drawBar(header,camera,width,height);let below=borderOf(this.host,[-1,-1],[1,-1]),aside=borderOf(
+this.host,[-1,-1],[-1,1]);below&&this.drawBelow(below,width,height),aside&&this.drawAside(aside,height)}drawBelow(border,width,height){
+let isTooWide=ticks2=>ticks2.some(({share,text},n)=>{let apart=n?Math.abs(share-ticks2[n-1].share)*width:width,letters=Math.
+max(text.length,ticks2[n-1]?.text.length??0);return apart<letters*LETTER_PX+GAP_PX}),most=MOST_TICKS,ticks=placedTicks(border,
+most);for(;most>2&&ticks.length&&isTooWide(ticks);)ticks=placedTicks(border,most-=1);for(let{share,text}of ticks)this.line(
+share*width,height,share*width,height+TICK_PX),this.text(share*width,height+TICK_PX+2,text,"below");let[before,last]=ticks.
+slice(-2),middle=(before.share+(last??before).share)/2*width;if(!border.name||!last)return;let room=(last.share-before.share)*
+width-LETTER_PX*last.text.length-GAP_PX;this.text(middle,height+TICK_PX+2,fitting(border.name,room),"below name")}drawAside(border,height){
+let most=Math.min(Math.max(Math.floor(height/ROW_PX),2),MOST_TICKS),ticks=placedTicks(border,most);for(let{share,text}of ticks){
+let y=(1-share)*height;this.line(-TICK_PX,y,0,y),this.text(-TICK_PX-3,y,text,"aside")}let[before,last]=ticks.slice(-2);if(!border.
+name||!last)return;let middle=(1-(before.share+last.share)/2)*height;this.text(-TICK_PX-3,middle,fitting(border.name,ASIDE_PX),
+"aside name")}drawBar(header,camera,width,height){let{earth,lengthUnit}=header,pixel=2*camera.height/height*scaleOf(this.
+host,header,camera),most=Math.min(BAR_PX,BAR_SHARE*width)*pixel,power=10**Math.floor(Math.log10(most)),size=power*([5,2].
+find(factor=>factor*power<=most)??1),[x,y]=[size/pixel,height+TICK_PX+4];this.line(0,y,x,y);for(let end of[0,x])this.line(
+end,y-TICK_PX,end,y+TICK_PX);let isLong=(earth!==null||lengthUnit==="m")&&size>=1e3,text=withUnit(String(Number((isLong?
+size/1e3:size).toPrecision(3))),isLong?"km":lengthUnit);this.text(x+8,y-5,text,"beside")}line(x1,y1,x2,y2){let line=document.
+createElementNS(SVG,"line");for(let[name,value]of Object.entries({x1,y1,x2,y2}))line.setAttribute(name,value.toFixed(1));
+this.element.append(line)}text(x,y,words,kind){let text=document.createElementNS(SVG,"text");text.setAttribute("x",x.toFixed(
+1)),text.setAttribute("y",y.toFixed(1)),text.setAttribute("class",kind),text.textContent=words,this.element.append(text)}};
+function scaleOf({parts},header,camera){let{earth}=header;if(!earth?.map)return 1;let[a,b]=[-1,1].map(x=>pointInPlane(header.
+geometry,camera,MIDDLE_SHARE*x,0)),[from,to]=[a,b].map(place=>lonLatOf(earth,place,parts.get("lonlat")));if(!from||!to)return 1;
+let[east,north]=[to[0]-from[0],to[1]-from[1]].map(degrees=>degrees*Math.PI/180),middle=(from[1]+to[1])/2*Math.PI/180;return Math.
+hypot(Math.sin(east/2)*2*Math.cos(middle),north)*earth.radius/length2(subtract2(b,a))||1}function borderOf(host,from,to){
+let{header,camera,parts}=host;if(!header||!camera||!hasTicks(header))return null;let places=Array.from({length:PARTS+1},
+(_,n)=>pointInPlane(header.geometry,camera,from[0]+(to[0]-from[0])*n/PARTS,from[1]+(to[1]-from[1])*n/PARTS)),{earth,lengthUnit}=header;
+if(earth?.map){let along=from[1]===to[1]?0:1,[low,high]=[earth.map.slice(0,2),earth.map.slice(2)],degrees=places.map(place=>{
+if(place[along]<low[along]||place[along]>high[along])return NaN;let inside=place.map((c,n)=>n<2?clamp(c,low[n],high[n]):
+c);return lonLatOf(earth,inside,parts.get("lonlat"))?.[along]??NaN});return{letters:along?"NS":"EW",values:unwrapped(degrees)}}
+let way=subtract2(places[PARTS],places[0]),axis=way.map(Math.abs).indexOf(Math.max(...way.map(Math.abs)));if(Math.abs(way[axis])<
+LEAST_SHARE*length2(way))return null;let[right,up]=camera.axes,border=from[1]===to[1]?right:up,normal=header.geometry.frame.
+slice(6).map(Math.abs),across=[0,1,2].find(n=>n!==axis&&n!==normal.indexOf(Math.max(...normal)));return Math.abs(border[across??
+0])>1-LEAST_SHARE?null:{name:withUnit(COORDINATES[axis],lengthUnit&&`(${lengthUnit})`),values:places.map(place=>place[axis])}}
+function unwrapped(degrees){let turns=0;return degrees.map((value,n)=>(n&&Number.isFinite(value-degrees[n-1])&&(turns-=Math.
+round((value-degrees[n-1])/360)),value+360*turns))}var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},labelled=(name,input)=>dom("label",{
+class:"row"},[dom("span",{class:"name"},[name]),input]),ColourControls=class{element=dom("div",{class:"colours"});viewer;scalars=dom(
+"select",{"aria-label":"Colour by"});swatches=dom("div",{class:"swatches",role:"group"});ends=["Lowest value","Highest v\
+alue"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto=dom("button",{type:"button",class:"link"},
+["auto"]);robust=dom("button",{type:"button",class:"link"},["robust"]);log=dom("input",{type:"checkbox",role:"switch"});opacity=dom(
+"input",{type:"range",min:"0",max:"1",step:"0.05"});logRow=labelled("Log scale",this.log);opacityRow=labelled("Opacity",
+this.opacity);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){this.viewer=viewer;let{scalars,swatches,
+ends,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours({scalars:scalars.value===PLAIN?
+!1:scalars.value,clim:null})});for(let end of ends)lifetime.listen(end,"change",()=>this.takeRange());lifetime.listen(auto,
+"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(this.robust,"click",()=>viewer.chooseColours({clim:"robus\
+t"})),lifetime.listen(this.log,"change",()=>viewer.chooseColours({log_scale:this.log.checked})),lifetime.listen(this.opacity,
+"input",()=>viewer.chooseColours({opacity:this.opacity.valueAsNumber})),this.robust.title="Leave out the least and the g\
+reatest values.",lifetime.listen(swatches,"click",event=>{let name=event.target.dataset.cmap;name&&viewer.chooseColours(
+{cmap:name})});let row=(name,...fields)=>dom("div",{class:"row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=
+row("Range",dom("span",{class:"between"},[...ends,auto,this.robust])),this.mapRow=row("Colour map",swatches),this.mapRow.
+classList.add("ranged"),this.opacityRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),this.mapRow,
+this.rangeRow,this.logRow,this.opacityRow)}get rows(){return[this.element,this.lines]}updateLines(){let{header,parts,lifetime}=this.
+viewer,names=EARTH_LINES.filter(name=>header?.earth&&parts.has(name));this.lines.hidden=!names.length,this.lines.children.
+length!==names.length&&this.lines.replaceChildren(...names.map(name=>{let input=dom("input",{type:"checkbox",role:"switc\
+h"});lifetime.listen(input,"change",()=>this.viewer.chooseColours({[name]:input.checked}));let label=dom("span",{class:"\
+name"},[LINE_NAMES[name]]);return dom("label",{class:"row","data-lines":name},[label,input])})),names.forEach((name,n)=>{
+let input=this.lines.children[n].querySelector("input");input&&(input.checked=header?.earth?.[name]??!1)})}update(){let{
+header,parts}=this.viewer;this.updateLines();let maps=parts.get("maps");if(this.element.hidden=!header?.scalars.choices.
+length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,auto,cmap}=header.scalars,options=[...choices,
+{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(...options.map(each=>dom("option",{value:each.name},[each.label]))),
+this.scalars.value=name??PLAIN;let isHosted=this.viewer.options.onColours!==void 0;this.mapRow.hidden=this.rangeRow.hidden=
+name===null,this.logRow.hidden=this.mapRow.hidden||!isHosted,this.robust.hidden=!isHosted,this.log.checked=header.scalars.
+log,this.opacity.value=String(header.opacity),legendLimits(header.scalars).forEach((value,n)=>{this.ends[n].value=String(
+Number(value.toPrecision(4)))}),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.viewer;this.swatches.
+replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("button",{...{type:"button",
+title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=rampOf(mapOf(header,
+maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);this.rangeRow.
+title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is not below ${numberText(
+high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
 noise_correction:({paper},rebuild)=>!!paper&&rebuild,lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,
 settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),lod:()=>!1,show_level:()=>!1};function isUseful({
-name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}var Controls=class{element=dom(
-"div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){this.viewer=
-viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??!1;for(let row of header.
-table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row);this.controls.set(row.name,control);let{
-input,output}=control,name=dom("span",{class:"name"},[row.label]),attributes={class:"row",title:row.text,"data-setting":row.
-name},line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.
-element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{show}]of this.controls)name in settings&&show(settings[name])}control(row){
-return row.control==="checkbox"?this.switch(row):row.control==="choice"?this.menu(row):row.control==="number"?this.numberField(
-row):this.slider(row)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.
-listen(input,"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,
-choices}){let options=choices.map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.
-viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({
-name,whole,low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),
-max:String(max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(
-value)&&this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{
-toSlider,fromSlider,min,max,step}=scaleOf2(row),range={min:String(min),max:String(max),step:String(step)},input=dom("inp\
-ut",{type:"range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=
-numberText(Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row.affects==="uniform"?
-"input":"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row.name,value())),{input,output,show:shown=>{
-input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf2(row){let{low,high,whole,logarithmic}=row,
-[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
-2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
-toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
-r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={left:[-1,0],right:[1,0],up:[0,1],
-down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){
-document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom(
+name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}function isInUse({needs=[]},settings){
+let holds=needs.map(([name,sign,value])=>settings[name]===value==(sign==="=="));return!needs.length||holds.includes(!0)}
+var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){
+this.viewer=viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??
+!1;for(let row of header.table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row),{input,output}=control,
+name=dom("span",{class:"name"},[row.label]),attributes={class:"row","data-setting":row.name},line=dom("label",attributes,
+[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row.name,{...control,
+row,line}),this.element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{row,line,show}]of this.controls){
+name in settings&&show(settings[name]);let isIdle=!isInUse(row,settings);line.classList.toggle("idle",isIdle),line.title=
+isIdle?`${row.condition} ${row.text}`:row.text}}control(row){return row.control==="checkbox"?this.switch(row):row.control===
+"choice"?this.menu(row):row.control==="number"?this.numberField(row):this.slider(row)}switch({name}){let input=dom("inpu\
+t",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.
+checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom("option",
+{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.viewer.
+choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[min,max]=[
+low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.
+viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.viewer.choose(name,
+clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{toSlider,fromSlider,min,max,step}=scaleOf2(
+row),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("ou\
+tput"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(Number(shown))};this.viewer.
+lifetime.listen(input,"input",()=>write(value()));let kind=row.affects==="uniform"?"input":"change";return this.viewer.lifetime.
+listen(input,kind,()=>this.viewer.choose(row.name,value())),{input,output,show:shown=>{input.value=String(toSlider(Number(
+shown))),write(shown)}}}};function scaleOf2(row){let{low,high,whole,logarithmic}=row,[least,most]=[low??0,high??1],toSlider=value=>logarithmic?
+Math.log2(value):value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?Math.round(value):Number(clamp(
+value,least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;
+return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+r",_:"farther",0:"whole",d:"detail",".":"next",",":"previous"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={
+left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(
+()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom(
 "i",{hidden:""});show(header,settings,map){let{name,label,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||
 !bar||!map||!!settings.show_level,this.element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.
 background=rampOf(map,header,settings,STOPS2),this.mark.hidden=!0;let placeOf=shareOf(header.scalars),ticks=legendTicks(
@@ -512,8 +661,8 @@ u_between:between2,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3]
 bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,place=geometry.triangles?placeIn(bits[3]-1,u,v2):placeAmong(
 geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.scene,camera,corners,x,y),index=geometry.triangles?
 place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(layer.scene,moment,corners)},layer,place}}
-function placeAmong({rows,columns,shape},u,v2){let at=(share,{size,before},nodes)=>clamp(share*size-.5-before,0,nodes-1);
-return[at(u,columns,shape[1]),at(v2,rows,shape[0])]}function wholeIndex(header,{key},[i,j]){let{pyramid,geometry,mesh}=header,
+function placeAmong({rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(share*size-.5-before,0,nodes-
+1);return[at(u,columns,shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[i,j]){let{pyramid,geometry,mesh}=header,
 [level,row,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(
 n+tile*side,level,nodes);return[at(i,column,columns),at(j,row,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.
 part("position"),{frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(
@@ -572,18 +721,18 @@ header;if(!paper)return moved=>add(position,fromFrame(geometry.frame,moved));let
 place[0]),between(alongJ,place[1])],start=pointAt(scene,place);return([u,v2])=>{let at=[indexOf(alongI,here[0]+u),indexOf(
 alongJ,here[1]+v2)];return at.some(Number.isNaN)?null:add(position,subtract2(pointAt(scene,at),start))}}function pointAt(scene,place){
 let{data}=scene.part("position"),corners=scene.cornersAt(place),local=[0,1,2].map(c=>interpolated(corners,n=>data[3*n+c]));
-return fromFrame(scene.header.geometry.frame,local)}function normalAt(scene,place){let{shape,triangles}=scene.header.geometry;
-if(triangles){let corner=(second,third)=>pointAt(scene,placeIn(Math.floor(place[1]),second,third));return cross2(subtract2(
-corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(0,0)))}let[i,j]=place.map((n,axis)=>clamp(n,.5,shape[1-axis]-1.5)),
-at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return cross2(subtract2(at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5)))}function between(values,at){
-let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
-let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
-1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,normal=normalAt(scene,
-place),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;
-if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along,axis)=>{let n=Math.min(Math.floor(place[axis]),along.length-
-2);return(along[n+1]-along[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.grain*(settings.
-lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),grain=pixel/facing*
-Number(settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
+return fromFrame(scene.header.geometry.frame,local)}function normalAt(scene,place){let{shape:shape2,triangles}=scene.header.
+geometry;if(triangles){let corner=(second,third)=>pointAt(scene,placeIn(Math.floor(place[1]),second,third));return cross2(
+subtract2(corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(0,0)))}let[i,j]=place.map((n,axis)=>clamp(n,.5,shape2[1-
+axis]-1.5)),at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return cross2(subtract2(at(.5,0),at(-.5,0)),subtract2(at(0,.5),at(0,-.5)))}
+function between(values,at){let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}
+function indexOf(values,value){let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-
+values[n-1])/(values[n]-values[n-1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.
+header,normal=normalAt(scene,place),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),
+pixel=2*height/rows;if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along,axis)=>{let n=Math.min(Math.floor(place[axis]),
+along.length-2);return(along[n+1]-along[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.
+grain*(settings.lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),
+grain=pixel/facing*Number(settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
 let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
 0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
 function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),
@@ -595,7 +744,23 @@ layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.f
 points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count2=sides===
 2?Math.floor(samples/2):samples-1,step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],
 ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*
-Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity}}var TITLE="Path through this point",SVG2="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity}}var SVG2="http://www.w3.org/2000/svg",INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function shape(tag,attributes){
+let element=document.createElementNS(SVG2,tag);for(let[name,value]of Object.entries(attributes))element.setAttribute(name,
+`${value}`);return element}function fitting2(places,aspect){let{width:wide,height:high,margin}=INSET,flat=([x,y])=>[x*aspect,
+-y],flattened=places.map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),[left,top]=[Math.min(...xs),Math.min(
+...ys)],[width,height]=[Math.max(...xs)-left,Math.max(...ys)-top],ratios=[(wide-2*margin)/(width||1e-9),(high-2*margin)/
+(height||1e-9)],scale3=Math.min(...ratios);return place=>{let[x,y]=flat(place);return[wide/2+(x-left-width/2)*scale3,high/
+2+(y-top-height/2)*scale3]}}function enlarged(samples,point,camera){let{width,height}=INSET,picture=shape("svg",{class:"\
+inset",viewBox:`0 0 ${width} ${height}`,"aria-hidden":"true"}),seen=samples.flatMap(({position,...rest})=>{let place2=camera.
+project(position);return place2?[{place:place2,...rest}]:[]});if(!seen.length)return picture;let mapping=fitting2(seen.map(
+({place:place2})=>place2),camera.aspect),centres=seen.map(({place:place2})=>mapping(place2));seen.forEach(({weight,colour},n)=>{
+let[cx,cy]=centres[n],[nx,ny]=centres[n>0?n-1:1]??[cx+DOT.most,cy+DOT.most],most=clamp(.75*Math.hypot(nx-cx,ny-cy),DOT.least,
+DOT.most);picture.append(shape("circle",{cx,cy,r:most*(.35+.65*weight),fill:colour}))});let place=camera.project(point);
+if(place){let[cx,cy]=mapping(place);picture.append(shape("circle",{cx,cy,r:POINT_RADIUS2,class:"point"}))}return picture}
+function samplesOf(samples,point,camera){let bars=samples.map(({weight,colour})=>{let bar=dom("i");return bar.style.cssText=
+`height: ${100*weight}%; background: ${colour}`,bar});return dom("div",{class:"samples"},[enlarged(samples,point,camera),
+dom("div",{class:"bars",title:"Each bar is a sample: its height the weight, its grey the noise it meets."},bars),dom("di\
+v",{class:"ends"},[dom("span",{},["behind"]),dom("span",{},["ahead"])])])}var TITLE="Path through this point",SVG3="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
 RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8;function vectorText(vector,size,digits,flat){return`(${vector.
 slice(0,flat?2:3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(
 digits))):numberText(value,digits)}).join(", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
@@ -604,37 +769,45 @@ height??0)/PLACES_IN_VIEW/DEGREE_M);let text=positionText(position,header,camera
 lengthUnit):text}function positionText(position,header,camera){let{geometry}=header,zoom=Math.max(camera?.zoom??1,1),digits=Math.
 min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&Math.abs(position[2]-geometry.
 center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}var PointCard=class{element=dom(
-"div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG2,"svg");host;list=dom("dl");chosen=null;later=null;drawn=null;constructor(host){
-this.host=host,this.element.setAttribute("aria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("b\
-utton",{type:"button",class:"link"},["Close"]);button.addEventListener("click",()=>this.close()),this.element.append(dom(
-"div",{class:"first"},[dom("span",{},[TITLE]),button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,
-canPick}=this.host;if(lifetime.cancel(this.later),!canPick&&performance.now()<until)return this.later=lifetime.later(()=>this.
-choose(x,y,until),RETRY_MS),null;let found=this.host.find(x,y);return found&&this.host.options.onPoint?.(found.point),this.
-close(),this.chosen=found,this.update(),found?.point??null}close(){for(let{card}of this.host.together)card.clear()}clear(){
-this.host.lifetime.cancel(this.later),this.chosen=this.drawn=null,this.element.hidden=!0,this.overlay.replaceChildren(),
-this.host.options.explainer?.clear()}update(){let{chosen}=this,{options,camera,shown,header,tiles,settings,stage,together}=this.
-host;if(!chosen||options.bare||!camera||!shown||!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({
-key})=>String(key)===String(layer.key))?.scene;if(!scene||scene.missing(shown[0],shown[1]).length)return;let position=point.
-position,at={scene,moment:shown,place,position},path=pathThrough(at,settings,camera,stage.clientHeight);this.tell({...point,
-values:valuesAt(scene,shown,scene.cornersAt(place))},path,header,camera);let pixel={at,settings,camera,rows:stage.clientHeight},
-samples=options.explainer?.explain(pixel)??[];for(let{card}of together)card.drawn={path,point:position,samples},card.draw()}tell(point,{
-velocity},header,camera){let{label,unit:unit2}=header.speed,size=Math.hypot(...velocity),lines=new Map,{earth}=header,{parts}=this.
-host,where=placeText(point.position,header,parts,camera,!0);if(earth&&lonLatOf(earth,point.position,parts.get("lonlat"))){
-let[east,north]=eastNorth(earth,point.position,velocity,parts.get("lonlat"));lines.set("place",where),lines.set("eastwar\
-d",withUnit(numberText(east,VELOCITY_DIGITS),unit2)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{
-let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.
-replace("speed","velocity"),withUnit(text,unit2))}lines.set(label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[
-name,value]of Object.entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;
-lines.set(named.label,withUnit(numberText(value),named.unit))}this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[
-dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,
-{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,placeOf=point2=>{let place=camera.
+"div",{class:"card glass",role:"region",hidden:""});overlay=document.createElementNS(SVG3,"svg");host;list=dom("dl");samples=dom(
+"div");chosen=null;read=null;asked=0;later=null;drawn=null;constructor(host){this.host=host,this.element.setAttribute("a\
+ria-label",TITLE),this.overlay.setAttribute("class","path");let button=dom("button",{type:"button",class:"link"},["Close"]);
+button.addEventListener("click",()=>this.close()),this.element.append(dom("div",{class:"first"},[dom("span",{},[TITLE]),
+button]),this.samples,this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,canPick,options}=this.host;
+if(lifetime.cancel(this.later),options.streamed)return this.close(),this.ask({place:[x,y]}),null;if(!canPick&&performance.
+now()<until)return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;let found=this.host.find(x,y);return found&&
+this.host.options.onPoint?.(found.point),this.close(),found&&options.reader?this.ask(found.point):(this.chosen=found,this.
+update()),found?.point??null}async ask(at){let{options,header}=this.host,number=this.asked+=1,found=await options.reader?.(
+at,!0).catch(()=>null),{camera}=this.host;if(number!==this.asked||header!==this.host.header||!header||!camera)return;if(!found?.
+path)return this.close();"place"in at&&options.onPoint?.(found.point),this.read=found.point;let{point,path,samples,words=[]}=found;
+this.tell(point,path,header,camera,words);let position=point.position;this.samples.replaceChildren(...samples?[samplesOf(
+samples,position,camera)]:[]),this.share(path,position,[],found.alone?[{card:this}]:this.host.together)}share(path,point,samples,views=this.
+host.together){for(let{card}of views)card.drawn={path,point,samples},card.draw()}close(){for(let{card}of this.host.together)
+card.clear()}clear(){this.host.lifetime.cancel(this.later),this.chosen=this.drawn=this.read=null,this.asked+=1,this.element.
+hidden=!0,this.overlay.replaceChildren(),this.host.options.explainer?.clear()}update(){let{chosen}=this;if(this.read)return void this.
+ask(this.read);let{options,camera,shown,header,tiles,settings,stage}=this.host;if(!chosen||options.bare||!camera||!shown||
+!header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene;if(!scene||
+scene.missing(shown[0],shown[1]).length)return;let position=point.position,at={scene,moment:shown,place,position},path=pathThrough(
+at,settings,camera,stage.clientHeight);this.tell({...point,values:valuesAt(scene,shown,scene.cornersAt(place))},path,header,
+camera);let pixel={at,settings,camera,rows:stage.clientHeight},samples=options.explainer?.explain(pixel)??[];this.share(
+path,position,samples)}tell(point,{velocity},header,camera,words=[]){let{label,unit:unit2}=header.speed,size=Math.hypot(
+...velocity),lines=new Map,{earth}=header,{parts}=this.host,where=placeText(point.position,header,parts,camera,!0);if(earth&&
+lonLatOf(earth,point.position,parts.get("lonlat"))){let[east,north]=eastNorth(earth,point.position,velocity,parts.get("l\
+onlat"));lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit2)),lines.set("nort\
+hward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,liesAcross(
+header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity"),withUnit(text,unit2))}lines.set(
+label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.entries(point.values)){let named=header.
+scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}
+for(let[word,text]of words)lines.set(word,text);this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",
+{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,{camera,
+stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,placeOf=point2=>{let place=camera.
 project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.
 map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,
 sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),
 dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.
 sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,
-dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape=document.createElementNS(
-SVG2,tag);for(let[name,value]of Object.entries(attributes))shape.setAttribute(name,`${value}`);return shape}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape2=document.createElementNS(
+SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(name,`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -759,6 +932,15 @@ dl {
 }
 dt { color: var(--quiet); }
 dd { margin: 0; text-align: right; white-space: nowrap; }
+.samples { margin: 6px 4px 0 0; }
+.inset { display: block; width: 232px; height: 112px; border-radius: 6px; background: #2a3440; }
+.inset .point { fill: none; stroke: #fff; stroke-width: 2.4; }
+.bars { display: flex; align-items: flex-end; gap: 1px; height: 44px; margin-top: 6px; border-bottom: 1px solid var(--ed\
+ge); pointer-events: auto; }
+.bars i { flex: 1 1 0; min-width: 1px; outline: 0.5px solid var(--quiet); }
+.ends { display: flex; justify-content: space-between; color: var(--quiet); font-size: 11px; }
+.card:has(.samples) { width: 260px; overflow-y: auto; pointer-events: auto; }
+.card:has(.samples) dd { white-space: normal; }
 .path { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
 .path :not(.dot) { fill: none; }
 .path * { stroke: #000; stroke-linejoin: round; }
@@ -824,17 +1006,19 @@ n;
   display: grid; grid-template-columns: 1fr auto; align-items: center; column-gap: 10px;
   min-height: 30px; padding: 2px 0;
 }
+.row.idle:not(:hover, :focus-within) { opacity: 0.45; }
 .row.ranged input { grid-column: 1 / -1; }
 .row + .row { border-top: 1px solid var(--edge); }
 .colours { border-bottom: 1px solid var(--edge); }
 .swatches { grid-column: 1 / -1; display: grid; grid-template-columns: repeat(3, 1fr); gap: 5px; padding: 3px 0 5px; }
 .swatches button { width: auto; height: 16px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
 .swatches button[aria-pressed="true"] { box-shadow: 0 0 0 2px var(--ground), 0 0 0 4px var(--accent); }
-.between { display: flex; align-items: center; gap: 4px; }
-.between input[type="number"] { width: 64px; padding-inline: 4px; appearance: textfield; }
+.row:has(.between) { grid-template-columns: auto 1fr; column-gap: 6px; }
+.between { display: flex; align-items: center; justify-content: flex-end; gap: 2px; }
+.between input[type="number"] { width: 48px; padding-inline: 4px; appearance: textfield; }
 .between input::-webkit-inner-spin-button { appearance: none; }
 .between input:invalid { outline: 2px solid #d43d3d; outline-offset: -1px; }
-button.link { width: auto; height: 24px; padding: 0 6px; font: inherit; }
+button.link { width: auto; height: 24px; padding: 0 4px; font: inherit; }
 select, input[type="number"] {
   font: inherit; color: var(--ink); background: var(--hover); border: 0; border-radius: 6px;
   padding: 3px 6px; width: 110px; height: 24px;
@@ -887,90 +1071,101 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
 @container (max-width: 220px) { .legend { display: none; } }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
 :host(.flowtex-bare) :is(.top, .path, .card, .settings, .bar, .handle) { display: none; }
-`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,LEAST_FRAMED_PX=280,KEY=/Mac|iP(hone|ad)/.test(navigator.platform)?"⌘":"Ctrl",
-HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria-label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,
-styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;axes;axesMenu=dom(
+`;var HINT_MS=1600,LATE_MS=4e3,SAVED_MS=5e3,LEAST_FRAMED_PX=280,PACES=[.25,.5,1,2,4],KEY=/Mac|iP(hone|ad)/.test(navigator.
+platform)?"⌘":"Ctrl",HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME_RANGE={min:"0",max:"1",step:"any","aria\
+-label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;axes;axesMenu=dom(
 "select",{},AXES.map(kind=>dom("option",{},[kind])));axesRow=dom("label",{class:"row"},[dom("span",{class:"name"},["Axes"]),
-this.axesMenu]);controls;colours;isShown;axesKind=null;isOpen=!1;legendLook="";title=dom("div",{class:"title"});readout=dom(
-"div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},[this.title,this.readout]);note=dom(
-"div",{class:"note",hidden:"",role:"alert"});doing=dom("span",{role:"status"});count=dom("span",{"aria-hidden":"true"});busy=dom(
-"div",{class:"busy",hidden:""},[this.doing,this.count]);told=dom("div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom(
-"div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;toggles;gear;slider=dom("input",{type:"range",...TIME_RANGE});timeText=dom(
-"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;constructor(viewer){
-this.viewer=viewer;let{root,stage,canvas,options}=viewer;this.isShown=options.controls??!0,this.axes=new Axes(viewer),viewer.
-lifetime.listen(this.axesMenu,"change",()=>{for(let{panel}of viewer.together)panel.chooseAxes(this.axesMenu.value)}),this.
-controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.button("show","Show the bar (h)",
-()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.
-togglePlaying()),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.
-choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.
-button("levels","Show level",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),
-this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.
-attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,told,
-note}=this,{card}=viewer;stage.className="stage",stage.append(canvas,card.overlay,this.axes.element,card.element,busy,hintBox,
-told),shadow.append(dom("div",{class:"top"},[head,legend.element]),stage,bar,handle),shadow.append(controls.element,note),
-viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){let button=dom("button",
-{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",
-press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.
-playButton,this.track,this.button("home","Show everything (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,
-this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),
-this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{header}=this.viewer;header&&(this.note.hidden=!0,
-this.controls.build(header),this.controls.element.prepend(...this.colours.rows,this.axesRow),this.showLegend(),this.update(),
-this.arrange())}update(){let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.
-update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))
-button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.
-replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);
-let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=!varies&&!streams,this.slider.disabled=
-!varies&&settings.motion==="off";let width=header&&this.date(header)?.length||8+(header?.slices.timeUnit??"").length;this.
-timeText.style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,title=(header?.
-differs??[]).filter(name=>name in settings).map(name=>{let label2=header?.table.find(row=>row.name===name)?.label??name,
-value=settings[name];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}).join(", ")||header?.name||"";
-this.title.textContent=title,this.title.hidden=!title;let label=options.label??title;root.setAttribute("aria-label",label?
-`Flow texture: ${label}`:"Flow texture")}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;
-let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let unit2=header.slices.
-timeUnit,moment=this.date(header)??`${numberText(now)} ${unit2}`,text=player.varies?moment:`${now.toFixed(1)} s`;this.timeText.
-textContent!==text&&(this.timeText.textContent=text)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.
-player.time)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,
-settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,
-settings,parts.get("cmap")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),this.legend.
-point(null);let position=point?.position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;if(this.readout.
-append(dom("span",{},[placeText(position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.scalars,
-value=point.values[name??""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),
-this.legend.point(header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.
-isShown){this.isShown=shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){
-let{header,options,root}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&
-root.clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,
-usual=header&&hasTicks(header)?"ticks":"none",kind=this.axesKind??usual,shown=this.isFramed?kind:"none";this.axesMenu.value=
-kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){let{header,options,root}=this.viewer,isReady=header!==
-null,follows=!!options.follows;this.bar.hidden=!(this.isShown||follows&&this.isFramed)||!isReady,this.bar.style.visibility=
-follows?"hidden":"",this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,
-this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.
-hidden),root.classList.toggle("flowtex-framed",this.isFramed),this.showAxes(),this.gear.setAttribute("aria-pressed",String(
-this.isOpen))}wait(missing,isMade,isCoarse=!1){let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?
-`Fewer details while ${viewer.player.playing?"playing":"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?
-pending&&(doing="Loading tiles"):doing="Tracing paths";let count2=doing==="Loading tiles"?`: ${wanted-pending} of ${wanted}`:
-doing?" …":details;this.doing.textContent!==doing&&(this.doing.textContent=doing),this.count.textContent!==count2&&(this.
-count.textContent=count2),busy.hidden=!(doing||count2);let{source,isComing}=viewer.options;!missing.length||source?.hasSteps||
-isComing?.()||this.lateTimer||(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(
-", ");names&&this.fail("The scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;
-lifetime.cancel(this.hintTimer),this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=
-!shown}tell(text){this.words.has(text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.
-wait([],!0),this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom(
-"strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="\
-true"}fullscreen(){let{root}=this.viewer;toggleFullscreen(root.closest(".flowtex-pair")??root)}async save(){let{viewer}=this,
+this.axesMenu]);paceMenu=dom("select",{},PACES.map(pace=>dom("option",{value:`${pace}`},[`${pace}×`])));paceRow=dom("la\
+bel",{class:"row",title:"How fast time goes by."},[dom("span",{class:"name"},["Pace"]),this.paceMenu]);controls;colours;isShown;axesKind=null;isOpen=!1;legendLook="";title=dom(
+"div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
+[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});doing=dom("span",{role:"status"});count=dom(
+"span",{"aria-hidden":"true"});busy=dom("div",{class:"busy",hidden:""},[this.doing,this.count]);told=dom("div",{class:"t\
+old glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;stepButtons;toggles;gear;slider=dom(
+"input",{type:"range",...TIME_RANGE});timeText=dom("span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.
+timeText]);hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,stage,canvas,options}=viewer;this.
+isShown=options.controls??!0,this.axes=new Axes(viewer),viewer.lifetime.listen(this.axesMenu,"change",()=>{for(let{panel}of viewer.
+together)panel.chooseAxes(this.axesMenu.value)}),this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),
+this.handle=this.button("show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=
+this.button("play","Play (space)",()=>viewer.togglePlaying()),this.stepButtons=[this.button("previous","A step back (,)",
+()=>viewer.step(-1)),this.button("next","A step on (.)",()=>viewer.step(1))],viewer.lifetime.listen(this.paceMenu,"chang\
+e",()=>viewer.player.pace=Number(this.paceMenu.value)),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(
+this.slider.value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod",
+"Level of detail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button(
+"settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle(
+"flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{
+legend,controls,head,bar,handle,busy,hintBox,told,note}=this,{card}=viewer;stage.className="stage",stage.append(canvas,card.
+overlay,this.axes.element,card.element,busy,hintBox,told),shadow.append(dom("div",{class:"top"},[head,legend.element]),stage,
+bar,handle),shadow.append(controls.element,note),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){
+let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
+listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
+label":"Controls"},[this.stepButtons[0],this.playButton,this.stepButtons[1],this.track,this.button("home","Show everythi\
+ng (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{
+this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.
+toggle())])}build(){let{header}=this.viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.controls.element.
+prepend(...this.colours.rows,this.axesRow,this.paceRow),this.showLegend(),this.update(),this.arrange())}update(){let{header,
+settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==this.lookOf(
+settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(
+!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":
+"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(
+header);this.playButton.hidden=this.track.hidden=this.paceRow.hidden=!varies&&!streams;for(let button of this.stepButtons)
+button.hidden=!varies;this.paceMenu.value=String(this.viewer.player.pace),this.slider.disabled=!varies&&settings.motion===
+"off";let width=header&&this.date(header)?.length||8+withUnit("",header?.slices.timeUnit??"").length;this.timeText.style.
+minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,differences=(header?.differs??
+[]).filter(name2=>name2 in settings).map(name2=>{let label2=header?.table.find(row=>row.name===name2)?.label??name2,value=settings[name2];
+return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}),name=header?.name??"",title=differences.join(", ")||
+(options.named&&this.viewer.together.length<2?"":name),{first}=this,isApart=first!==this.viewer.player&&this.viewer.player.
+time!==first.time,moment=header&&isApart&&this.viewer.player.varies?this.moment(header):"";this.title.textContent=[title,
+moment].filter(Boolean).join(" · "),this.title.hidden=!this.title.textContent;let label=options.label??(title||name);root.
+setAttribute("aria-label",label?`Flow texture: ${label}`:"Flow texture")}get first(){return this.viewer.together[0]?.player??
+this.viewer.player}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;this.first!==player&&
+this.name();let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let text=player.
+varies?this.moment(header):`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=text)}moment(header){
+let{player}=this.viewer;return this.date(header)??withUnit(numberText(player.time),header.slices.timeUnit)}date({slices}){
+return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level}\
+ ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.
+colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point,ground=null){let{header}=this.
+viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||!header)
+return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),!point)
+return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(dom("\
+b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=open,
+this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=shown;for(let{panel}of this.viewer.together)
+panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{header,options,root}=this.viewer;return(options.
+follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&root.clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){
+this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&hasTicks(header)?"ticks":"none",kind=this.
+axesKind??usual,shown=this.isFramed?kind:"none";this.axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(
+shown)}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!(this.
+isShown||follows&&this.isFramed)||!isReady,this.bar.style.visibility=follows?"hidden":"",this.handle.hidden=this.isShown||
+!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
+isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),root.classList.toggle("flowtex-fram\
+ed",this.isFramed),this.showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1){
+let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?
+"playing":"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?pending&&(doing="Loading tiles"):doing="Trac\
+ing paths";let count2=doing==="Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==
+doing&&(this.doing.textContent=doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.hidden=!(doing||
+count2);let{source,isComing}=viewer.options;!missing.length||source?.hasSteps||isComing?.()||this.lateTimer||(this.lateTimer=
+viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not co\
+mplete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=
+shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.
+add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.
+root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.
+note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true",this.viewer.options.onError?.(problem,detail)}fullscreen(){
+let{root,together}=this.viewer;toggleFullscreen(together.length>1&&root.parentElement||root)}async save(){let{viewer}=this,
 href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
-dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;times=[0];lastFrame=0;hasHeader=!1;setHeader(header){
-let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.every((t,n)=>t===this.times[n]))||!this.hasHeader)&&
-(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.times=times2}get varies(){return this.times.length>
-1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){return momentOf(this.times,this.time)}timeOf([
-before,after,between2]){return this.times[before]+between2*(this.times[after]-this.times[before])}seek(time){this.time=clamp(
-time,...this.span)}start(){this.playing=!0,this.lastFrame=0}range(settings){if(this.varies)return{first:this.span[0],last:this.
+dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
+0];lastFrame=0;hasHeader=!1;setHeader(header){let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.
+every((t,n)=>t===this.times[n]))||!this.hasHeader)&&(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.
+times=times2}get varies(){return this.times.length>1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){
+return momentOf(this.times,this.time)}timeOf([before,after,between2]){return this.times[before]+between2*(this.times[after]-
+this.times[before])}seek(time){this.time=clamp(time,...this.span)}stepFrom(count2){let{times:times2,time}=this,after=times2.
+findIndex(each=>count2>0?each>time:each>=time),steps=times2.length,at=after<0?steps:after;return times2[(count2>0?at:at-
+1+steps)%steps]}start(){this.playing=!0,this.lastFrame=0}range(settings){if(this.varies)return{first:this.span[0],last:this.
 span[1],now:this.time};let period=Number(settings.period);return{first:0,last:period,now:this.clock%period}}advance(now,ready){
-let passed=this.lastFrame?Math.min((now-this.lastFrame)/1e3,LONGEST_GAP_S):0;if(this.lastFrame=now,!this.varies)return this.
-clock+=passed,!0;let[first,last]=this.span,series=clamp(SERIES_STEP_S*(this.times.length-1),SERIES_LEAST_S,SERIES_MOST_S),
+let passed=this.lastFrame?Math.min((now-this.lastFrame)/1e3,LONGEST_GAP_S)*this.pace:0;if(this.lastFrame=now,!this.varies)
+return this.clock+=passed,!0;let[first,last]=this.span,series=clamp(SERIES_STEP_S*(this.times.length-1),SERIES_LEAST_S,SERIES_MOST_S),
 next=this.time+passed*(last-first)/series,[before,after]=momentOf(this.times,Math.min(next,last));return ready([before,after])?
 (this.time=next>last?first:next,!0):!1}};var CLICK_PX=4,CLICK_MS=450,POINTED_MS=1500,HOVER_MS=90,KEY_STEP=.2,NOTCH_SIZES=[100,3,1],PINCH_PX=20,MOST_NOTCHES=4;function placeIn2(element,event){
 let box=element.getBoundingClientRect();return{x:2*(event.clientX-box.left)/Math.max(box.width,1)-1,y:1-2*(event.clientY-
-box.top)/Math.max(box.height,1)}}var Pointers=class{down=new Map;viewer;isOther=!1;press={x:0,y:0,time:0,isDrag:!1};lastLook=0;look=null;lastPointed=-1/0;constructor(viewer){
+box.top)/Math.max(box.height,1)}}var Pointers=class{down=new Map;viewer;isOther=!1;asked=null;press={x:0,y:0,time:0,isDrag:!1};lastLook=0;look=null;lastPointed=-1/0;constructor(viewer){
 this.viewer=viewer;let{canvas,root,options,lifetime}=viewer;root.classList.toggle("flowtex-guarded",options.guarded??!1),
 options.guarded&&this.guard();let listen=(kind,call)=>lifetime.listen(canvas,kind,call,{passive:!1});listen("pointerdown",
 event=>this.onDown(event)),listen("pointermove",event=>this.onMove(event)),listen("pointerup",event=>this.onUp(event)),listen(
@@ -1000,16 +1195,19 @@ return}event.preventDefault();let size=event.ctrlKey&&event.deltaMode===0?PINCH_
 -event.deltaY/size,-MOST_NOTCHES,MOST_NOTCHES);this.zoom((this.viewer.camera?.limits.wheel_zoom??1)**notches,event)}zoom(factor,event){
 let{x,y}=this.place(event);this.viewer.camera?.zoomBy(factor,x,y),this.viewer.reportCamera()}hover(place){let{viewer}=this;
 viewer.lifetime.cancel(this.look);let rest=HOVER_MS-(performance.now()-this.lastLook),look=()=>{this.look=null,this.lastLook=
-performance.now();let{x,y}=place;viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(x,y),viewer.ground(x,y)):viewer.
+performance.now();let{x,y}=place,{streamed,reader}=viewer.options;if(streamed){let asked=this.asked={},show=point=>{asked===
+this.asked&&!this.down.size&&viewer.panel.read(point,viewer.ground(x,y))};reader?.({place:[x,y]},!1).then(found=>show(found?.
+point??null),()=>null)}else viewer.sharp&&viewer.canPick?viewer.panel.read(viewer.point(x,y),viewer.ground(x,y)):viewer.
 player.playing||this.hover(place)};this.look=viewer.lifetime.later(look,Math.max(rest,viewer.sharp?0:HOVER_MS))}onKey(event){
 let{root}=this.viewer,[target]=event.composedPath(),inside=target instanceof Element&&target!==root?target.tagName:"",isControl=/^(INPUT|SELECT)$/.
 test(inside)||inside==="BUTTON"&&event.key===PLAY_KEY;hasModifier(event)||isControl||!this.command(event)||(event.preventDefault(),
 event.stopPropagation())}command({key,shiftKey}){let{viewer}=this,{camera,panel,options}=viewer;if(!camera)return!1;let command=CAMERA_KEYS[key];
 if(command in DIRECTIONS){let[x,y]=DIRECTIONS[command].map(way=>way*KEY_STEP);camera.flat===shiftKey?camera.rotate(-x,-y):
 camera.pan(x,y),viewer.reportCamera()}else if(command==="closer"||command==="farther"){let{wheel_zoom:notch}=camera.limits;
-camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(command==="whole")viewer.reset();else if(key===
-PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.follows?.panel??
-panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
+camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(command==="whole")viewer.reset();else if(command===
+"next"||command==="previous")viewer.step(command==="next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.
+lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.
+follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
 ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
 return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
 b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
@@ -1028,47 +1226,48 @@ canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){cameraOn
 1,this.rowsDone=0}refine(){this.rowsDone>=this.canvas.height?this.rowsDone=0:this.isRefined=!0}resize(width,height){let{
 canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.backPen?.drawImage(canvas,0,0),canvas.width=
 last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(back,0,0,width,height),back.width=width,
-back.height=height}dispose(){for(let canvas of[this.canvas,this.back,this.last,this.coarse,this.front])canvas.width=canvas.
-height=0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==this.version)return this.draft(program,
-shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.isRefined;while(!complete&&
-performance.now()<until);return complete}get isMoving(){return this.viewer.player.playing||this.viewer.isHeld}get leavesOut(){
-return this.isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.viewer.arrange(shown)}draft(program,shown,moving){
-let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1;this.
-arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),isPlaying=this.viewer.player.playing&&
-!this.viewer.isHeld,time=movingTime(price,this.fixed.draft,width*height,samples,isPlaying),budget=Math.max(time/crowd,MOVING_LEAST_MS),
-best=quality(price,this.fixed.draft,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.
-round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={
-width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),
-this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
-...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),this.isCoarse=best.scale<1||best.
-samples<samples;let isWhole=!this.isCoarse&&!this.viewer.smooth;return isWhole&&this.complete(),this.drawLines(shown),isWhole&&
-!this.isRefined}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.viewer,samples=Number(settings.
-samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(shown),this.isRefined))return!1;this.
-warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),
-rows=Math.min(rowsIn(STRIP_MS,price,this.fixed.strip,width,samples),most),region={width,height,top:this.rowsDone,rows};return this.
-timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);let drawn=smooth?{...region,height:rows,
-top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.
-pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,
-{scene,camera,ratio}=this.viewer,{width,height}=this.canvas;if(!scene?.earth.lines.length||!camera||!frontPen)return;let{
-earth}=scene,{state,aspect}=camera,look=JSON.stringify([state,aspect,width,height,earth.lines,earth.version]);if(look!==
-this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.
-height<height&&(canvas.height=height),front.width=width,front.height=height,earth.drawLines({camera,anchor,width,height,
-ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,height,0,0,width,height)}),this.frontLook=
-look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.isCoarse=
-!1,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.playing&&(this.
-lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{scene,camera}=this.
-viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;
-let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),
-[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,
-this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies?motionFactor(
-samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.now()-started,pixels=region.
-width*region.rows,factor=this.factor(samples),fixed=region.rows<region.height?this.fixed.strip:this.fixed.draft;program.
-price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.layers.reduce(
-(sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.warm&&share<
-ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row={width,height,top:0,rows:1},[w,h]=[width,height].map(n=>Math.
-max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row,1),this.triangles=triangles;let fixed=[
-row,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(program,shown,region,
-1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){
+back.height=height}show(picture,left,width,isSharp){let{canvas,pen}=this;pen?.drawImage(picture,left,0,width,picture.height,
+0,0,canvas.width,canvas.height),isSharp&&(this.frames+=1)}dispose(){for(let canvas of[this.canvas,this.back,this.last,this.
+coarse,this.front])canvas.width=canvas.height=0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==
+this.version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&
+!this.isRefined;while(!complete&&performance.now()<until);return complete}get isMoving(){return this.viewer.player.playing||
+this.viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.
+viewer.arrange(shown)}draft(program,shown,moving){let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),
+crowd=moving?this.graphics.waiting.size+1:1;this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(
+samples),isPlaying=this.viewer.player.playing&&!this.viewer.isHeld,time=movingTime(price,this.fixed.draft,width*height,samples,
+isPlaying),budget=Math.max(time/crowd,MOVING_LEAST_MS),best=quality(price,this.fixed.draft,width*height,samples,budget),
+w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.
+scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,
+()=>{this.render(program,shown,region,best.samples),this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=
+!reuse.shifts,this.pen.setTransform(...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),
+this.isCoarse=best.scale<1||best.samples<samples;let isWhole=!this.isCoarse&&!this.viewer.smooth;return isWhole&&this.complete(),
+this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.
+viewer,samples=Number(settings.samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(shown),
+this.isRefined))return!1;this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.
+rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed.strip,width,samples),most),region={width,
+height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);
+let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=
+rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(shown),!0)}drawLines(shown){
+let{front,frontPen,graphics}=this,{scene,camera,ratio}=this.viewer,{width,height}=this.canvas;if(!scene?.earth.lines.length||
+!camera||!frontPen)return;let{earth}=scene,{state,aspect}=camera,look=JSON.stringify([state,aspect,width,height,earth.lines,
+earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;canvas.width<width&&
+(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,front.height=height,earth.drawLines(
+{camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,height,0,0,width,
+height)}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.
+canvas.height,this.isCoarse=!1,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&
+!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,
+{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.
+state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(
+geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,
+now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||
+player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
+now()-started,pixels=region.width*region.rows,factor=this.factor(samples),fixed=region.rows<region.height?this.fixed.strip:
+this.fixed.draft;program.price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.
+layers.reduce((sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.
+warm&&share<ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row={width,height,top:0,rows:1},[w,h]=[width,height].
+map(n=>Math.max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row,1),this.triangles=triangles;
+let fixed=[row,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(program,shown,
+region,1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){
 let{graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
 view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
 canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
@@ -1085,24 +1284,7 @@ lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(hea
 -1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
 graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,
 coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
-[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
-size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
-abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
-part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
-let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
-.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
-v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
-texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}function makeLayers(gl,texture,size){let{width,height,layers,channels,levels}=size,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),
-mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(width,height)>most||layers>mostLayers)throw new Error(
-`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most} x ${most}\
- in ${mostLayers}; show fewer nodes`);let target=gl.TEXTURE_2D_ARRAY;gl.bindTexture(target,texture),gl.texStorage3D(target,
-levels+1,channels===1?gl.R16F:gl.RGBA16F,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
-gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
-texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE)}function sendLayer(gl,{width,height,channels,levels},layer,texels){
-let format=channels===1?gl.RED:gl.RGBA;gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);for(let[level,w,h]=[0,width,height];;level+=
-1){if(gl.texSubImage3D(gl.TEXTURE_2D_ARRAY,level,0,0,layer,w,h,1,format,gl.HALF_FLOAT,texels),level===levels)return;[texels,
-w,h]=halved(texels,w,h,channels)}}var PLACE2=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
+[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var PLACE2=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
@@ -1114,22 +1296,22 @@ pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;leve
 isFinite(error)&&side<=1)||side>limits.maxSideHeights*pixels)break}return level})}triangles(levels,joins){let sizes=Array.
 from(levels,level=>level<0?0:this.limits.tileCells>>level),index=new Uint32Array(6*sizes.reduce((sum,size)=>sum+size*size,
 0)),end=0;return levels.forEach((level,block)=>{level>=0&&(end=this.add(index,end,level,joins,block))}),index.slice(0,end)}add(index,start,level,joins,block){
-let{rows,columns,limits}=this,{shape,cells}=this.mesh,step=1<<level,count2=limits.tileCells/step+1,row=rows[Math.floor(block/
-columns.length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+side]),
-snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count2*count2);for(let b=0;b<
+let{rows,columns,limits}=this,{shape:shape2,cells}=this.mesh,step=1<<level,count2=limits.tileCells/step+1,row=rows[Math.
+floor(block/columns.length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+
+side]),snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count2*count2);for(let b=0;b<
 count2;b+=1){let y=Math.min(b*step,row.cells);for(let a=0;a<count2;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===
 0||b===count2-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count2-1)&&(py=snapped(py,row.cells,a?right:left)),
-nodes[b*count2+a]=(row.first+py)*shape[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=
-p,index[end++]=q,index[end++]=r)};for(let b=0;b<count2-1;b+=1){let y=Math.min(row.first+Math.min(b*step,row.cells),shape[0]-
-2);for(let a=0;a<count2-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape[1]-2);if(cells&&!cells[y*
-(shape[1]-1)+x])continue;let at=b*count2+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count2+1],nodes[at+count2]];put(p,q,
-r),put(p,r,s)}}return end}},NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,
-this.width]=axis?[columns+1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(
+nodes[b*count2+a]=(row.first+py)*shape2[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=
+p,index[end++]=q,index[end++]=r)};for(let b=0;b<count2-1;b+=1){let y=Math.min(row.first+Math.min(b*step,row.cells),shape2[0]-
+2);for(let a=0;a<count2-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape2[1]-2);if(cells&&!cells[y*
+(shape2[1]-1)+x])continue;let at=b*count2+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count2+1],nodes[at+count2]];put(p,
+q,r),put(p,r,s)}}return end}},NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.
+count,this.width]=axis?[columns+1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(
 this.count*this.width)}at(line,along){return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=
 1){let[first,last]=[this.at(0,n),this.at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=
-this.values[last]=most}}};function eachBlock({step,row,column,shape},[rows,columns],call){let bottom=Math.min(row+(shape[0]<<
-step),rows),right=Math.min(column+(shape[1]<<step),columns);for(let j=row;j<bottom;j+=1){let own=(j-row>>step)*shape[1];
-for(let i=column;i<right;i+=1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){
+this.values[last]=most}}};function eachBlock({step,row,column,shape:shape2},[rows,columns],call){let bottom=Math.min(row+
+(shape2[0]<<step),rows),right=Math.min(column+(shape2[1]<<step),columns);for(let j=row;j<bottom;j+=1){let own=(j-row>>step)*
+shape2[1];for(let i=column;i<right;i+=1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){
 let around2=(n,by,count2,closed)=>closed?(n+by+count2)%count2:clamp(n+by,0,count2-1);return nodes.map((own,block)=>{let[
 j,i]=[Math.floor(block/columns),block%columns],least=own;for(let by of[-1,1]){let row=around2(j,by,rows,periodic[0]),column=around2(
 i,by,columns,periodic[1]);least=Math.min(least,nodes[row*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){
@@ -1141,125 +1323,12 @@ new Lines(blocks,0),new Lines(blocks,1)];for(strides.forEach((stride,block)=>{le
 blocks[1]];[[j,i],[i,j]].forEach(([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(
 line+far,along);values[at]=Math.max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());
 let joined=parts.map(part=>bordersOf(part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}
-function bordersOf({step,row,column,shape,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;
-for(let side of[0,1,2,3]){let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[
-Math.floor(own/shape[1]),own%shape[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+far)*
-size,line.count-1),from=start+place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<
+function bordersOf({step,row,column,shape:shape2,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),
+changed=!1;for(let side of[0,1,2,3]){let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{
+let place=[Math.floor(own/shape2[1]),own%shape2[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+
+far)*size,line.count-1),from=start+place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<
 end;n+=1)coarsest=Math.max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<
-end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var Poles=class{size;poles;rays;nodes;isAlongJ;cells;lines;constructor(poles,nodes,rays){let[rows,columns]=nodes;this.poles=
-poles,this.nodes=nodes,this.rays=rays,this.isAlongJ=poles[0]?.component!==0,[this.lines,this.cells]=this.isAlongJ?[rows,
-columns-1]:[columns,rows-1];let more=poles.reduce((sum,pole)=>sum+this.depth(pole)+1,0);this.size={width:columns+(this.isAlongJ?
-0:more),height:rows+(this.isAlongJ?more:0)}}laidOut(own){if(!this.poles.length)return own;let[rows,columns]=this.nodes,{
-width,height}=this.size,result2=new Float32Array(4*width*height);for(let j=0;j<rows;j+=1)result2.set(own.subarray(4*columns*
-j,4*columns*(j+1)),4*width*j);return this.poles.forEach((pole,n)=>this.fill(result2,pole,n)),result2}fastest(texels){let most=0;
-for(let line=0;line<(this.isAlongJ?this.size.height:this.size.width);line+=1){let isNear2=pole=>(line-pole.line)*pole.inward<
-pole.near;if(!(line<this.lines&&this.poles.some(isNear2)))for(let k=0;k<=this.cells;k+=1){let at=this.at(line,k);most=Math.
-max(most,Math.abs(texels[at]),Math.abs(texels[at+1]))}}return most}at(line,around2){return 4*(this.isAlongJ?line*this.size.
-width+around2:around2*this.size.width+line)}depth({near}){return Math.min(near+3,this.lines-1)}shift(n){let before=this.
-poles.slice(0,n).reduce((sum,pole)=>sum+this.depth(pole)+1,0),{inward,line}=this.poles[n];return this.lines+before-(inward>
-0?line:line-this.depth(this.poles[n]))}ray(n,around2){let at=2*(n*(this.cells+1)+around2);return[this.rays[at],this.rays[at+
-1]]}fill(texels,pole,n){let{cells}=this,{line,inward,component}=pole,[shift,still]=[this.shift(n),this.still(texels,pole,
-n)];for(let depth=0;depth<=this.depth(pole);depth+=1)for(let k=0;k<=cells;k+=1){let from=this.at(line+inward*depth,k),to=this.
-at(line+inward*depth+shift,k),[around2,across]=[texels[from+1-component],texels[from+component]],[ray,next,last]=[k,(k+1)%
-cells,(k+cells-1)%cells].map(m=>this.ray(n,m));for(let c of[0,1]){let turn=(next[c]-last[c])/2;texels[to+c]=depth?inward*
-across*ray[c]+around2*depth*turn:still[c]}texels.copyWithin(to+2,from+2,from+4)}}still(texels,{line,inward,component},n){
-let[a,b,c,x,y]=[0,0,0,0,0];for(let k=0;k<this.cells;k+=1){let[p,q]=this.ray(n,k),square=p*p+q*q,part=texels[this.at(line,
-k)+component]*inward;[x,y]=[x+part*p,y+part*q],[a,b,c]=[a+p*p/square,b+p*q/square,c+q*q/square]}let determinant2=a*c-b*b;
-return[(c*x-b*y)/determinant2,(a*y-b*x)/determinant2]}get raysSize(){return[this.cells+1,Math.max(this.poles.length,1)]}get angles(){
-let{cells}=this,[width,height]=this.raysSize,result2=new Float32Array(4*width*height);return this.poles.forEach((_,n)=>{
-let angles=[];for(let k=0;k<=cells;k+=1){let[p,q]=this.ray(n,k),angle=Math.atan2(q,p);for(;angle<angles[k-1];)angle+=2*Math.
-PI;angles.push(angle)}angles.forEach((angle,k)=>{let turn=angles[0]+2*Math.PI*k/cells+1e-6,line=angles.findLastIndex(other=>other<=
-turn);result2.set([angle,Math.hypot(...this.ray(n,k)),line],4*(n*width+k))})}),result2}get uniforms(){let numbers=this.poles.
-flatMap(({line,inward,near},n)=>[line,inward,near,this.shift(n)]),planes=this.poles.flatMap(({plane})=>plane);for(;numbers.
-length<8;)numbers.push(0);for(;planes.length<12;)planes.push(0);return{u_poles:numbers,u_planes:planes,u_polar:Number(this.
-isAlongJ)}}};var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=8,
-DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,ENDLESS=1e30,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape){
-let[rows,columns]=shape,width=padded.shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,n=0;j<
-rows;j+=1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%
-3]}return{data,shape:[rows,columns,3]}}function normalOf(padded,trace,shape){let[rows,columns]=shape,width=3*padded.shape[1],
-[top,left]=trace.drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3){
-let at=width*(j+top+1)+3*(i+left+1),along=step=>[0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(
-along(3),along(width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}for(let{
-component,line,inward}of trace.poles??[]){let[at,last]=component?[line-top,columns]:[line-left,rows];if(at<0||at>=(component?
-rows:columns))continue;let offset=(across,around2)=>3*(component?across*columns+around2:around2*columns+across),sum=[0,0,
-0];for(let m=0;m<last;m+=1)for(let k=0;k<3;k+=1)sum[k]+=data[offset(at+inward,m)+k];let size=length2(sum)||1,mean=sum.map(
-x=>Math.round(x/size*NORMAL_MAX));for(let m=0;m<last;m+=1)data.set(mean,offset(at,m))}return{data,shape:[rows,columns,3]}}
-function flowsOf({slices},step){let{trace,times:times2,lags}=slices;if(!trace?.pathlines||!trace.timed)return[step];let reach=lags[lags.
-length-1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-times2[step])<reach),isNeeded=n=>near[n]||near[n-1]||near[n+
-1];return[...times2.keys()].filter(isNeeded)}function stretches({slices},step,side,from,to){let{trace,times:times2}=slices;
-if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,1]}];let result2=[],{unit:unit2}=trace.timed,
-lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in times2),end=isLast?to:
-lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between2=isLast?[0,1]:[lagOf(n),end],isWhole=end>=to-LAG_ROUNDING*
-to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between2}),from=isWhole?to:end}return result2}
-function programsOf({programs,floats},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,get=(fragment,...variant)=>{
-let names=variant.filter(name=>typeof name=="string"),program=programs.get(fullVertex,fragment,...names);if(program.error)
-throw new Error(`the tracer cannot be built: ${program.error}`);return program},target=floats&&"FLOWTEX_FLOATS",polar=trace.
-poles!==void 0&&"FLOWTEX_POLES";return{follow:get(path,polar,trace.pathlines&&"FLOWTEX_PATHLINES"),compose:trace.pathlines?
-null:get(path,polar,"FLOWTEX_COMPOSED"),slopes:get(layers,"FLOWTEX_SLOPES",target),tangents:get(layers,polar,target)}}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;poles;constructor(graphics,header,trace,find,step){
-this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.poles=new Poles(trace.poles??[],trace.nodes,
-find("rays")?.data??[]),this.passes=this.slices(step)}advance(until){if(!Object.values(programsOf(this.graphics,this.header,
-this.trace)).every(program=>program?.ready??!0))return null;let gl=this.graphics.context;try{do{let{done,value}=this.passes.
-next();if(gl.isContextLost())return null;if(done)return this.result=null,value}while(performance.now()<until);return null}finally{
-this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",texture);for(let frame of this.frames)
-this.graphics.free("Framebuffer",frame);this.result&&!this.graphics.context.isContextLost()&&this.graphics.context.deleteTexture(
-this.result),this.result=null,this.textures.clear(),this.frames.length=0}data(name){let part=this.find(name);if(!part)throw new Error(
-`the part "${name}" of the scene is missing`);return part.data}texture(width,height,inner,data){let gl=this.graphics.context,
-texture=this.graphics.counted(gl.createTexture());return this.textures.add(texture),gl.activeTexture(gl.TEXTURE0),gl.bindTexture(
-gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
-gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.texSubImage2D(gl.TEXTURE_2D,0,0,0,
-width,height,gl.RGBA,gl.FLOAT,data),texture}frame(){let gl=this.graphics.context,frame=this.graphics.counted(gl.createFramebuffer());
-return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,frame),frame}target(width,height){let gl=this.graphics.
-context,texture=this.texture(width,height,gl.RGBA32UI,null),frame=this.frame();return gl.framebufferTexture2D(gl.FRAMEBUFFER,
-gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.graphics.context;for(let n=0;n<UNITS;n+=
-1)gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,null),gl.bindTexture(gl.TEXTURE_2D_ARRAY,null);gl.bindFramebuffer(
-gl.FRAMEBUFFER,null)}flow(step){let{trace}=this,data=this.data(`flow/${step}`),unit2=this.data("unit"),channels=data.length/
-unit2.length,flow=new Float32Array(4*unit2.length);for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=HALVES[data[at+
-2]],size=HALVES[unit2[n]]*trace.unit;flow[4*n]=HALVES[data[at]]*speed/size,flow[4*n+1]=HALVES[data[at+1]]*speed/size,flow[4*
-n+2]=speed,flow[4*n+3]=trace.timed?trace.timed.unit:size}let result2=this.poles.laidOut(flow);return trace.timed&&(this.
-fastest=Math.max(this.fastest,this.poles.fastest(result2)*trace.timed.speed*trace.timed.unit)),result2}wholeSpeed(step){
-let data=this.data(`flow/${step}`),nodes=this.data("unit").length,channels=data.length/nodes,whole=new Float32Array(4*nodes);
-for(let n=0;n<nodes;n+=1)whole[4*n]=HALVES[data[(n+1)*channels-1]];return whole}cells(){let[rows,columns]=this.trace.nodes,
-[open,nearest]=["open","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<
-rows*columns;n+=1){cells[4*n]=open?open[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest?nearest[2*n+k]:0}return cells}padded(){
-let data=this.data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=
-1)result2[4*n+k]=data[3*n+k];return result2}flowTexture(step){let{width,height}=this.poles.size,gl=this.graphics.context,
-texture=this.flows.get(step)??this.texture(width,height,gl.RGBA32F,this.flow(step));this.flows.delete(step),this.flows.set(
-step,texture);for(let[other,old]of this.flows){if(this.flows.size<=FLOWS_HELD)break;this.flows.delete(other),this.textures.
-delete(old),this.graphics.free("Texture",old)}return texture}partsOf({from,to}){let count2=clamp(Math.ceil((to-from)*this.
-fastest/PASS_CELLS),1,MOST_PARTS),at=n=>n===count2?to:from+(to-from)*n/count2;return Array.from({length:count2},(_,n)=>[
-at(n),at(n+1)])}layerTarget(result2,size){let gl=this.graphics.context,{width,height}=size;if(this.graphics.floats){let frame2=this.
-frame();return{begin:n=>(gl.bindFramebuffer(gl.FRAMEBUFFER,frame2),gl.framebufferTextureLayer(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,
-result2,0,n),[width,height]),end:()=>{},finish:()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),
-size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}}}let pairs=Math.ceil(width/2),[,frame]=this.target(pairs,height),read=new Uint32Array(
-pairs*height*4),halves=new Uint16Array(read.buffer),texels=new Uint16Array(4*width*height);return{begin:()=>(gl.bindFramebuffer(
-gl.FRAMEBUFFER,frame),[pairs,height]),end:n=>{gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,read);for(let row=0;row<
-height;row+=1){let first=8*pairs*row;texels.set(halves.subarray(first,first+4*width),4*width*row)}gl.activeTexture(gl.TEXTURE0),
-gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),sendLayer(gl,size,n,texels)},finish:()=>{}}}*slices(step){let{graphics,trace,
-header}=this,gl=graphics.context,{geometry,slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.size,
-geometry.columns.size],size={width,height,layers:slices.count,channels:4,levels:geometry.levels},result2=gl.createTexture();
-this.result=result2,gl.activeTexture(gl.TEXTURE0),makeLayers(gl,result2,size);let{poles}=this,own=this.texture(poles.size.
-width,poles.size.height,gl.RGBA32F,this.flow(step)),rays=this.texture(...poles.raysSize,gl.RGBA32F,poles.angles),constant=[
-this.texture(columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.padded()),this.texture(
-columns,rows,gl.RGBA32F,this.wholeSpeed(step))],pool=[0,1,2,3,4].map(()=>this.target(columns,rows)),{lags,sides,count:count2}=slices,
-uniforms2={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_flowNext:6,u_rays:7,...poles.uniforms,
-u_longest:trace.longest??ENDLESS,u_nodes:[columns,rows],u_closed:[Number(trace.closed[1]),Number(trace.closed[0])],u_first:[
-trace.first[1],trace.first[0]],u_texels:[width,height],u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.offset.slice(3,
-6),u_timed:trace.timed?.speed??0,u_rest:trace.rest,u_pace:trace.pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(
-geometry.planar),u_mostReach:2*lags[lags.length-1]},draw=([w,h],textures,pass,values)=>{gl.viewport(0,0,w,h);for(let ability of[
-gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);textures.forEach((texture,n)=>{gl.activeTexture(
-gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(null),graphics.programs.use(pass,{...uniforms2,
-...values}),gl.drawArrays(gl.TRIANGLES,0,3)},layers=this.layerTarget(result2,size),layer=(n,pass,textures,values)=>{draw(
-layers.begin(n),[own,...constant,...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=programsOf(graphics,
-header,trace);layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});for(let side=0;side<
-sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];for(let[m,lag]of lags.
-entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:null,at=now;for(let stretch of stretches(
-header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(n)),parts=composer?[[from,lag]]:this.partsOf(
-stretch);for(let[begin,end]of parts){let next=pool.find(each=>![first,before,now,at].includes(each))??pool[0];gl.bindFramebuffer(
-gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],before[0],far,rays],composer??follow,{u_lagEarlier:earlier,
-u_from:begin,u_to:end,u_side:sign,u_between:stretch.between}),gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(
-4)),at=next,yield}}[before,now]=[now,at],m||(first=now);let fourth=m===1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],
-now[0]],{u_fourth:fourth,u_lag:sign*lag})}layer(start,slopes,[first[0],now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.
-finish(),result2}};var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
+end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
 alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;anchor=[
 0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts){
@@ -1273,9 +1342,9 @@ step,step).map(name=>name.startsWith("flow/")?stepOf(name):step);return[...new S
 header.scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
 after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
 slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.
-nodes??[],shape={flow:[...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.
+nodes??[],shape2={flow:[...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.
 rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,
-part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape||String(shape)===String(part.
+part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.
 shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),
 digest=name=>this.key(["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.
 shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,
@@ -1305,26 +1374,27 @@ common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.
 gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(
 target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.
 meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(
-this.part("mesh"),this.part("blocks"));let{shape,periodic}=geometry,parts={blocks:this.part("mesh").data,cells:this.parts.
-get("cells")?.data};return this.meshLevels=new MeshLevels({shape,periodic,...parts},mesh)}cornersAt(place){let{triangles,
-shape}=this.header.geometry;return triangles?cornersOf(this.part("triangles").data,place):cornersAt(shape,place)}levels(sight){
-return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins=new Int8Array){
-let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop(
-"index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){
-let{slices,geometry}=this.header;return slices.trace?[...this.resources.keys()].filter(name=>name.startsWith("slices/")).
-length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.columns.size:0}load(steps){for(let step of steps)this.slices(
-step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==
-this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)
-this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.
-createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.
-graphics.context,{geometry,scalars,paper}=this.header,{shape,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,
-joins:new Int8Array},key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,
-joins),drawn=key(["cells","mesh","blocks"],shape,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.
-triangles?this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
-positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
-vertexNormals(nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
-map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape[0]*shape[1]),2)},colour=key([...new Set(painted)],
-shape,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape,rows,columns,corners?.length]),place=()=>corners?
+this.part("mesh"),this.part("blocks"));let{shape:shape2,periodic}=geometry,parts={blocks:this.part("mesh").data,cells:this.
+parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape:shape2,periodic,...parts},mesh)}cornersAt(place){
+let{triangles,shape:shape2}=this.header.geometry;return triangles?cornersOf(this.part("triangles").data,place):cornersAt(
+shape2,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.
+drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,
+drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.
+resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.header;return slices.trace?[...this.resources.
+keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.columns.size:
+0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(
+this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&
+stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
+fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,
+fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.header,{shape:shape2,rows,
+columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.key(["\
+triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape2,[
+...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
+null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("p\
+osition").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(
+nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(
+name=>this.part(name).data);return vertices(shares(steps,scalars,shape2[0]*shape2[1]),2)},colour=key([...new Set(painted)],
+shape2,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape2,rows,columns,corners?.length]),place=()=>corners?
 vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
 Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
 buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",key(["normal"]),()=>normals(normal)),3,type],
@@ -1345,7 +1415,7 @@ draw=()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,textu
 flatMap(n=>[n%width,Math.floor(n/width)]);graphics.programs.use(this.pickers[1],{u_texels:places}),gl.drawArrays(gl.TRIANGLES,
 0,3)},bits=graphics.numbers(draw,texels.length,slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{let[
 x,y,z,w]=numbers.subarray(4*(layer*texels.length+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;return this.
-texture(name,this.key([name],repeat),texture=>{let{data,shape}=this.part(name),[height,width,channels=1]=shape,levels=Math.
+texture(name,this.key([name],repeat),texture=>{let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,levels=Math.
 floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?
 gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,
 gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let{context:gl,floats}=this.graphics;makeLayers(gl,texture,size);for(let n=0;n<
@@ -1380,7 +1450,7 @@ this.tiles=new Queue(source,taker),this.wholes=new Queue(source,taker)}open(){le
 catch(error=>taker.lack(wordsOf(ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.want(keys.map(key=>[key,steps]))}wantSteps(steps){
 let before=this.wholes.jobs.flatMap(([,some])=>some);if(steps.every(step=>before.includes(step)))return;let wanted=[...new Set(
 [...steps,...before])].slice(0,steps.length+SPARE_STEPS);this.wholes.want(wanted.map(step=>[null,[step]]))}stop(){this.tiles.
-stop(),this.wholes.stop()}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+stop(),this.wholes.stop()}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;limits;constructor(host,root){
 this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
@@ -1404,148 +1474,164 @@ root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange(
 host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(camera,steps),layers=[{scene:this.root,
 key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(name)?.
 scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.
-map(({scene,key},n)=>{let{levels,shape}=scene.levels(sight);for(let finer of shown.get(names[n])??[])this.hide(levels,shape[1],
-finer,names[n]);let{pyramid}=this.root.header,[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{
-step:key[0],row,column,shape,levels}});return this.layers=layers,this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){
-let[row,column,size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row;j<Math.min(row+size,levels.length/
-columns);j+=1)levels.fill(-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(
-parts.map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;
-this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].
-shape,joins=geometry.triangles?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.
-setTriangles(levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)
-return new Map;this.pyramid??=new Pyramid(header.pyramid,this.root.part("places").data);let choices=this.pyramid.choose(
-{...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=
-1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+
-LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(
-name,steps)),this.ask(),this.trim(steps);for(let name of wanted)this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(
-choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));return this.wanted=wanted.length,this.pending=wanted.
-filter(name=>!this.isHere(name,steps)||!this.isLoaded(name,steps)).length,this.chosen={choices,steps,names:String([...shown.
-keys()])},shown}obtainable(names,steps,depth){let needs=[steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.
-failed.has(this.need(name,some))),found=names.map(name=>{let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf(
-[level,row,column]));)[level,row,column]=[level+1,row>>1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});
-return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===
-null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){let scene=this.tiles.get(name)?.scene;
-return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||
-this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.host.refine(),!1):(scene.load(steps),
-!0)}ask(){let{requests,lifetime}=this.host;!requests||this.isWaiting||!(this.missing.length||this.hasAsked)||(this.isWaiting=
-!0,lifetime.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=this.missing.length>0;let lacking=(name,step)=>this.
-tiles.get(name)?.scene?.lacking(step)??flowsOf(this.root.header,step),needed=this.missing.flatMap(name=>this.chosen.steps.
-flatMap(step=>lacking(name,step))),steps=[...new Set(needed)].sort((a,b)=>a-b);requests.wantTiles(this.missing.map(keyOf),
-steps)},REQUEST_MS))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,
-scene,used}=tile,kind=scene?.header.slices.trace?"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}\
-/`)),needed=scene?steps.flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-
-STEPS_HELD[kind],0))){let step=stepOf(part);if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(
-tile,`${each}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)
-this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>
-(this.host.options.source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
-tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
-part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var STILL_MS=160,STEPS_HELD2={slices:[12,4],flow:[100,24]},isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
-createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;parts=new Map;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
-this];renderer;busyUntil=0;firstCamera=null;next=[];constructor(element,options={}){this.options=options,this.requests=options.
-source?new Requests(options.source,this):null;let{root}=this;root.className="flowtex",root.tabIndex=0,Object.assign(root.
-dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.setAttribute("data-lm-suppress-shortcuts","true"),root.setAttribute(
-"role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.append(root),this.pointers=
-new Pointers(this),this.graphics.users.add(this),this.observe(),this.graphics.gl||this.panel.fail("This browser has no W\
-ebGL2, which the picture is drawn with.","Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome\
- or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.panel.arrange()),root),lifetime.
-observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.
-length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,root),lifetime.listen(document,"visibili\
-tychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics;
-return{...this.lifetime.stats(),objects,users:users.size,frames:this.renderer.frames}}dispose(){if(!this.lifetime.isOver){
-this.player.playing=!1,this.lifetime.end(),this.requests?.stop(),this.tiles?.dispose(),this.tiles=null,this.scene?.dispose(),
-this.scene=null;for(let name of[...this.parts.keys()])this.remove(name);this.graphics.leave(this),this.renderer.dispose(),
-this.root.remove()}}setHeader(header){if(header.format!==4){this.panel.fail(`The scene has format ${header.format}, and \
-this client reads format ${4}.`,"Use the client of the flowtex that made the scene.");return}this.requests?.stop();let old=this.
-header;if(old&&old.generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));if(this.
-header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.tiles?.dispose(),this.
-scene?.dispose(),this.makeScene(header),(!old||!isSamePlace(old.geometry,header.geometry))&&([this.firstCamera,this.camera]=
-[header.camera,null]),old&&old.generation!==header.generation)for(let name of[...this.parts.keys()])name.includes("/")&&
-this.remove(name);this.panel.build(),this.resize(),this.change()}recolour(colours){if(this.header){Object.assign(this.header,
-colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),
-this.change()}}chooseColours(choice){if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.
-together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(
-part),viewer.recolour(colours)}}makeScene(header){this.scene=new Scene(this.graphics,header,this.parts),this.tiles=new Tiles(
-this,this.scene)}setPart(part){let{name,digest}=part,tile=tilePart(name);if(tile)return void this.tiles?.setPart(tile[0],
-{...part,name:tile[1]});if(digest&&this.parts.get(name)?.digest===digest)return;let held=this.graphics.hold(part);this.remove(
-name),this.parts.set(name,held),this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",
-...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change()}remove(name){this.graphics.release(this.parts.get(
-name)),this.parts.delete(name)}trim(){let{header,options}=this,{hasSteps=!1,memory=0}=options.source??{};if(!header||!hasSteps)
-return;let kind=header.slices.trace?"flow":"slices",named=some=>[...this.parts.keys()].filter(name=>name.startsWith(some)),
-needed=this.player.moment.slice(0,2).flatMap(step=>flowsOf(header,step));for(let name of named(`${kind}/`).slice(0,-STEPS_HELD2[kind][+(memory>
-0)])){let step=stepOf(name);if(needed.includes(step))continue;for(let held of[kind,"extra"])this.remove(`${held}/${step}`);
-let values=memory?named("scalars/"):[];for(let other of values)isOfStep(other,step,header)&&this.remove(other)}}setSettings(settings){
-Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
-panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
-this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
-camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!this.camera)this.firstCamera=copyOf(
-state);else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.
-holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),
-this.reportCamera())}place(){let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||
-!nodes)return;let{geometry,limits}=header,state=first?widened(geometry,limits,first,nodes,aspect):fitted(geometry,limits,
-nodes,aspect),globe=header.earth&&!header.earth.map?header.earth.radius:0;this.camera=new Camera(state,limits,geometry.planar,
-aspect,globe),this.camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),(!first||!isEqual(first,state))&&this.
-options.onCamera?.(copyOf(state))}get aspect(){return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,
-1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}scrub(share){
-let{player,options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.
-varies?(this.setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){
-this.player.clock=clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();
-this.playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.
-start(),this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.
-follows.pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
-let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.
-now()+STILL_MS}get isHeld(){return performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),
-this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),
-this.request()}arrange(shown){let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.
-pending??0),scenes}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.
-sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.
-lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),
-{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));
-width===this.canvas.width&&height===this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=
-this.aspect,isEqual(this.camera.state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.
-options.smooth!==void 0||!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.
-canvas.height/Math.max(this.stage.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),
-this.setSharp(!1)}get lacking(){let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){
-let{header,scene,player,shown,lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?
-[1,2].map(n=>(moment[1]+n)%header.slices.steps):[],steps=this.missing([moment[0],moment[1],...this.next,...ahead]),{source,
-isComing}=this.options;steps.length&&source?.hasSteps&&!isComing?.()&&this.requests?.wantSteps(steps);let isMade=!lacking.
-length&&scene.make(moment.slice(0,2),until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.
-wait(lacking,isMade,this.renderer.leavesOut),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),
-this.change()),isMade?this.shown=moment:(lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){
-tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}missing(steps){return[...new Set(steps.flatMap(step=>this.
-scene?.lacking(step)??[]))]}frame(now,until){if(!(this.lifetime.isOver||this.graphics.isLost||!this.graphics.gl||!this.isVisible)&&
-!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(this.header,until)}catch(error){
-this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}program(header,isClose=this.isClose(header)){
-let{vertex,fragment}=header.shaders,variant=variantOf(header,this.settings,isClose);return this.graphics.programs.get(vertex,
-fragment,...variant)}isClose(header){if(!this.camera)return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.
-slice(1).map(({scene})=>scene.header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){
-let shown=this.available(until);this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||
-!this.camera)return;if(program.error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);
-return}if(!program.ready||!this.scene?.earth.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(
-program,shown,until);this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.
-panel.clear(),this.scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||
-this.request()}advance(now){let{player,options}=this,isMade=steps=>(this.next=steps,!this.missing(steps).length&&!!this.
-scene?.make(steps,now));this.next=[],!(!player.playing||!player.advance(now,isMade))&&(player.varies?options.onTime?.(player.
-time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){let{
-header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let{geometry,constants}=header,
-focus=camera.state.focal_point,local=toFrame(geometry.frame,subtract2(focus,geometry.center)),old=scene?.anchor??[0,0,0],
-range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);return{focus,anchor:isFar(subtract2(
-local,old))?isFar(local)?local:[0,0,0]:old,eye:camera.eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,
-density,pixel:2*camera.height/Math.max(this.stage.clientHeight*density,1)}}get canPick(){let{scene,graphics}=this;return!!scene&&
-!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){return this.find(x,y)?.point??null}ground(x,y){
-let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;
-if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({
-layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};function viewersIn(element,count2,options,own=()=>({})){if(count2<2)return[new Viewer(element,{...options,...own(0)})];let pair=dom(
-"div",{class:"flowtex-pair"});pair.style.cssText="display: flex; gap: 2px; width: 100%; height: 100%",element.append(pair);
-let viewers=[];for(let n=0;n<count2;n+=1){let cell=dom("div");cell.style.cssText="flex: 1 1 0; min-width: 0; height: 100\
-%",pair.append(cell);let others=()=>viewers.filter((_,m)=>m!==n),follower=n?{controls:!1,follows:viewers[0]}:{};viewers.
-push(new Viewer(cell,{...options,...own(n),...linked(options,others),...follower}))}for(let viewer of viewers)viewer.together=
-viewers;return viewers}function linked(options,others){let both=(follow,report)=>(...values)=>{for(let other of others())
-follow(other,...values);report?.(...values)};return{onCamera:both((other,camera)=>other.setCamera(camera),options.onCamera),
-onTime:both((other,time)=>other.setTime(time),options.onTime),onClock:both((other,clock)=>other.setClock(clock),options.
-onClock),onSetting:both((other,name,value)=>other.followSetting(name,value),options.onSetting)}}function mountPage(element,scenes,options={}){
-let viewers=viewersIn(element,scenes.length,options,n=>({source:scenes[n].source}));return scenes.forEach(({header},n)=>viewers[n].
-setHeader(header)),scenes.forEach(({parts},n)=>parts.forEach(part=>viewers[n].setPart(part))),viewers[0].requests?.open(),
-viewers[0]}var CAMERA_MS=100,TIME_MS=250,STILL_MS2=1500,STILL_FORMAT={type:"image/jpeg",quality:.9},HEADERS=["_header","_header_bes\
+map(({scene,key},n)=>{let{levels,shape:shape2}=scene.levels(sight);for(let finer of shown.get(names[n])??[])this.hide(levels,
+shape2[1],finer,names[n]);let{pyramid}=this.root.header,[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);
+return{step:key[0],row,column,shape:shape2,levels}});return this.layers=layers,this.setTriangles(names,parts),layers.map(
+({scene})=>scene)}hide(levels,columns,finer,above){let[row,column,size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,
+0,0];for(let j=row;j<Math.min(row+size,levels.length/columns);j+=1)levels.fill(-1,j*columns+column,j*columns+Math.min(column+
+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&
+this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.
+log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.triangles?[]:join(parts,blocks,geometry.periodic,
+most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){let{header}=this.
+root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.pyramid,this.
+root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(
+header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=
+this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,header.pyramid.depth);
+this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(),this.trim(steps);for(let name of wanted)this.isHere(
+name,steps)&&this.load(name,steps,until);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));
+return this.wanted=wanted.length,this.pending=wanted.filter(name=>!this.isHere(name,steps)||!this.isLoaded(name,steps)).
+length,this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,steps,depth){let needs=[steps,
+...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.failed.has(this.need(name,some))),found=names.map(name=>{
+let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([level,row,column]));)[level,row,column]=[level+1,row>>
+1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){
+let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){
+let scene=this.tiles.get(name)?.scene;return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.
+tiles.get(name)?.scene;return!scene||this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.
+host.refine(),!1):(scene.load(steps),!0)}ask(){let{requests,lifetime}=this.host;!requests||this.isWaiting||!(this.missing.
+length||this.hasAsked)||(this.isWaiting=!0,lifetime.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=this.
+missing.length>0;let lacking=(name,step)=>this.tiles.get(name)?.scene?.lacking(step)??flowsOf(this.root.header,step),needed=this.
+missing.flatMap(name=>this.chosen.steps.flatMap(step=>lacking(name,step))),steps=[...new Set(needed)].sort((a,b)=>a-b);requests.
+wantTiles(this.missing.map(keyOf),steps)},REQUEST_MS))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(
+([,a],[,b])=>b.used-a.used)){let{parts,scene,used}=tile,kind=scene?.header.slices.trace?"flow":"slices",held=[...parts.keys()].
+filter(part=>part.startsWith(`${kind}/`)),needed=scene?steps.flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.
+slice(0,Math.max(held.length-STEPS_HELD2[kind],0))){let step=stepOf(part);if(needed.includes(step))continue;for(let each of[
+kind,"extra"])this.release(tile,`${each}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.
+header));for(let each of values)this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;
+bytes+=scene?.tracedBytes??0,bytes>(this.host.options.source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){
+let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);
+this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.
+delete(part)}};function viewState({header,camera,anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,
+local=toFrame(geometry.frame,subtract2(focus,geometry.center)),range=constants.anchorRange*2*camera.height,isFar=v2=>v2.
+some(c=>Math.abs(c)>range);return{focus,anchor:isFar(subtract2(local,anchor))?isFar(local)?local:[0,0,0]:anchor,eye:camera.
+eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(rows*density,1)}}var STILL_MS=160,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;held=new HeldParts(
+this.graphics);parts=this.held.all;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
+this];renderer;busyUntil=0;isPainted=!0;firstCamera=null;next=[];constructor(element,options={}){this.options=options,this.
+requests=options.source?new Requests(options.source,this):null;let{root}=this;root.className="flowtex",root.tabIndex=0,Object.
+assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.setAttribute("data-lm-suppress-shortcuts","tr\
+ue"),root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.
+append(root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.observe(),!this.graphics.gl&&!options.streamed&&
+this.panel.fail("This browser has no WebGL2, which the picture is drawn with.","Turn on hardware acceleration in its set\
+tings, or use a recent Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(
+()=>this.panel.arrange()),root),lifetime.observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(
+entries=>{this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,
+root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){
+let{objects,users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,frames:this.renderer.frames}}dispose(){
+this.lifetime.isOver||(this.player.playing=!1,this.lifetime.end(),this.requests?.stop(),this.tiles?.dispose(),this.tiles=
+null,this.scene?.dispose(),this.scene=null,this.held.clear(),this.graphics.leave(this),this.renderer.dispose(),this.root.
+remove())}setHeader(header){if(header.format!==4){this.panel.fail(`The scene has format ${header.format}, and this clien\
+t reads format ${4}.`,"Use the client of the flowtex that made the scene.");return}this.requests?.stop();let old=this.header;
+if(old&&old.generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));this.header=
+header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.tiles?.dispose(),this.scene?.
+dispose(),this.makeScene(header);let isElsewhere=!old||!isSamePlace(old.geometry,header.geometry);isElsewhere&&([this.firstCamera,
+this.camera]=[header.camera,null]),old&&old.generation!==header.generation&&this.held.clear(name=>isElsewhere||name.includes(
+"/")),this.panel.build(),this.resize(),this.change()}recolour(colours){if(this.header){Object.assign(this.header,colours);
+for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){
+if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
+let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){
+this.options.streamed||(this.scene=new Scene(this.graphics,header,this.parts),this.tiles=new Tiles(this,this.scene))}setPart(part){
+let{name}=part,tile=tilePart(name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});this.held.set(
+part)&&(this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(
+name)&&this.panel.showLegend(),this.change())}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(
+0,2))}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(
+this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.
+setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(
+name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){
+if(!state)return this.firstCamera=null,this.place(),this.change(!0);if(!this.camera)this.firstCamera=copyOf(state);else{
+if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),
+this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.
+reportCamera())}place(){let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)
+return;let{geometry,limits}=header,state=firstLook(geometry,limits,first,nodes,aspect),globe=header.earth&&!header.earth.
+map?header.earth.radius:0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.
+point(x,y)?.position??this.ground(x,y),this.panel.showAxes(),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(
+state))}get aspect(){return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.
+player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.
+header??{};if(timeShift===null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=
+last?own:last)}step(count2){let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&
+(this.pause(),this.setTime(player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,options}=this,
+{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),
+options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=
+clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.
+header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.
+update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();
+this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.
+options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isHeld(){
+return performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.panel.
+showAxes(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){
+let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.pending??0),scenes}draw(){this.
+frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.
+sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&
+this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,
+[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));width===this.canvas.width&&height===this.
+canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,
+this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||!header?
+this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.stage.
+clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){let[
+before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){let{header,scene,player,shown,
+lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.
+slices.steps):[],steps=this.missing([moment[0],moment[1],...this.next,...ahead]),{source,isComing}=this.options;steps.length&&
+source?.hasSteps&&!isComing?.()&&this.requests?.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),
+until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,isMade,this.renderer.leavesOut),
+isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:(lacking.
+length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&this.
+tiles?.fail(tile,steps),this.panel.tell(reason)}missing(steps){return[...new Set(steps.flatMap(step=>this.scene?.lacking(
+step)??[]))]}frame(now,until){if(this.options.streamed)return this.wait(now);if(!(this.lifetime.isOver||this.graphics.isLost||
+!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(
+this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}wait(now){
+this.camera||this.place(),this.playing&&this.isPainted&&this.advance(now)}paint(picture,left,width,isSharp){this.renderer.
+show(picture,left,width,isSharp),this.isPainted=!0,this.root.dataset.drawn="true",this.root.dataset.frames=String(this.renderer.
+frames),this.panel.wait([],!0,!isSharp),isSharp&&this.panel.clear(),this.setSharp(isSharp&&!this.playing),this.playing&&
+this.request()}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(header,
+this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){if(!this.camera)return!1;
+let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?
+tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);this.
+camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)return;if(program.error){
+this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||!this.
+scene?.earth.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,shown,until);this.root.
+dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.scene.pickers,
+header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{
+player,options}=this,isMade=steps=>(this.next=steps,options.streamed?!0:!this.missing(steps).length&&!!this.scene?.make(
+steps,now));this.next=[],this.isPainted=!1,!(!player.playing||!player.advance(now,isMade))&&(player.varies?options.onTime?.(
+player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
+let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let anchor=scene?.
+anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},shown,density)}get canPick(){
+let{scene,graphics}=this;return!!scene&&!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){
+return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
+let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
+view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+controls",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
+let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
+height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes){let sources=scenes.
+map(({source})=>source),isSame=this.shown.length===scenes.length&&this.shown.every(({source},n)=>source===sources[n]);if(this.
+shown=scenes,isSame||this.open(scenes.length,n=>({source:sources[n]})),scenes.forEach(({header},n)=>this.viewers[n].setHeader(
+header)),scenes.forEach(({parts},n)=>parts.forEach(part=>this.viewers[n].setPart(part))),!isSame)for(let{requests}of this.
+viewers)requests?.open()}open(count2,own=()=>({})){this.dispose();for(let n=0;n<count2;n+=1){let follower=n?{controls:!1,
+follows:this.first}:{},viewer=new Viewer(this,{...this.options,...this.reports(n),...own(n),...follower});Object.assign(
+viewer.root.style,{flex:"1 1 0",minWidth:"0"}),this.viewers.push(viewer)}for(let viewer of this.viewers)viewer.together=
+this.viewers}paint(picture,gap,isSharp){let count2=this.viewers.length,width=(picture.width-(count2-1)*gap)/count2;this.
+viewers.forEach((viewer,n)=>viewer.paint(picture,n*(width+gap),width,isSharp))}dispose(){for(let viewer of this.viewers)
+viewer.dispose();this.viewers=[]}reports(n){let tell=(name,...values)=>{this.options[name]?.(...values);let detail=values.
+length>1?values:values[0];this.dispatchEvent(new CustomEvent(EVENTS[name],{detail}))},names=Object.keys(EVENTS),told=Object.
+fromEntries(names.map(name=>[name,(...values)=>tell(name,...values)])),follow=call=>{for(let[m,other]of this.viewers.entries())
+m!==n&&call(other)};return{...told,onCamera:camera=>{follow(other=>other.setCamera(camera)),tell("onCamera",camera)},onTime:time=>{
+follow(other=>other.followTime(time)),tell("onTime",time)},onClock:clock=>{follow(other=>other.setClock(clock)),tell("on\
+Clock",clock)},onSetting:(name,value)=>{follow(other=>other.followSetting(name,value)),tell("onSetting",name,value)}}}};
+function define(){let name="flowtex-view";for(let n=2;customElements.get(name);n+=1)name=`flowtex-view-${n}`;customElements.
+define(name,FlowtexView)}define();function mountPage(element,scenes,options={}){let view=new FlowtexView;return view.options=
+options,element.append(view),view.scenes=scenes,view.first}var Messages=class{hasSteps=!0;send;requests=new Map;constructor(send){this.send=send}load=(key,steps,signal)=>{let request=String(
+Math.random());return this.send({kind:"load",request,key,steps}),signal.addEventListener("abort",()=>{this.requests.delete(
+request),this.send({kind:"drop",request})}),new Promise((resolve,reject)=>{this.requests.set(request,error=>error?reject(
+new Error(error)):resolve([]))})};end({request,error}){this.requests.get(request)?.(error),this.requests.delete(request)}};var CAMERA_MS=100,TIME_MS=250,STILL_MS2=1500,STILL_FORMAT={type:"image/jpeg",quality:.9},HEADERS=["_header","_header_bes\
 ide"],ROOM=".flowtex-room { width: 100%; min-width: 160px; flex: 0 9999 auto }",HEIGHT_PX=480;function opened(message,buffers){
 let graphics=sharedGraphics(),{view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[],lacking:[]};
 return infos.forEach((info,n)=>{let stock=graphics.stock.get(info.digest)?.part;if(stock||message.kind!=="offer"){let part=graphics.
@@ -1555,36 +1641,36 @@ kind==="parts"||message?.kind==="offer",mailbox=new Map;function initialize({mod
 key,[]);let receive=(message,buffers)=>{hasParts(message)&&mailbox.get(key)?.push(opened(message,buffers))};return model.
 on("msg:custom",receive),()=>{model.off("msg:custom",receive),discard(mailbox.get(key)??[]),mailbox.delete(key)}}function render({
 model,el}){let view=new WidgetView(model,el);return()=>view.dispose()}function cameraOf(state){let camera=state;return camera&&
-Array.isArray(camera.position)?camera:null}var WidgetView=class{model;viewers;first;sent=new Map;handlers=[];early;sources=HEADERS.
+Array.isArray(camera.position)?camera:null}var WidgetView=class{model;view=new FlowtexView;viewers;first;sent=new Map;handlers=[];early;sources=HEADERS.
 map((_,view)=>new Messages(content=>this.model.send({...content,view})));frameTimer=null;hasSentFrame=!1;sheet=new CSSStyleSheet;constructor(model,element){
-this.model=model;let beside=model.get("_header_beside");this.viewers=this.makeViewers(element,beside?.format?2:1),[this.
-first]=this.viewers;let key=model.get("_key");this.early=mailbox.get(key)??[],mailbox.delete(key),this.sheet.replaceSync(
-ROOM),document.adoptedStyleSheets.push(this.sheet),this.connect(),this.resize(),this.viewers.forEach((_,n)=>this.takeHeader(
-n)),model.get("playing")&&this.first.play(),this.viewers.every(({scene,lacking})=>scene&&!lacking.length)||model.send({kind:"\
-ready"})}makeViewers(element,count2){let{model}=this,slowly=(wait,call)=>throttled((later,delay)=>this.first.lifetime.later(
-later,delay),wait,call),options={rebuild:!0,guarded:!0,controls:model.get("bar")??!0,onCamera:slowly(CAMERA_MS,camera=>this.
-send("camera",camera)),onTime:slowly(TIME_MS,time=>this.send("time",time)),onClock:slowly(TIME_MS,clock=>this.send("cloc\
-k",clock)),onPlaying:playing=>this.send("playing",playing),onPoint:point=>this.send("point",point),onSetting:(name,value)=>this.
-send(name,value),onColours:changes=>model.send({kind:"appearance",changes}),onControls:shown=>this.send("bar",shown)};return viewersIn(
-element,count2,options,n=>({source:this.sources[n],onFrame:()=>this.planFrame()}))}send(name,value){this.sent.set(name,JSON.
-stringify(value)),this.model.set(name,value),this.model.save_changes()}planFrame(){let{lifetime}=this.first;lifetime.cancel(
-this.frameTimer);let wait=this.hasSentFrame?STILL_MS2:0;this.frameTimer=lifetime.later(()=>{this.sendFrame()},wait)}async sendFrame(){
-let{first,viewers}=this;if(!viewers.every(({sharp})=>sharp))return;let{dataset}=first.root,{frames}=dataset;this.hasSentFrame=
-!0;let data=await(await pictureOf(viewers,1/first.ratio,STILL_FORMAT)).arrayBuffer();first.lifetime.isOver||(this.model.
-send({kind:"frame"},void 0,[data]),dataset.still=frames)}becomeLive(){let{root}=this.first;if(root.dataset.live||root.dataset.
-failed)return;root.dataset.live="true";let still=`[data-flowtex~="${String(this.model.get("_key"))}"]`;this.sheet.insertRule(
-`${still}, :is(.jp-OutputArea-child, .output_area):has(> * > ${still}) { display: none !important }`)}listen(event,call){
-this.handlers.some(([other])=>other===event)||(this.handlers.push([event,call]),this.model.on(event,call))}follow(name,take){
-this.listen(`change:${name}`,()=>{let value=this.model.get(name);this.sent.get(name)!==JSON.stringify(value)&&take(value),
-this.sent.delete(name)})}connect(){let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&
-this.take(opened(message,buffers)),message?.kind==="loaded"&&this.sources[message.view??0]?.end(message),message?.kind===
-"error"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.forEach((_,n)=>this.listen(`change:${HEADERS[n]}`,
-()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",value=>{let camera=cameraOf(value);
-camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.forEach(viewer=>viewer.setTime(
-Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(clock)))),this.follow("playing",
-playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(!!shown))}resize(){let[width,height]=this.
-model.get("size")??[0,0],{root}=this.first,frame=root.closest(".flowtex-pair")??root;frame.style.width=width?`${width}px`:
-"100%",frame.style.height=`${height||HEIGHT_PX}px`,frame.parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){
+this.model=model;let beside=model.get("_header_beside");element.append(this.view),this.viewers=this.makeViewers(beside?.
+format?2:1),[this.first]=this.viewers;let key=model.get("_key");this.early=mailbox.get(key)??[],mailbox.delete(key),this.
+sheet.replaceSync(ROOM),document.adoptedStyleSheets.push(this.sheet),this.connect(),this.resize(),this.viewers.forEach((_,n)=>this.
+takeHeader(n)),model.get("playing")&&this.first.play(),this.viewers.every(({scene,lacking})=>scene&&!lacking.length)||model.
+send({kind:"ready"})}makeViewers(count2){let{model,view}=this;view.options={rebuild:!0,guarded:!0,controls:model.get("ba\
+r")??!0,onColours:changes=>model.send({kind:"appearance",changes})},view.open(count2,n=>({source:this.sources[n]}));let hear=(name,take)=>view.
+addEventListener(name,event=>take(event.detail)),slowly=(name,wait)=>{hear(name,throttled((call,delay)=>view.first.lifetime.
+later(call,delay),wait,value=>this.send(name,value)))};return slowly("camera",CAMERA_MS),slowly("time",TIME_MS),slowly("\
+clock",TIME_MS),hear("playing",playing=>this.send("playing",playing)),hear("point",point=>this.send("point",point)),hear(
+"setting",([name,value])=>this.send(name,value)),hear("controls",shown=>this.send("bar",shown)),hear("frame",()=>this.planFrame()),
+view.viewers}send(name,value){this.sent.set(name,JSON.stringify(value)),this.model.set(name,value),this.model.save_changes()}planFrame(){
+let{lifetime}=this.first;lifetime.cancel(this.frameTimer);let wait=this.hasSentFrame?STILL_MS2:0;this.frameTimer=lifetime.
+later(()=>{this.sendFrame()},wait)}async sendFrame(){let{first,viewers}=this;if(!viewers.every(({sharp})=>sharp))return;
+let{dataset}=first.root,{frames}=dataset;this.hasSentFrame=!0;let data=await(await pictureOf(viewers,1/first.ratio,STILL_FORMAT)).
+arrayBuffer();first.lifetime.isOver||(this.model.send({kind:"frame"},void 0,[data]),dataset.still=frames)}becomeLive(){let{
+root}=this.first;if(root.dataset.live||root.dataset.failed)return;root.dataset.live="true";let still=`[data-flowtex~="${String(
+this.model.get("_key"))}"]`;this.sheet.insertRule(`${still}, :is(.jp-OutputArea-child, .output_area):has(> * > ${still})\
+ { display: none !important }`)}listen(event,call){this.handlers.some(([other])=>other===event)||(this.handlers.push([event,
+call]),this.model.on(event,call))}follow(name,take){this.listen(`change:${name}`,()=>{let value=this.model.get(name);this.
+sent.get(name)!==JSON.stringify(value)&&take(value),this.sent.delete(name)})}connect(){let{viewers,first}=this;this.listen(
+"msg:custom",(message,buffers)=>{hasParts(message)&&this.take(opened(message,buffers)),message?.kind==="loaded"&&this.sources[message.
+view??0]?.end(message),message?.kind==="error"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.
+forEach((_,n)=>this.listen(`change:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),
+this.follow("camera",value=>{let camera=cameraOf(value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.
+follow("time",time=>viewers.forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.
+setClock(Number(clock)))),this.follow("playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.
+panel.toggle(!!shown))}resize(){let[width,height]=this.model.get("size")??[0,0],{style,parentElement}=this.view;style.width=
+width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX}px`,parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){
 let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row=>[row.
 name,model.get(row.name)??row.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),camera:cameraOf(
 model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.early.splice(0))this.
@@ -1594,4 +1680,4 @@ generation>generation)return void this.early.push(delivery);let isOld=name=>deli
 "/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.lacking.filter(name=>!isOld(
 name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){
 for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.adoptedStyleSheets=document.
-adoptedStyleSheets.filter(s=>s!==this.sheet);for(let viewer of this.viewers)viewer.dispose()}};var client_default={initialize,render};export{Viewer,decoded,client_default as default,mountPage,partsOfFile};
+adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};var client_default={initialize,render};export{FlowtexView,Viewer,decoded,client_default as default,mountPage,partsOfFile};

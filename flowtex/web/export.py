@@ -222,7 +222,7 @@ def estimate(scenes: Sequence[ClientData], *, linked: bool = False) -> int:
     for n, scene in enumerate(scenes):
         if n and scene.textures is scenes[0].textures:
             break
-        steps = len(scene.moment(scene.times[-1])) if linked else scene.steps
+        steps = len(scene.moment(scene.times[0])) if linked else scene.steps
         size += READER_BYTES * linked + _arrays_bytes(scene, steps)
         if linked:
             continue

@@ -104,7 +104,7 @@ def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
 def first_parts(scene: ClientData, time: float | None) -> Parts:
     """Return the arrays with which a page begins: the surface, and one moment."""
     parts = scene.surface()
-    for step in scene.moment(float(scene.times[-1] if time is None else time)):
+    for step in scene.moment(float(scene.times[0] if time is None else time)):
         parts |= scene.values(step, shown=True)
         whole = scene.step(step)
         parts |= {name: whole[name] for name in whole if not name.startswith("scalars/")}

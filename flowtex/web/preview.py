@@ -48,7 +48,7 @@ def preview_png(
 ) -> bytes:
     """Draw a small picture and return it as PNG.
 
-    By default the whole surface is shown, at the last time. ``scene`` has the view's data with
+    By default the whole surface is shown, at the first time. ``scene`` has the view's data with
     few nodes, when they are at hand; one pixel is computed for ``coarser`` along each side.
     """
     scene = scene or view.coarse_data(NODES)
@@ -88,7 +88,7 @@ def _drawn(
     time: float | None,
 ) -> Bytes:
     before, after, between = steps_around(
-        scene.times, float(scene.times[-1] if time is None else time)
+        scene.times, float(scene.times[0] if time is None else time)
     )
     steps = (scene.source(before), scene.source(after))
     picture = render(

@@ -24,7 +24,7 @@ from flowtex.widget.feed import Feed
 HEADERS = ("_header", "_header_beside")
 
 #: What of the appearance is chosen in the browser.
-CHOSEN = ("scalars", "cmap", "clim", "coastlines", "graticule")
+CHOSEN = ("scalars", "cmap", "clim", "log_scale", "opacity", "coastlines", "graticule")
 
 Send = Callable[[dict[str, Any], list[memoryview]], None]
 

@@ -15,11 +15,11 @@ from strategies import junk, links, property_test
 pytest.importorskip("trame_rca")
 
 from flowtex.app import FlowApp
-from flowtex.settings import TABLE, Settings
+from flowtex.settings import Settings
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
-EVENTS = ("MouseMove", "MouseWheel", "Pinch", "Pan", "LeftButtonPress", "LeftButtonRelease")
+CHOICES = ("scalars", "cmap", "clim", "log_scale", "opacity", "coastlines", "graticule")
 
 
 @pytest.fixture(scope="module")
@@ -33,49 +33,46 @@ def app() -> Iterator[FlowApp]:
 @property_test(40)
 @given(junk(), junk(), links())
 def test_whatever_a_page_sends_it_goes_on(app: FlowApp, one: Any, two: Any, link: str) -> None:
-    controllers, send = app.controllers, app.stream.on_interaction
-    names = [*(f"set_{name}" for name in TABLE), "colour", "cmap", "low", "high", "theme"]
-    names += ["background", "time", "playing", "pace", "rendering", "image_file"]
+    controllers, element = app.controllers, app.area.element
+    names = ("theme", "background", "compare", "painter", "image_file")
     before = {name: app.state.get(name) for name in names}
+    look = app.area.scene.appearance
 
     async def story() -> None:
-        controllers.camera.command(one)
-        controllers.camera.look_from(one)
-        controllers.playback.step(two)
-        controllers.appearance.take_setting(one)
-        controllers.appearance.take_setting(["samples", two])
-        controllers.browser.take_time(one)
-        controllers.browser.take_sharp(two)
-        controllers.appearance.take_setting([one, two])
-        controllers.point_info.take_place([one, two])
-        controllers.point_info.take_point([two, one])
+        element.begin(one)
+        controllers.viewpoint.look_from(one)
+        for setting in (one, ["samples", two], [one, two]):
+            element.take_setting(setting)
+        element.take_colours(one)
+        for choice in CHOICES:
+            element.take_colours({choice: one})
+            element.take_colours({choice: [one, two]})
+        element.take_time(one)
+        element.take_clock(two)
+        element.take_playing(one)
         controllers.sharing.take_link(one)
         controllers.sharing.take_link(link)
-        controllers.browser.take_camera(two)
-        app.context.take_camera({"position": [one, two, 0], "parallel_scale": two})
+        element.take_camera(two)
+        element.take_camera({"position": [one, two, 0], "parallel_scale": two})
+        for at in (one, {"place": [one, two]}, {"index": [two, one]}, {"position": [one, two, 0]}):
+            await app.area.points.read(0, at)
+            await app.area.points.read(one, at)
         app.stream.update_size("test", {"w": one, "h": two, "p": one})
-        for kind in (*EVENTS, one):
-            places = {"x": one, "y": two, "translation": [two, one], "positions": {"0": one}}
-            send("test", {"type": kind, "w": 96, "h": 64, "spinY": one, "factor": two, **places})
+        app.stream.on_interaction("test", one)
         app.state.set(**dict.fromkeys(names, one))
         for take in (
-            controllers.appearance.take_settings,
-            controllers.appearance.take_colour,
-            controllers.appearance.take_range,
             controllers.appearance.take_background,
             controllers.appearance.take_image,
-            controllers.playback.take_time,
-            controllers.playback.take_playing,
-            controllers.playback.take_pace,
-            controllers.browser.take_renderer,
+            controllers.appearance.take_comparison,
+            controllers.appearance.take_painter,
         ):
             take()
 
     asyncio.run(story())
     assert len(app.state.get("problem")) < 1000
     assert np.isfinite([*app.viewport.camera.position, *app.viewport.camera.focal_point]).all()
-    controllers.point_info.leave()
-    controllers.point_info.close_card()
+    app.area.scene.appearance = look
+    app.area.player.playing = False
     app.area.settings.update(**dict(Settings(samples=3)))
     app.state.set(**before)
     app.stream.update_size("test", {"w": 96, "h": 64, "p": 1})

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 from collections import Counter
-from html import unescape
 from pathlib import Path
 from types import FunctionType, MethodType
 
@@ -21,7 +20,6 @@ from flowtex.app import FlowApp, Library
 from flowtex.app.flow_app import first_choice
 from flowtex.errors import FieldError
 from flowtex.field.source import FlowSource
-from flowtex.settings import GROUPS, TABLE
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -29,31 +27,12 @@ pytestmark = pytest.mark.usefixtures("opengl")
 KINDS = ("flowtex", "vtkmodules", "pyvista")
 
 
-def test_the_state_has_every_setting_under_a_prefix_of_its_own(
-    flat: FlowApp, bent: FlowApp
-) -> None:
-    grouped = [name for names in GROUPS.values() for name in names]
-    assert sorted(grouped) == sorted(TABLE) and len(GROUPS[""]) + 1 == 5
-    for name, value in flat.viewport.handle.settings:
-        assert flat.state.get(f"set_{name}") == value
-    assert flat.state.key("lod") != bent.state.key("lod")
-    names = [choice["value"] for choice in flat.state.get("colours")]
-    assert names == ["speed", "height", "none"]
-
-
-def test_the_page_has_a_control_with_a_hint_for_each_setting(flat: FlowApp) -> None:
-    html = unescape(flat.layout.html)
-    for row in TABLE.values():
-        assert f'data-setting="{row.name}"' in html
-        assert row.text.replace("'", r"\'") in html
-
-
 def test_examples_make_an_app() -> None:
     app = FlowApp(examples.cylinder_field(), zoom=3.0, focus=(4.0, 0.0), scalars=False)
     app.stream.update_size("test", {"w": 64, "h": 48})
     assert app.viewport.zoom == pytest.approx(3.0)
     assert (
-        app.state.get("colour") == "none"
+        not app.area.scalars
         and app.state.get("about") == "161 × 65 nodes · 31 times · periodic along i"
     )
     app.close()
@@ -64,7 +43,7 @@ def test_the_first_look_may_be_any_camera() -> None:
     app = FlowApp(examples.airfoil_field(), camera=camera, samples=5)
     assert (
         app.viewport.camera == camera
-        and app.controllers.camera.describe()["camera"] == camera.to_dict()
+        and app.controllers.viewpoint.describe()["camera"] == camera.to_dict()
     )
     app.close()
 
@@ -82,19 +61,19 @@ def test_use_leaves_no_object_behind() -> None:
     app.area.settings.resolution = 32
 
     def use() -> None:
-        at = {"w": 96, "h": 64, "x": 30, "y": 20}
-        for kind in ("LeftButtonPress", "MouseMove", "LeftButtonRelease", "MouseMove"):
-            app.stream.on_interaction("test", {"type": kind, **at})
-            at["x"] += 9
-        for turn in (-1.0, 1.0):
-            app.stream.on_interaction("test", {"type": "MouseWheel", "spinY": turn, **at})
+        element, whole = app.area.element, app.viewport.camera
+        element.begin("browser")
+        element.take_camera(whole.pan(0.1, 0.1, 1.5).to_dict())
+        element.take_camera(whole.to_dict())
+        element.take_colours({"cmap": "magma"})
+        element.take_colours({"cmap": "viridis"})
         for name, values in (("noise", ("texture", "procedural")), ("lod", (False, True))):
             for value in values:
                 setattr(app.area.settings, name, value)
                 app.viewport.draw(96, 64)
-        app.area.player.playing = True
-        app.area.player.advance(0.1)
-        app.area.player.playing = False
+        element.take_playing(True)
+        element.take_clock(0.1)
+        element.take_playing(False)
         list(app.stream.painter.full())
 
     async def story() -> None:

@@ -7,9 +7,7 @@ import io
 import logging
 import math
 import threading
-import time
 from collections.abc import Callable, Iterator
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -24,9 +22,8 @@ pytest.importorskip("trame_rca")
 from flowtex import FlowField
 from flowtex._util.progress import check
 from flowtex.app import FlowApp, Library
-from flowtex.app.controllers import point_info as point_info_module
 from flowtex.app.controllers.library import Choice
-from flowtex.app.streaming import player
+from flowtex.app.streaming import points
 from flowtex.app.streaming.painter import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
@@ -93,41 +90,41 @@ def app() -> Iterator[FlowApp]:
 
 
 @pytest.mark.parametrize(
-    "name",
-    [
-        *(f"set_{name}" for name in ("samples", "grain", "lod", "noise")),  # of each kind one
-        *("colour", "cmap", "log_scale", "opacity", "low", "high", "theme", "background"),
-        *("compare", "file_beside", "image_file", "time", "playing", "pace", "rendering"),
-    ],
+    "name", ["theme", "background", "compare", "file_beside", "image_file", "painter"]
 )
 def test_a_value_of_any_kind_is_taken_or_set_back(app: FlowApp, name: str) -> None:
-    look, clockwork = app.controllers.appearance, app.controllers.playback
+    look = app.controllers.appearance
     handlers: dict[str, Callable[[], None]] = {
-        **dict.fromkeys(("colour", "cmap", "log_scale", "opacity"), look.take_colour),
-        **dict.fromkeys(("low", "high"), look.take_range),
         **dict.fromkeys(("theme", "background"), look.take_background),
         "compare": look.take_comparison,
         "file_beside": app.controllers.beside.take_file,
         "image_file": look.take_image,
-        "time": clockwork.take_time,
-        "playing": clockwork.take_playing,
-        "pace": clockwork.take_pace,
-        "rendering": app.controllers.browser.take_renderer,
+        "painter": look.take_painter,
     }
-    handler = handlers.get(name, look.take_settings)
+    handler = handlers[name]
     before = app.state.get(name)
     for junk in JUNK:
         app.state.set(**{name: junk, "problem": ""})
         handler()
         kept = app.state.get(name)
-        if name.startswith("set_"):
-            assert kept == getattr(app.area.settings, name.removeprefix("set_"))
-        else:
-            assert kept == before or isinstance(kept, type(before))
+        assert kept == before or isinstance(kept, type(before))
         assert len(app.state.get("problem")) < 1000
     app.state.set(**{name: before})
     handler()
     assert app.state.get(name) == before
+    assert np.ptp(picture(app)) > 0
+
+
+@pytest.mark.parametrize("name", ["samples", "grain", "lod", "noise"])  # of each kind one
+def test_a_setting_of_any_kind_is_taken_or_left(app: FlowApp, name: str) -> None:
+    element, before = app.area.element, getattr(app.area.settings, name)
+    for junk in JUNK:
+        now = getattr(app.area.settings, name)
+        app.state.set(problem="")
+        element.take_setting([name, junk])
+        assert getattr(app.area.settings, name) == now or app.state.get("problem") == ""
+        assert len(app.state.get("problem")) < 1000
+    element.take_setting([name, before])
     assert np.ptp(picture(app)) > 0
 
 
@@ -157,26 +154,11 @@ def test_a_view_has_a_size_that_can_be_drawn(app: FlowApp) -> None:
 )
 def test_a_camera_that_sees_nothing_is_not_taken(app: FlowApp, change: dict[str, Any]) -> None:
     before = app.viewport.camera.to_dict()
-    assert not app.context.take_camera({**before, **change})
-    app.controllers.camera.restore({"camera": {**before, **change}})
+    assert not app.area.element.take_camera({**before, **change})
+    app.controllers.viewpoint.restore({"camera": {**before, **change}})
     assert app.viewport.camera.to_dict() == before
-    assert app.context.take_camera({**before, "parallel_scale": 0.5})
+    assert app.area.element.take_camera({**before, "parallel_scale": 0.5})
     app.area.reset_camera()
-
-
-def test_what_the_server_counts_is_no_page_s_to_change() -> None:
-    app, streamer = page(field()), Streamer()
-
-    async def story() -> None:
-        app.stream.set_streamer(streamer)
-        task = asyncio.create_task(app.stream.run())
-        app.state.set(sharp="many", picture={}, client_time=None)
-        app.stream.changed()
-        await until(lambda: app.state.get("picture") == "sharp")
-        assert isinstance(app.state.get("sharp"), int) and not task.done()
-        task.cancel()
-
-    played(app, story)
 
 
 def raising(error: Exception) -> Callable[..., Any]:
@@ -218,7 +200,7 @@ def test_drawing_begins_once_however_often_a_page_has_it_said() -> None:
         tasks = list(app.area._tasks)
         for _ in range(5):
             app.area._on_ready()
-        assert app.area._tasks == tasks and len(tasks) == 2
+        assert app.area._tasks == tasks and len(tasks) == 1
 
     played(app, story)
 
@@ -309,7 +291,7 @@ def test_an_image_is_laid_in_both_panes_where_noise_is_no_difference(compared: s
     app.show(field(steps=2))
     app.area.compare({"lod": False})
     assert [pane.handle.settings.noise for pane in app.viewport.panes] == ["image", "image"]
-    assert app.state.get("set_noise") == "image" and np.ptp(picture(app)) > 0
+    assert app.area.settings.noise == "image" and np.ptp(picture(app)) > 0
     app.close()
 
 
@@ -508,18 +490,16 @@ def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -> None
     assert len(app.field.times) == 3
 
     async def story() -> None:
-        app.state.send(colour="depth")
-        app.state.send(low=-1.0, high=99.0)
-        app.state.send(time=1.0)
-        app.viewport.pan(0.2, 0.1)
-        camera = app.viewport.camera
+        app.area.scalars, app.area.clim = "depth", (-1.0, 99.0)
+        app.area.element.take_time(1.0)
+        app.viewport.camera = camera = app.viewport.camera.pan(0.2, 0.1, app.viewport.aspect)
         app.state.send(index=5)
         await until(lambda: app.controllers.data.choice.plane == "k=5")
-        assert app.viewport.handle.time == app.state.get("time") == 1.0
-        assert app.area.scene.scalar_limits == (-1.0, 99.0) and app.state.get("high") == 99.0
+        assert app.viewport.handle.time == 1.0
+        assert app.area.scene.scalar_limits == (-1.0, 99.0)
         assert app.viewport.camera == camera
         app.state.send(file="other")
-        await until(lambda: app.controllers.data.name == "other" and app.state.get("steady"))
+        await until(lambda: app.controllers.data.name == "other" and app.field.steady)
         assert app.area.scalars == "speed" and app.area.clim is None
 
     played(app, story)
@@ -584,24 +564,22 @@ def test_a_page_that_closes_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatc
     gates = slow(monkeypatch, app)
 
     async def story() -> None:
-        app.controllers.playback.take_playing()
-        app.state.send(playing=True, index=5)
+        app.area.element.take_playing(True)
+        app.state.send(index=5)
         app.state.set(out_format="GIF", out_width=64, out_height=48, out_seconds=1.0, out_fps=10.0)
         app.controllers.sharing.start()
-        app.controllers.point_info.click((0.0, 0.0))
+        reading = asyncio.create_task(app.area.points.read(0, {"place": [0, 0], "path": True}))
         await until(lambda: "k=5" in gates)
         app.close()
         gates.setdefault("k=5", threading.Event()).set()
         tasks = [
             app.controllers.data._opening,
             app.controllers.sharing._task,
-            app.controllers.point_info._task,
+            reading,
         ]
         await asyncio.wait([task for task in tasks if task is not None], timeout=PATIENCE_S)
         assert all(task is None or task.done() for task in tasks)
-        assert (
-            app.controllers.data.choice.plane == "k=3" and app.controllers.point_info._card is None
-        )
+        assert app.controllers.data.choice.plane == "k=3"
         # What the page sends in its last moments is heard by nobody.
         app.stream.update_size("test", {"w": 50, "h": 50})
         app.stream.on_interaction("test", {"type": "MouseWheel", "spinY": 1, "w": 9, "h": 9})
@@ -621,7 +599,6 @@ def test_a_flow_may_come_between_any_two_tiles() -> None:
         composer.forget()
         for painter in composer.painters:
             painter.cost.learn(9.0, 96 * 64, 3)
-        app.controllers.point_info.show_path((3.0, 4.0))
         composer.quick(0.01)
         tiles = composer.full()
         next(tiles)
@@ -629,131 +606,47 @@ def test_a_flow_may_come_between_any_two_tiles() -> None:
         app.area.compare({"lod": False} if number % 2 else None)
         next(tiles, None)
         tiles.close()
-        assert app.state.get("card") is None
-        assert app.state.get("steady") == flow.steady
         assert composer.quick(float("inf")).shape == (64, 96, 3)
     app.close()
 
 
-def test_time_that_is_moved_by_hand_does_not_run_away(monkeypatch: pytest.MonkeyPatch) -> None:
-    now, looks = [0.0], list[float]()
-
-    def monotonic() -> float:
-        """Tell the time, which is looked at once before each picture."""
-        looks.append(now[0])
-        return now[0]
-
-    clocks = SimpleNamespace(monotonic=monotonic, perf_counter=time.perf_counter)
-    monkeypatch.setattr(player, "time", clocks)
-    app = page(field(steps=3))
-    streamer = Streamer()
-
-    async def story() -> None:
-        app.stream.set_streamer(streamer)
-        app.area._tasks += [
-            asyncio.create_task(work) for work in (app.stream.run(), app.area.player.play())
-        ]
-        app.state.send(playing=True)
-        first = app.viewport.handle.time
-        await until(lambda: app.viewport.handle.time != first)
-        for wanted in (0.25, 0.5, 0.75):
-            app.state.send(time=wanted)
-            enough = len(looks) + 3
-            await until(lambda enough=enough: len(looks) >= enough)
-            assert app.viewport.handle.time == app.state.get("time") == wanted
-        now[0] = player.HOLD_S + 0.1
-        await until(lambda: app.viewport.handle.time != 0.75)
-
-    played(app, story)
-
-
 def test_playing_goes_over_from_times_to_streaming_and_back() -> None:
     app = page(field(steps=3))
-    app.state.set(playing=True)
-    app.controllers.playback.take_playing()
+    app.area.element.take_playing(True)
     app.show(field())
     assert app.area.settings.motion == "speed"
     assert app.area.player.playing
-    assert app.state.get("steady") is True
     app.show(field(steps=2))
     assert app.area.player.playing
     assert app.state.get("last") == 1.0
     app.close()
 
 
-def test_the_browser_draws_one_view_and_is_handed_a_flow_once() -> None:
-    app = page(field())
-    app.state.set(compare="Samples: 10")
-    app.controllers.appearance.take_comparison()
-    app.state.set(rendering="browser")
-    app.controllers.browser.take_renderer()
-    assert app.controllers.browser.active and len(app.viewport.panes) == 1
-    assert app.state.get("compare") == "nothing"
-    before = app.controllers.browser._generation
-    app.show(field(curved=True))
-    assert app.controllers.browser._generation == before + 1
-    app.state.set(compare="Samples: 10")
-    app.controllers.appearance.take_comparison()
-    assert not app.controllers.browser.active and app.state.get("rendering") == "server"
-    assert len(app.viewport.panes) == 2 and not app.stream.paused
-    app.close()
-
-
 # --- reading -------------------------------------------------------------------------------------
 
 
-def test_a_path_is_read_beside_the_page_and_the_latest_click_wins(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_path_is_read_beside_the_page(monkeypatch: pytest.MonkeyPatch) -> None:
     app = page(field())
-    asked: list[Any] = []
     free = threading.Event()
+    found: list[Any] = []
 
     def slowly(view: Any, at: Any, **options: Any) -> Any:
         assert threading.current_thread() is not threading.main_thread()
-        asked.append(at)
         assert free.wait(PATIENCE_S)
-        return probe(view, at, **options)
+        found.append(probe(view, at, **options))
+        return found[-1]
 
-    monkeypatch.setattr(point_info_module, "probe", slowly)
+    monkeypatch.setattr(points, "probe", slowly)
 
     async def story() -> None:
-        for n in range(8):
-            app.controllers.point_info.show_path((1.0 + n / 2, 3.0))
-            await until(lambda: asked)
-            await asyncio.sleep(0)
-        assert app.state.get("card") is None and len(asked) == 1
+        reading = asyncio.create_task(app.area.points.read(0, {"index": [3, 1], "path": True}))
+        await asyncio.sleep(0)
         app.area.settings.samples = 5  # what is read is not changed on the way
         free.set()
-        await until(lambda: app.state.get("card"))
-        assert asked == [(1.0, 3.0), (4.5, 3.0)]
-        assert (
-            app.controllers.point_info._card is not None
-            and app.controllers.point_info._card.probe.asked == 5
-        )
-        # A path that is closed, or whose flow has gone, does not come back.
-        free.clear()
-        app.controllers.point_info.show_path((2.0, 2.0))
-        await until(lambda: len(asked) == 3)
-        app.show(field(curved=True))
-        free.set()
-        await until(lambda: not app.controllers.point_info.busy)
-        assert app.state.get("card") is None
-
-    played(app, story)
-
-
-def test_a_path_that_fails_is_logged(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    app = page(field())
-
-    monkeypatch.setattr(point_info_module, "probe", raising(IndexError("beyond")))
-
-    async def story() -> None:
-        app.controllers.point_info.show_path((2.0, 2.0))
-        await until(lambda: "beyond" in caplog.text)
-        assert not app.controllers.point_info.busy
+        told = await reading
+        assert told is not None
+        assert told["point"]["index"] == [3, 1] and len(told["samples"]) == 3
+        assert found[0].asked == 3
 
     played(app, story)
 
@@ -777,18 +670,18 @@ def test_the_whole_surface_is_in_view(size: tuple[int, int], panes: int, curved:
         return float(np.abs(app.viewport.camera.project(points, app.viewport.aspect)).max())
 
     assert 0.5 < seen() <= 1.0
-    app.controllers.camera.command("closer")
-    app.controllers.camera.command("whole")
+    app.viewport.camera = app.viewport.camera.pan(0.3, 0.1, app.viewport.aspect)
+    app.area.reset_camera()
     assert 0.5 < seen() <= 1.0 and app.viewport.zoom == pytest.approx(1)
-    for view in app.controllers.camera.views:
-        app.controllers.camera.look_from(view)
+    for view in app.controllers.viewpoint.views:
+        app.controllers.viewpoint.look_from(view)
         assert 0.3 < seen() <= 1.0 and app.viewport.zoom == pytest.approx(1)
     app.close()
 
 
 def test_another_size_of_the_window_leaves_a_turned_surface_turned() -> None:
     app = page(field(curved=True))
-    app.viewport.rotate(0.3, 0.1)
+    app.viewport.camera = app.viewport.camera.rotate(0.3, 0.1, app.viewport.aspect)
     before = app.viewport.camera.axes[2]
     app.stream.update_size("test", {"w": 120, "h": 64, "p": 1})
     assert app.viewport.camera.axes[2] == pytest.approx(before)

@@ -20,7 +20,15 @@ from flowtex import FlowField
 from flowtex._util.colours import colour_table
 from flowtex.camera import Camera
 from flowtex.cli import main
-from flowtex.offscreen.annotations import Plate, _font, _Writer, plates, time_text
+from flowtex.offscreen.annotations import (
+    Plate,
+    _font,
+    _Writer,
+    length_text,
+    plates,
+    round_length,
+    time_text,
+)
 from flowtex.offscreen.movie import frames
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene import Scene
@@ -254,3 +262,27 @@ def test_the_flag_of_the_shell(opengl: None, tmp_path: Path) -> None:
     assert (shots[0] != shots[1]).any()
     words = ["movie", str(path), "-o", str(tmp_path / "a.gif"), "--seconds", "0.1"]
     assert main([*words, "--size", "300x200", "--samples", "3", "--annotations"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("unit", "one"),
+    [("diameters", "diameter"), ("body lengths", "body length"), ("ms", "ms"), ("metre", "metre")],
+)
+def test_one_is_said_in_the_singular(unit: str, one: str) -> None:
+    assert length_text(1.0, unit) == f"1 {one}"
+    assert length_text(20.0, unit) == f"20 {unit}"
+
+
+def test_thousands_of_metres_are_kilometres() -> None:
+    assert length_text(500.0, "m") == "500 m"
+    assert length_text(1000.0, "m") == "1 km"
+    assert length_text(2e6, "m") == "2000 km"
+    assert length_text(2000.0, "mm") == "2000 mm"
+
+
+@pytest.mark.parametrize(
+    ("greatest", "length"),
+    [(7.3, 5), (0.019, 0.01), (20, 20), (999, 500), (0, 0), (float("inf"), 0)],
+)
+def test_a_scale_bar_has_a_round_length(greatest: float, length: float) -> None:
+    assert round_length(greatest) == pytest.approx(length)

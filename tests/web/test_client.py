@@ -462,7 +462,7 @@ def test_many_viewers_draw_and_leave_nothing(client: ClientPage) -> None:
     assert pictures == 1
     first = client.picture()
     assert np.std(first[20:40, 20:70].astype(float)) > 15
-    number(client, "viewers.forEach((v) => v.dispose())")
+    number(client, "viewers.forEach(({ root: { parentElement: e } }) => (e.dispose(), e.remove()))")
     left = number(client, "viewers[7].stats()")
     assert {k: left[k] for k in ("objects", "users", "listeners", "observers", "timers")} == {
         "objects": 0,
@@ -579,7 +579,7 @@ MODEL = """([scene, size]) => {
   const el = document.createElement("div");
   document.body.append(el);
   window.left = client.default.render({ model, el });
-  window.host = el.firstElementChild;
+  window.host = el.querySelector(".flowtex");
   const parts = Object.values(scene.parts);
   // In a message the bytes of several parts may begin anywhere.
   const views = parts.map((part) => {
@@ -640,7 +640,8 @@ def test_a_widget_takes_traits_and_messages_as_they_come(client: ClientPage) -> 
     page.wait_for_function("() => host.dataset.sharp === 'true'")
     for size, expected in (([120, 0], ["120px", "480px"]), (None, ["100%", "480px"])):
         page.evaluate("(size) => model.set('size', size)", size)
-        assert number(client, "[host.style.width, host.style.height]") == expected
+        style = "(({ width, height }) => [width, height])(host.parentElement.style)"
+        assert number(client, style) == expected
     number(client, "(model.set('bar', false), null)")
     assert page.locator(".flowtex .bar").is_hidden()
     for playing in (True, False):

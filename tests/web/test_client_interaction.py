@@ -195,6 +195,13 @@ def test_two_views_move_as_one_and_tell_their_difference(
     page.wait_for_function(both)
     assert page.locator(".title").all_inner_texts() == ["Strength: 0.8", "Strength: 0"]
     assert page.locator(".bar:visible").count() == 1
+    page.evaluate(
+        """() => {
+          const element = viewers[0].root.parentElement;
+          for (const name of ["camera", "setting", "playing"])
+            element.addEventListener(name, ({ detail }) => events.push([name, detail]));
+        }"""
+    )
     # A drag on the right one.
     x, y = middle(client, 1)
     page.mouse.move(x, y)
@@ -209,6 +216,8 @@ def test_two_views_move_as_one_and_tell_their_difference(
     page.wait_for_function(f"() => {PAIR}[1].player.clock > 0.05 && {PAIR}[0].playing")
     page.keyboard.press(" ")
     number(client, "(viewers[0].choose('contrast', 2), viewers[0].choose('strength', 0.5), 0)")
+    told = dict(page.evaluate("events"))
+    assert told == {"camera": cameras[0], "playing": False, "setting": ["strength", 0.5]}
     chosen = number(client, f"{PAIR}.map(({{ settings: s, clock }}) => [s.strength, s.contrast])")
     assert chosen == [[0.5, 2], [0, 2]]
     page.wait_for_function(both)

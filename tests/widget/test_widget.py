@@ -155,7 +155,7 @@ def test_a_camera_is_changed_by_parts(make: Make) -> None:
 
 def test_time_goes_both_ways(make: Make) -> None:
     widget = make(gyre(3))
-    assert widget.time == widget.scene.time == 2.0
+    assert widget.time == widget.scene.time == 0.0  # a series begins at its first step
     widget.time = 0.5
     assert widget.scene.moment == (0, 1, 0.5)
     widget.scene.time = 1.5
@@ -589,7 +589,8 @@ def test_colours_that_are_chosen_in_the_browser_are_taken(
     assert (widget.scalars, widget.cmap, widget.clim) == ("height", "magma", (0.0, 1.0))
     second = widget._views.views[1].scene.appearance
     assert (second.scalars, second.cmap) == ("height", "gray")  # its own stays
-    for wrong in ({"cmap": "nix"}, {"scalars": ["x"]}, {"clim": "ab"}, {"opacity": 0.1}, 3, None):
+    wrong_ones = ({"cmap": "nix"}, {"scalars": ["x"]}, {"clim": "ab"}, {"opacity": 3})
+    for wrong in (*wrong_ones, {"lod": False}, 3, None):
         heard.say(kind="appearance", changes=wrong)
     assert (widget.scalars, widget.cmap, widget.clim) == ("height", "magma", (0.0, 1.0))
     assert widget.opacity == 1.0

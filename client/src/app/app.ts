@@ -3,10 +3,8 @@
 
 import { toggleFullscreen } from "../keyboard.ts";
 import { browser } from "./browser.ts";
-import { covers } from "./covers.ts";
 import { hints } from "./hints.ts";
 import { keys } from "./keys.ts";
-import { inset, path } from "./path.ts";
 import { upload } from "./upload.ts";
 
 interface VueApp {
@@ -25,7 +23,7 @@ function linked(hash: string): string {
 Object.assign(window, {
   flowtex_page: {
     install(app: VueApp) {
-      for (const component of [browser, covers, hints, inset, keys, path, upload]) app.component(component.name, component);
+      for (const component of [browser, hints, keys, upload]) app.component(component.name, component);
       Object.assign(app.config.globalProperties, {
         flowtex_fullscreen: () => toggleFullscreen(document.documentElement),
         flowtex_address: linked,

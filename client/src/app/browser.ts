@@ -1,146 +1,264 @@
-// Drawing in the browser, in the page that trame serves: a Vue component around a viewer, whose client
-// is loaded when it is first needed. flowtex/app/controllers/browser.py is the other side.
+// The view of the page that trame serves: a Vue component around <flowtex-view>, whose module is loaded
+// beside the page. flowtex/app/streaming/element.py is the other side.
+//
+// Where there is no WebGL2, or a person wishes so, the server draws: its pictures come by the stream of
+// trame-rca, whose events the view does not need, as it moves the camera by itself.
 
 import type { CameraState } from "../camera.ts";
 import type * as Client from "../client.ts";
+import type { FlowtexView } from "../element.ts";
+import { forwardKeys } from "../keyboard.ts";
 import { throttled } from "../lifetime.ts";
-import type { Options } from "../options.ts";
-import { placeIn } from "../pointers.ts";
+import type { Options, Reader, Reading } from "../options.ts";
 import type { Header, Settings } from "../protocol.ts";
 import { loadFiles } from "../sources/files.ts";
 import type { Viewer } from "../viewer.ts";
-import { vue, type Emit } from "./vue.ts";
+import { trame, vue, type Emit } from "./vue.ts";
 
-/** Milliseconds between two messages to the server. */
+/** Milliseconds between two messages to the server, while it draws and while it does not. */
+const DRAWN_MS = 33;
 const MESSAGE_MS = 100;
+/** Pixels between two panes of a picture. */
+const GAP_PX = 2;
+const STREAM = "trame.rca.topic.stream";
 
-/** Where the client is found, the scene's header, and the address of its parts before their names. */
-interface Scene {
-  client: string;
+type Painter = "server" | "browser";
+
+/** A scene's header, and the address of its parts before their names. */
+interface Handed {
   header: Header;
   parts: string;
 }
 
-interface Props {
-  source: Scene;
+/**
+ * What may change from one moment to the next; a camera of null sees the whole surface. Of what one page
+ * says, named in `by`, the others hear, such as the frames of a notebook.
+ */
+interface Present {
+  by: string;
+  scenes: Handed[];
   settings: Settings;
   camera: CameraState | null;
   time: number;
+  timeBeside: number | null;
+  clock: number;
   playing: boolean;
 }
 
-const PROPS = ["source", "settings", "camera", "time", "playing"] as const;
+/** What a page needs to begin: the same, where the client is found, and the name of the stream. */
+interface Beginning extends Present {
+  client: string;
+  area: string;
+}
 
-const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
-const slowly = <T>(call: (value: T) => void) => throttled<T>(setTimeout, MESSAGE_MS, call);
+interface Frame {
+  name: string;
+  meta: { w: number; h: number; type: string; sharp: boolean };
+  content: Blob | Uint8Array<ArrayBuffer>;
+}
 
-/** A viewer in the page, with the camera and the time that it sent last. */
-class BrowserView {
+interface Props {
+  /** Names of what the server is asked to begin, and to read a point. */
+  begin: string;
+  read: string;
+}
+
+const session = () => trame().client.getConnection().getSession();
+
+export function hasWebGL2(): boolean {
+  return document.createElement("canvas").getContext("webgl2") !== null;
+}
+
+class TrameView {
   private readonly props: Props;
   private readonly emit: Emit;
+  private readonly element: HTMLElement;
+  private readonly name = Math.random().toString(36).slice(2);
+  private readonly ended = new AbortController();
   private client: typeof Client | null = null;
-  private viewer: Viewer | null = null;
-  private lastCamera: CameraState | null = null;
-  private lastTime = NaN;
-  private isDisposed = false;
-  private started = 0;
-  private readonly load = loadFiles(
-    () => this.props.source.parts,
-    (file) => this.client?.partsOfFile(file) ?? [],
-  );
-  private readonly watcher = new MutationObserver(() => this.look());
+  private view: FlowtexView | null = null;
+  private painter: Painter;
+  private scenes: Handed[] = [];
+  /** Numbers of the scenes whose parts each view has. */
+  private loaded: (number | undefined)[] = [];
+  private area = "";
+  private early: Partial<Present>[] | null = null;
+  /** Pictures that came, and the number of the one that is shown. */
+  private came = 0;
+  private shown = 0;
+  private subscription: unknown = null;
+  private readonly watcher = new ResizeObserver(() => this.resize());
 
-  constructor(props: Props, emit: Emit) {
+  constructor(props: Props, emit: Emit, element: HTMLElement) {
     this.props = props;
     this.emit = emit;
+    this.element = element;
+    this.painter = hasWebGL2() ? "browser" : "server";
+    const listener = (event: KeyboardEvent) => this.view && forwardKeys(this.view.first.root, event);
+    document.addEventListener("keydown", listener, { signal: this.ended.signal });
   }
 
-  async begin(element: HTMLElement): Promise<void> {
-    const address = new URL(this.props.source.client, document.baseURI).href;
-    this.client = (await import(address)) as typeof Client;
-    if (this.isDisposed) return;
-    const viewer = new this.client.Viewer(element, this.options());
-    this.viewer = viewer;
-    viewer.root.style.height = "100%";
-    this.watcher.observe(viewer.root, { attributeFilter: ["data-sharp"] });
-    await this.show();
+  /** Begin, or go on with another painter. */
+  async paint(painter: Painter = this.painter): Promise<void> {
+    this.painter = painter;
+    const start = (await trame().trigger(this.props.begin, [painter])) as Beginning;
+    // What changes from here on, before there is a view, is taken over then.
+    const early = (this.early = []);
+    const address = new URL(start.client, document.baseURI).href;
+    this.client ??= (await import(address)) as typeof Client;
+    if (this.ended.signal.aborted) return;
+    this.area = start.area;
+    this.subscription ??= session().subscribe(STREAM, ([frame]) => void this.takeFrame(frame as Frame));
+    this.view?.dispose();
+    this.view?.remove();
+    const view = (this.view = new this.client.FlowtexView());
+    view.options = this.options();
+    this.connect(view);
+    this.element.append(view);
+    this.scenes = [];
+    this.early = null;
+    await Promise.all([start, ...early].map((changes) => this.take(changes)));
   }
 
   private options(): Options {
-    const { emit } = this;
-    const sendCamera = slowly((camera) => emit("update:camera", camera));
-    const sendTime = slowly((time) => emit("update:time", time));
     return {
       rebuild: true,
-      controls: false,
-      bare: true,
-      onCamera: (camera) => sendCamera((this.lastCamera = camera)),
-      onTime: (time) => sendTime((this.lastTime = time)),
-      onPlaying: (playing) => emit("update:playing", playing),
-      // Triangles have other numbers at each level.
-      onPoint: ({ index, position }) =>
-        emit("point", this.viewer?.header?.geometry.triangles ? position : [...index]),
-      onSetting: (name, value) => emit("setting", [name, value]),
-      source: { load: this.load, hasSteps: true },
+      named: true,
+      streamed: this.painter === "server",
+      onColours: (choice) => this.tell("colours", choice),
     };
   }
 
-  async show(): Promise<void> {
-    const { source, playing } = this.props;
-    this.started = performance.now();
-    this.viewer?.setHeader(source.header);
-    for (const part of await this.load(null, [])) if (!this.isDisposed) this.viewer?.setPart(part);
-    if (playing) this.viewer?.play();
+  private connect(view: FlowtexView): void {
+    const wait = this.painter === "server" ? DRAWN_MS : MESSAGE_MS;
+    for (const name of ["camera", "time", "clock"]) {
+      const send = throttled<unknown>(setTimeout, wait, (value) => this.tell(name, value));
+      view.addEventListener(name, (event) => send((event as CustomEvent).detail));
+    }
+    for (const name of ["playing", "setting"]) {
+      view.addEventListener(name, (event) => this.tell(name, (event as CustomEvent).detail));
+    }
   }
 
-  /** Tell how long the full picture took. */
-  private look(): void {
-    const now = performance.now();
-    if (this.viewer?.sharp) this.emit("sharp", now - this.started);
-    else this.started = now;
+  private tell(name: string, value: unknown): void {
+    this.emit(name, { value, page: this.name });
   }
 
-  /** Take over a property that has changed; what the viewer sent itself comes back as well. */
-  take(name: keyof Props): void {
-    const { viewer, lastCamera, lastTime } = this;
-    const { settings, camera, time, playing } = this.props;
-    if (!viewer) return;
-    const takers: Record<keyof Props, () => void> = {
-      source: () => void this.show(),
-      settings: () => viewer.setSettings(settings),
-      camera: () => camera && !isEqual(camera, lastCamera) && viewer.setCamera(camera),
-      time: () => time !== lastTime && !viewer.playing && viewer.setTime(time),
-      playing: () => (playing ? viewer.play() : viewer.pause()),
+  /** Take over what has changed on the server; also called by it. */
+  async take(changes: Partial<Present>): Promise<void> {
+    const { view, early } = this;
+    if (early) return void early.push(changes);
+    if (!view || changes.by === this.name) return;
+    const { scenes, settings, camera, time, timeBeside, clock, playing } = changes;
+    const loading = scenes && this.show(scenes);
+    const { viewers, first } = view;
+    const isStill = !first.playing;
+    for (const viewer of viewers) {
+      for (const [name, value] of Object.entries(settings ?? {})) viewer.followSetting(name, value);
+      if (camera !== undefined) viewer.setCamera(camera);
+      if (time !== undefined && isStill) viewer.followTime(time);
+      if (clock !== undefined && isStill) viewer.setClock(clock);
+    }
+    if (typeof timeBeside === "number") viewers[1]?.setTime(timeBeside);
+    if (playing === true) first.play();
+    else if (playing === false) first.pause();
+    await loading;
+  }
+
+  private async show(scenes: Handed[]): Promise<void> {
+    const { view, scenes: before } = this;
+    if (!view) return;
+    this.scenes = scenes;
+    const loads = scenes.map((_, n) => this.load(n));
+    if (before.length !== scenes.length) {
+      this.loaded = [];
+      view.open(scenes.length, (n) => ({
+        reader: this.reader(n),
+        source: this.painter === "browser" ? { load: loads[n], hasSteps: true } : undefined,
+      }));
+      this.watcher.disconnect();
+      for (const { stage } of view.viewers) this.watcher.observe(stage);
+    }
+    const fill = async (viewer: Viewer, n: number) => {
+      const { generation } = scenes[n].header;
+      const isThere = this.loaded[n] === generation;
+      const name = this.painter === "server" ? "controls" : isThere ? "colours" : undefined;
+      viewer.setHeader(scenes[n].header);
+      try {
+        const parts = await loads[n](null, [], undefined, undefined, name);
+        if (this.scenes !== scenes) return;
+        for (const part of parts) viewer.setPart(part);
+        this.loaded[n] = generation;
+      } catch (error) {
+        // Of a scene that is not shown any more there is nothing to be had.
+        if (this.scenes === scenes) viewer.panel.fail("The flow could not be loaded.", String(error));
+      }
+      viewer.change();
     };
-    takers[name]();
+    const filled = view.viewers.map(fill);
+    this.resize();
+    await Promise.all(filled);
+  }
+
+  private load(n: number) {
+    const address = () => this.scenes[n]?.parts ?? "";
+    return loadFiles(address, (file) => this.client?.partsOfFile(file) ?? []);
+  }
+
+  private reader(n: number): Reader {
+    return (at, path) => trame().trigger(this.props.read, [n, { ...at, path }]) as Promise<Reading | null>;
+  }
+
+  /** Tell the size of the picture of all views. */
+  private resize(): void {
+    const { view, area } = this;
+    if (!view?.viewers.length || !area) return;
+    view.first.resize();
+    const { width, height } = view.first.canvas;
+    const count = view.viewers.length;
+    const size = { w: count * width + (count - 1) * GAP_PX, h: height, p: 1 };
+    void session().call("trame.rca.size", [area, "view", size]);
+  }
+
+  /** Show a picture, unless a later one has been decoded before it. */
+  private async takeFrame({ name, meta, content }: Frame): Promise<void> {
+    if (name !== this.area || this.painter !== "server") return;
+    const number = (this.came += 1);
+    const picture = await createImageBitmap(new Blob([content], { type: meta.type }));
+    if (number < this.shown || this.painter !== "server") return;
+    this.shown = number;
+    const { view } = this;
+    const whole = (view?.viewers.length ?? 1) * (view?.first.canvas.width ?? 1);
+    view?.paint(picture, Math.max(Math.round((GAP_PX * picture.width) / whole), 1), meta.sharp);
+    picture.close();
   }
 
   dispose(): void {
-    this.isDisposed = true;
+    this.ended.abort();
     this.watcher.disconnect();
-    this.viewer?.dispose();
+    if (this.subscription) session().unsubscribe(this.subscription);
+    this.view?.dispose();
   }
 }
 
 export const browser = {
   name: "flowtex-client",
-  props: PROPS,
-  emits: ["update:camera", "update:time", "update:playing", "setting", "sharp", "point", "hover"],
-  setup(props: Props, { emit }: { emit: Emit }) {
-    const { h, ref, watch, onMounted, onBeforeUnmount } = vue();
+  props: ["begin", "read"],
+  emits: ["camera", "time", "clock", "playing", "setting", "colours"],
+  setup(props: Props, { emit, expose }: { emit: Emit; expose: (methods: object) => void }) {
+    const { h, ref, onMounted, onBeforeUnmount } = vue();
     const place = ref<HTMLElement | null>(null);
-    const view = new BrowserView(props, emit);
-    onMounted(() => place.value && void view.begin(place.value));
-    onBeforeUnmount(() => view.dispose());
-    const follow = (name: keyof Props) => watch(() => props[name], () => view.take(name));
-    PROPS.forEach(follow);
-    const sendHover = slowly<[number, number] | null>((at) => emit("hover", at));
-    const onPointermove = (event: PointerEvent) => {
+    let view: TrameView | null = null;
+    onMounted(() => {
       if (!place.value) return;
-      const { x, y } = placeIn(place.value, event);
-      sendHover(event.buttons ? null : [x, y]);
-    };
-    const onPointerleave = () => sendHover(null);
-    return () => h("div", { ref: place, onPointermove, onPointerleave });
+      view = new TrameView(props, emit, place.value);
+      void view.paint();
+    });
+    onBeforeUnmount(() => view?.dispose());
+    expose({
+      take: (changes: Partial<Present>) => void view?.take(changes),
+      paint: (painter: Painter) => void view?.paint(painter),
+    });
+    return () => h("div", { ref: place });
   },
 };

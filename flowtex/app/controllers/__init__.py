@@ -6,15 +6,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from flowtex.app.controllers.appearance import Appearance
-from flowtex.app.controllers.browser import BrowserRendering
-from flowtex.app.controllers.camera_controls import CameraControls
 from flowtex.app.controllers.context import Context
 from flowtex.app.controllers.data import Data
 from flowtex.app.controllers.file_beside import FileBeside
 from flowtex.app.controllers.library import Choice
-from flowtex.app.controllers.playback import Playback
-from flowtex.app.controllers.point_info import PointInfo
 from flowtex.app.controllers.sharing import Sharing
+from flowtex.app.controllers.viewpoint import Viewpoint
 
 __all__ = ["Controllers"]
 
@@ -36,10 +33,7 @@ class Controllers:
         self.data = Data(context, name, choice)
         self.beside = FileBeside(context, self.data)
         self.appearance = Appearance(context, self.beside)
-        self.playback = Playback(context)
-        self.camera = CameraControls(context)
-        self.browser = BrowserRendering(context)
-        self.point_info = PointInfo(context)
+        self.viewpoint = Viewpoint(context)
         self.sharing = Sharing(
             context,
             source=lambda: self.data.python,

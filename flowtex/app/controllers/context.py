@@ -11,7 +11,6 @@ from flowtex.app.server.page import PageState, Signal
 from flowtex.app.server.validation import shortened
 from flowtex.app.streaming.area import FlowArea
 from flowtex.app.streaming.viewport import Viewport
-from flowtex.camera import Camera, CameraError
 from flowtex.field import FlowField
 from flowtex.settings import Settings
 
@@ -29,36 +28,16 @@ class Context:
         All of them, in the order in which they were made.
     field_changed
         Signal after another flow is shown.
-    frame_drawn, frame_due
-        Signals of the stream: with its figures after each picture, and when a sharp picture has
-        become out of date.
-    camera_changed
-        Signal after a move of the camera for which the browser draws, and no frame comes.
-    frame_drawn_in_browser
-        Signal with the milliseconds that the browser's last full picture took.
-    time_changed
-        Signal after a change of the time that is shown.
-    step_requested
-        Signal with 1 or -1, to go to the next step of the field or to the one before.
     beside_changed
         Signal after the flow of another file came into the second pane, or went.
-    comparison_started, client_started
-        Signals when a second pane is shown, and when the browser's client, which draws one pane,
-        begins to draw.
     """
 
     def __init__(self, state: PageState, area: FlowArea, library: Library) -> None:
         self.state, self.area, self.library = state, area, library
         self.routes = Routes.of(state.server)
         self.controllers: list[Controller] = []
-        self.field_changed = Signal()
-        self.frame_drawn, self.frame_due = area.stream.frame_drawn, area.stream.frame_due
-        self.camera_changed = Signal()
-        self.frame_drawn_in_browser = Signal()
-        self.time_changed = area.player.time_changed
-        self.step_requested = Signal()
-        self.beside_changed = Signal()
-        self.comparison_started, self.client_started = Signal(), Signal()
+        self.field_changed, self.beside_changed = Signal(), Signal()
+        area.element.failed.connect(self.complain)
 
     def complain(self, problem: object) -> None:
         """Let the page say what is wrong."""
@@ -70,18 +49,6 @@ class Context:
         self.area.show(field, keep_view=keep_view, keep_range=keep_range)
         self.field_changed.emit()
         self.area.player.playing = playing
-
-    def take_camera(self, values: Any) -> bool:
-        """Look from a camera that somebody sent; tells whether it sees something."""
-        viewport = self.area.viewport
-        try:
-            camera = Camera.from_dict(values, viewport.camera)
-        except CameraError:
-            return False
-        near = camera.is_near(viewport.field.surface)
-        if near:
-            viewport.camera = camera
-        return near
 
 
 class Controller:

@@ -208,7 +208,7 @@ class Data(Controller):
             if not keep:
                 zoom, focus = self.library.look(flow.name)
                 self.viewport.home(zoom=zoom, focus=focus)
-                self.stream.moved()
+                self.area.moved()
         except BaseException:
             self._current, self._goal = before
             raise

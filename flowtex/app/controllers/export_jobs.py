@@ -25,7 +25,8 @@ from flowtex._util.array_types import Bytes
 from flowtex._util.progress import Stopped, stoppable
 from flowtex._util.whole_file import whole_file
 from flowtex.app.streaming.painter import LINE_GREY, Cost
-from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
+from flowtex.app.streaming.viewport import GAP_PX, Pane, Viewport
+from flowtex.app.streaming.window import Rect
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.offscreen.annotations import annotate

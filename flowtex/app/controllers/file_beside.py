@@ -14,8 +14,6 @@ from flowtex.app.controllers.library import Choice, TracedFlow
 from flowtex.app.controllers.loading import LoadRequest, announced
 from flowtex.errors import FieldError
 from flowtex.field.interpolation import steps_around
-from flowtex.offscreen.annotations import time_text
-from flowtex.plotting.handle import FlowHandle
 
 
 class FileBeside(Controller):
@@ -34,10 +32,9 @@ class FileBeside(Controller):
         self._flow: TracedFlow | None = None
         self._opening: asyncio.Task[None] | None = None
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex opening beside")
-        self.state.set(file_beside="", pane_names=[])
+        self.state.set(file_beside="")
         self.state.on("file_beside")(self.take_file)
         context.field_changed.connect(self.follow)
-        context.time_changed.connect(self.show_names)
 
     @property
     def name(self) -> str:
@@ -97,17 +94,15 @@ class FileBeside(Controller):
         self.show_names()
 
     def show_names(self) -> None:
-        """Let the page name the two files, with the times that are shown of them."""
-        if self.name:
-            handles = (pane.handle for pane in self.viewport.panes)
-            aside = zip(astuple(self._choice), astuple(self._data.choice), strict=True)
-            other = [own for own, first in aside if own != first]
-            names = ([self._data.name], [self.name, *filter(None, other)])
-            texts = [
-                " · ".join([*words, *_time(handle)])
-                for words, handle in zip(names, handles, strict=True)
-            ]
-            self.state.send(pane_names=texts)
+        """Let the page name the two files."""
+        self.area.element.names = self._names() if self.name else ()
+        self.area.element.follow()
+
+    def _names(self) -> tuple[str, ...]:
+        """Names of the two files, of the second with what is another part of it."""
+        aside = zip(astuple(self._choice), astuple(self._data.choice), strict=True)
+        other = [own for own, first in aside if own != first]
+        return (self._data.name, " · ".join([self._name, *filter(None, other)]))
 
     def describe(self) -> dict[str, Any]:
         """Return which file it is, and what is shown of it."""
@@ -176,9 +171,10 @@ class FileBeside(Controller):
                 "one unit of length for two files that one camera sees"
             )
             raise FieldError(msg)
+        self._name, self._choice, self._flow = request.name, choice, flow
+        self.area.element.names = self._names()
         if self.viewport.differences.get("field") is not flow.field:
             self.area.compare({"field": flow.field})
-        self._name, self._choice, self._flow = request.name, choice, flow
         self.context.beside_changed.emit()
         self.show_names()
 
@@ -194,8 +190,4 @@ class FileBeside(Controller):
             self._request.cancelled = True
         self._request = self._flow = None
         self._name = ""
-        self.state.set(pane_names=[])
-
-
-def _time(handle: FlowHandle) -> list[str]:
-    return [] if handle.field.steady else [time_text(handle.field, handle.time)]
+        self.show_names()

@@ -1,12 +1,16 @@
-"""What all parts of a page use: its state, signals between its parts, and tasks."""
+"""What all parts of a page use: its state and elements, signals between its parts, and tasks."""
 
 from __future__ import annotations
 
 import asyncio
 import itertools
 import logging
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Sequence
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
+
+from trame_client.widgets.core import AbstractElement
 
 _log = logging.getLogger(__name__)
 _count = itertools.count(1)
@@ -28,6 +32,13 @@ class Signal:
             listener(*values)
 
 
+def running_loop() -> asyncio.AbstractEventLoop | None:
+    """Return the event loop that this runs in; a script may use an application as well."""
+    with suppress(RuntimeError):
+        return asyncio.get_running_loop()
+    return None
+
+
 def start_task(work: Coroutine[Any, Any, None], failure: str) -> asyncio.Task[None]:
     """Start a task that nobody waits for; an error in it is logged after the text ``failure``."""
     task = asyncio.get_running_loop().create_task(work)
@@ -38,6 +49,25 @@ def start_task(work: Coroutine[Any, Any, None], failure: str) -> asyncio.Task[No
 
     task.add_done_callback(log_error)
     return task
+
+
+class PageElement(AbstractElement):
+    """An element that ``client/src/app`` makes; its script and style come with it."""
+
+    def __init__(
+        self, name: str, properties: Sequence[str], events: Sequence[Any] = (), **attributes: Any
+    ) -> None:
+        super().__init__(f"flowtex-{name}", **attributes)
+        self._attr_names += properties
+        self._event_names += events
+        self.server.enable_module(
+            {
+                "serve": {"__flowtex": str(Path(__file__).parents[1] / "ui" / "static")},
+                "styles": ["__flowtex/flowtex.css"],
+                "scripts": ["__flowtex/flowtex.js"],
+                "vue_use": ["flowtex_page"],
+            }
+        )
 
 
 class PageState:

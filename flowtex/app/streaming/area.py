@@ -9,9 +9,9 @@
         area.ui(style="height: 100%")
     area.settings.lod = False
 
-It draws on the server and streams pictures; a drag pans a flat surface and turns a curved one, the
-wheel zooms. Whatever is changed through :attr:`FlowArea.settings`, or of the appearance, such as
-``area.cmap = "magma"``, is drawn at once.
+It is ``<flowtex-view>``, with its controls: drawn by the browser where that has WebGL2, and else
+here, as pictures. Whatever is changed through :attr:`FlowArea.settings`, or of the appearance, such
+as ``area.cmap = "magma"``, is drawn at once.
 """
 
 from __future__ import annotations
@@ -20,10 +20,12 @@ import asyncio
 from collections.abc import Callable
 from typing import Any
 
-from trame.widgets import html, rca
+import trame_rca.module
 
-from flowtex.app.server.page import PageState, Signal, start_task
+from flowtex.app.server.page import PageElement, PageState, Signal, start_task
+from flowtex.app.streaming.element import Element
 from flowtex.app.streaming.player import Player
+from flowtex.app.streaming.points import PointReader
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
@@ -33,7 +35,7 @@ from flowtex.settings import Settings
 
 
 class FlowArea(AppearanceAttributes):
-    """A flow drawn on the server, as a part of a page.
+    """A flow as a part of a page, with its controls.
 
     Parameters
     ----------
@@ -50,7 +52,9 @@ class FlowArea(AppearanceAttributes):
     Attributes
     ----------
     viewport, stream, player
-        What is drawn, the pictures that go to the page, and what lets time go by.
+        What is drawn, the pictures that go to the page, and the time.
+    element, points
+        What the page is handed, and reads.
     scalars, cmap, clim, log_scale, color, opacity, visible, lighting
         Arguments of ``plotter.flowtex.add``, live.
     appearance_changed
@@ -86,6 +90,8 @@ class FlowArea(AppearanceAttributes):
         self.viewport = Viewport(field, **options)
         self.stream = FrameStream(self.state.key("view"), self.viewport)
         self.player = Player(self.viewport, self.stream)
+        self.element = Element(self.state, self.viewport, self.stream, self.player)
+        self.points = PointReader(self.viewport)
         self.appearance_changed = Signal()
         self._tasks: list[asyncio.Task[None]] = []
         self._watching: tuple[Callable[[], None], ...] = ()
@@ -107,16 +113,24 @@ class FlowArea(AppearanceAttributes):
         return self.viewport.settings
 
     def ui(self, **attributes: Any) -> Any:
-        """Put the view into the open layout; ``attributes`` are those of the element around it."""
-        with html.Div(**attributes) as element:
-            rca.RemoteControlledArea(
-                name=self.stream.area_name,
-                display="image",
-                event_throttle_ms=16,
-                send_mouse_move=True,
-                image_style=("{ width: '100%', height: '100%' }",),
-            )
-        return element
+        """Put the view into the open layout; ``attributes`` are those of the element."""
+        element, server = self.element, self.server
+        server.enable_module(trame_rca.module)
+        told = ("camera", "time", "clock", "playing", "setting", "colours")
+        attributes["style"] = "width: 100%; height: 100%; " + attributes.get("style", "")
+        return PageElement(
+            "client",
+            ["begin", "read"],
+            told,
+            ref=element.ref,
+            begin=server.trigger_name(element.begin),
+            read=server.trigger_name(self.points.read),
+            **{
+                name: (getattr(element, f"take_{name}"), "[$event.value, $event.page]")
+                for name in told
+            },
+            **attributes,
+        )
 
     def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
         """Show another flow with the same settings.
@@ -132,7 +146,7 @@ class FlowArea(AppearanceAttributes):
         """
         self.viewport.show(field, keep_view=keep_view, keep_range=keep_range)
         self._watch()
-        self.stream.changed()
+        self.changed()
 
     def compare(self, changes: dict[str, Any] | None) -> None:
         """Show a second pane that differs, or one pane again for ``None``.
@@ -147,11 +161,26 @@ class FlowArea(AppearanceAttributes):
         self.viewport.compare(changes)
         if at_home:  # a pane is half as wide as the whole view
             self.viewport.refit()
-        self.stream.changed()
+        self.changed()
+
+    def look(self, camera: Any) -> None:
+        """Look from a camera, if it sees something."""
+        if self.element.take_camera(camera):
+            self.element.repeat()
 
     def reset_camera(self) -> None:
         """Show the whole surface again."""
         self.viewport.home()
+        self.moved()
+
+    def changed(self) -> None:
+        """Draw what has changed, and tell the page."""
+        self.element.follow()
+        self.stream.changed()
+
+    def moved(self) -> None:
+        """Draw from where the camera is now, and tell the page."""
+        self.element.follow()
         self.stream.moved()
 
     def close(self) -> None:
@@ -161,6 +190,8 @@ class FlowArea(AppearanceAttributes):
             task.cancel()
         self._tasks.clear()
         self.player.close()
+        self.element.close()
+        self.points.close()
         self._stop_watching()
         self.viewport.close()
 
@@ -181,11 +212,10 @@ class FlowArea(AppearanceAttributes):
 
     def _changed(self) -> None:
         if not self.stream.painter.drafting:
-            self.stream.changed()
+            self.changed()
 
     def _on_ready(self, **_: Any) -> None:
         if self._tasks:  # a page can have trame say this once more
             return
         self.server.controller.rc_area_register(self.stream)
-        for work in (self.stream.run(), self.player.play()):
-            self._tasks.append(start_task(work, "the page has stopped drawing"))
+        self._tasks.append(start_task(self.stream.run(), "the page has stopped drawing"))

@@ -21,7 +21,8 @@ import numpy as np
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.app.server.validation import clipped
 from flowtex.app.streaming.reprojection import Snapshot, coverage, reproject, whole_shift
-from flowtex.app.streaming.viewport import GAP_PX, Pane, Rect, Viewport
+from flowtex.app.streaming.viewport import GAP_PX, Pane, Viewport
+from flowtex.app.streaming.window import Rect
 
 #: Seconds that a picture may take in motion, while playing, and for one tile at rest.
 MOVING_S, PLAYING_S, TILE_S = 0.06, 0.14, 0.1

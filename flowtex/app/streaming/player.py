@@ -1,47 +1,32 @@
-"""Time that goes by: the steps of a flow that varies, or the streaming of a steady one."""
+"""The time that is shown, and whether time goes by, which the page sees to."""
 
 from __future__ import annotations
 
 import asyncio
-import logging
-import time
 from contextlib import suppress
 
-import numpy as np
-
-from flowtex.app.server.page import Signal, start_task
+from flowtex.app.server.page import Signal, running_loop, start_task
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
-from flowtex.offscreen.movie import run_seconds
-
-#: Pictures in a second while playing, at most.
-RATE_HZ = 20.0
-#: Seconds that one picture may let go by, however long it takes.
-LONGEST_STEP_S = 0.5
-#: Seconds that time stands after somebody has moved it by hand.
-HOLD_S = 0.4
-
-_log = logging.getLogger(__name__)
 
 
 class Player:
-    """Lets the time of a viewport go by, as fast as a stream draws it.
+    """The time of a viewport.
 
     Attributes
     ----------
-    pace
-        How many times faster than usual.
-    time_changed
-        Signal after a change of the time that is shown.
+    page
+        Name of the page that asked for the time that is shown; empty where it comes from here.
+    time_changed, playing_changed
+        Signals after a change of the time that is shown, and of whether time goes by.
     """
 
     def __init__(self, viewport: Viewport, stream: FrameStream) -> None:
-        self.pace = 1.0
-        self.time_changed = Signal()
+        self.time_changed, self.playing_changed = Signal(), Signal()
+        self.page = ""
         self._viewport = viewport
         self._stream = stream
-        self._held_until = 0.0
         self._wanted: float | None = None
         self._reading: asyncio.Task[None] | None = None
 
@@ -57,6 +42,7 @@ class Player:
             for pane in self._viewport.panes:
                 if pane.handle.settings.motion == "off":
                     pane.handle.settings.motion = "speed"
+        self.playing_changed.emit()
         self._stream.moved()
 
     @property
@@ -64,7 +50,7 @@ class Player:
         """The time that is shown, or that will be once it is read."""
         return self._viewport.handle.time if self._wanted is None else self._wanted
 
-    def go_to(self, time: float) -> None:
+    def go_to(self, time: float, page: str = "") -> None:
         """Show a time, or the nearest there is; time stands where that cannot be read.
 
         Steps that are read when they are asked for are read beside the event loop: until then the
@@ -74,7 +60,8 @@ class Player:
         nearest = min(max(float(time), float(times[0])), float(times[-1]))
         if nearest == self.time:
             return
-        if not (self._viewport.reads_late and _in_a_loop()):
+        self.page = page
+        if running_loop() is None or not self._viewport.reads_late:
             self._show(nearest)
             return
         self._wanted = nearest
@@ -109,69 +96,12 @@ class Player:
 
     def _stand(self, error: FieldError) -> None:
         """Stay at the time that is shown, as another one cannot be read."""
-        self.playing = False
+        self.playing, self.page = False, ""
         self._stream.data_failed.emit(error)
         self.time_changed.emit()
         self._stream.changed()
-
-    def seek(self, time_: float) -> None:
-        """Go to a time for a person, whose slider must not run away under the hand."""
-        self._held_until = time.monotonic() + HOLD_S
-        self.go_to(time_)
-
-    def step(self, count: int) -> None:
-        """Go so many steps of the field on, or back; round and round."""
-        times = self._viewport.field.times
-        if len(times) == 1:
-            self._viewport.clock += count / RATE_HZ
-            self._stream.changed()
-            return
-        at = self.time
-        after = np.searchsorted(times, at, side="right" if count > 0 else "left")
-        self.go_to(float(times[(after - (count > 0) + count) % len(times)]))
-
-    def advance(self, seconds: float) -> None:
-        """Go on by so many seconds of the person's own time."""
-        seconds *= self.pace
-        field = self._viewport.field
-        if field.steady:
-            self._viewport.clock += seconds
-            self._stream.changed()
-            return
-        first, span = float(field.times[0]), float(np.ptp(field.times))
-        run = run_seconds(len(field.times))
-        # After the last time comes the first: a period goes round, anything else begins again.
-        self.go_to(first + (self.time - first + span * seconds / run) % span)
 
     def close(self) -> None:
         """Show no time any more that is still being read."""
         if self._reading is not None:
             self._reading.cancel()
-
-    async def play(self) -> None:
-        """Let time go by while playing, no faster than pictures are drawn."""
-        before = time.perf_counter()
-        while True:
-            now = time.perf_counter()
-            passed, before = now - before, now
-            on_hold = time.monotonic() < self._held_until
-            if self.playing and not (on_hold or self._stream.paused) and self._stream.watched():
-                self._go_on(min(passed, LONGEST_STEP_S))
-                await self._stream.next_picture()
-            await asyncio.sleep(max(1 / RATE_HZ - (time.perf_counter() - now), 0.005))
-
-    def _go_on(self, seconds: float) -> None:
-        """Advance; where that fails time stands, and the log tells why."""
-        try:
-            self.advance(seconds)
-        except Exception:
-            _log.exception("time cannot go on")
-            self.playing = False
-
-
-def _in_a_loop() -> bool:
-    """Whether this runs in an event loop; a script may use an application as well."""
-    with suppress(RuntimeError):
-        asyncio.get_running_loop()
-        return True
-    return False

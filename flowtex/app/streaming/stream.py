@@ -2,8 +2,8 @@
 
 One task draws. It sleeps until something asks for a picture, draws quick ones for as long as they
 are asked for, and the full one once nothing has moved for a moment. Requests are not queued: the
-next picture shows the latest state. The page's remote controlled area (trame-rca) gives the
-events and takes the pictures.
+next picture shows the latest state. They go
+the way of a remote controlled area (trame-rca).
 
 The scheduler of trame-rca 2.11 was tried in its place (1,000 x 700 pixels, two cores, software
 OpenGL). It takes the still picture in one piece, where this one is given up between two tiles:
@@ -18,16 +18,13 @@ import asyncio
 import io
 import logging
 import time
-from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
 
 from flowtex._util.array_types import Bytes
 from flowtex.app.server.page import Signal
 from flowtex.app.server.validation import mapping
-from flowtex.app.streaming.navigation import Pointer
 from flowtex.app.streaming.painter import MOVING_S, PLAYING_S, ViewPainter, view_pixels
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
@@ -50,32 +47,6 @@ MOTION_QUALITY, REST_QUALITY = 80, 94
 _log = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
-class Figures:
-    """How the stream is doing.
-
-    Attributes
-    ----------
-    sharp
-        Whether the full picture is shown.
-    rate
-        Pictures in the last second.
-    seconds
-        Time that the last one took: drawing, and for a sharp one all its tiles.
-    size
-        Width and height of the full picture, in pixels.
-    limit
-        What took most of the time: ``"drawing"``, ``"encoding"``, ``"network"``, or ``"nothing"``
-        where pictures come as fast as they may.
-    """
-
-    sharp: bool
-    rate: int
-    seconds: float
-    size: tuple[int, int]
-    limit: str
-
-
 class FrameStream:
     """One view of the page, as trame-rca's areas are made.
 
@@ -87,37 +58,31 @@ class FrameStream:
         Whether the browser draws, and no picture is wanted.
     moving
         Whether the last picture was one in motion.
+    fits
+        Whether the surface is fitted to another size of the view, which a page does itself.
     watched
         Tells whether anyone looks; nothing is drawn for nobody.
-    frame_drawn, frame_due
-        Signal with :class:`Figures` after each picture, and one when a sharp picture has become
-        out of date.
-    frame_skipped
-        Signal in place of drawing while it is paused.
     data_failed
         Signal with a FieldError when a part of the data, such as a later step, cannot be read.
-    painter, pointer
-        What draws, and what follows the mouse, the wheel and fingers.
+    painter
+        What draws.
     """
 
     def __init__(self, name: str, viewport: Viewport) -> None:
         self.area_name = name
         self.streamer: Any = None
         self.playing = self.paused = self.moving = False
+        self.fits = True
         self.watched: Callable[[], bool] = lambda: True
-        self.frame_drawn, self.frame_due = Signal(), Signal()
-        self.frame_skipped, self.data_failed = Signal(), Signal()
+        self.data_failed = Signal()
         self.painter = ViewPainter(viewport)
-        self.pointer = Pointer(viewport)
         self._viewport = viewport
-        self._spent = {"drawing": 0.0, "encoding": 0.0, "network": 0.0}
         self._wake = asyncio.Event()
         self._drawn = asyncio.Event()
-        self._sized = self._shown_sharp = False
+        self._sized = False
         self._closed = False
         self._fault = ""
         self._tiled = 0.0
-        self._recent: deque[float] = deque(maxlen=60)
 
     def set_streamer(self, streamer: Any) -> None:
         """Take what sends pictures to the page."""
@@ -130,7 +95,7 @@ class FrameStream:
             return
         new = view_pixels(mapping(size))
         if new != self._viewport.size:
-            at_home = self._viewport.at_home
+            at_home = self.fits and self._viewport.at_home
             self._viewport.resize(*new)
             if at_home:
                 self._viewport.refit()
@@ -139,10 +104,8 @@ class FrameStream:
         self.moved()
 
     def on_interaction(self, origin: str, event: Any) -> None:
-        """Follow the pointer."""
-        del origin
-        if not self._closed and self.pointer(event):
-            self.moved()
+        """Follow no event: the page moves the camera itself."""
+        del origin, event
 
     def reset(self) -> None:
         """Begin again, as when the page is loaded anew."""
@@ -163,14 +126,8 @@ class FrameStream:
 
     def moved(self) -> None:
         """Ask for a picture after a move of the camera."""
-        if self._closed:
-            return
-        self._wake.set()
-        if self.paused:
-            self.frame_skipped.emit()
-        elif self._shown_sharp:
-            self._shown_sharp = False
-            self.frame_due.emit()
+        if not self._closed:
+            self._wake.set()
 
     def changed(self) -> None:
         """Ask for a picture after a change of what is seen."""
@@ -242,9 +199,8 @@ class FrameStream:
         self._wake.clear()
         started = time.perf_counter()
         pixels = self.painter.quick(PLAYING_S if self.playing else MOVING_S)
-        self._spend("drawing", started)
         await self._send(pixels, MOTION_QUALITY)
-        self._report(started, sharp=False)
+        self.moving = True
         # Events of the page arrive while this sleeps; without it they would wait for the picture.
         await asyncio.sleep(max(1 / MOST_RATE_HZ - (time.perf_counter() - started), 0.004))
 
@@ -257,7 +213,7 @@ class FrameStream:
 
     async def _full(self) -> None:
         """Draw the full picture, and give up as soon as something changes."""
-        started = looked = time.perf_counter()
+        looked = time.perf_counter()
         canvas: Bytes | None = None
         if self.painter.complete:
             canvas = self.painter.quick(float("inf"))
@@ -270,19 +226,17 @@ class FrameStream:
                     await self._send(canvas, MOTION_QUALITY)
                     looked = time.perf_counter()
         if canvas is not None:
-            await self._send(canvas, REST_QUALITY)
+            await self._send(canvas, REST_QUALITY, sharp=True)
             if not self._wake.is_set():
-                self._report(started, sharp=True)
+                self.moving = False
 
-    async def _send(self, pixels: Bytes, quality: int) -> None:
+    async def _send(self, pixels: Bytes, quality: int, *, sharp: bool = False) -> None:
         height, width = pixels.shape[:2]
-        loop, started = asyncio.get_running_loop(), time.perf_counter()
+        loop = asyncio.get_running_loop()
         content = await loop.run_in_executor(None, encode, pixels, quality)
-        started = self._spend("encoding", started)
         meta = {"type": "image/jpeg", "codec": "", "w": width, "h": height, "key": "key"}
-        meta |= {"st": time.time_ns() // 1_000_000, "quality": quality}
+        meta |= {"st": time.time_ns() // 1_000_000, "quality": quality, "sharp": sharp}
         await self._uncongested()
-        self._spend("network", started)
         self.streamer.push_content(self.area_name, meta, content)
         self._drawn.set()
 
@@ -292,22 +246,6 @@ class FrameStream:
         monitor = self.streamer.coreServer.network_monitor
         while monitor.pending > 1 and time.perf_counter() < end:
             await asyncio.sleep(0.002)
-
-    def _report(self, started: float, *, sharp: bool) -> None:
-        now = time.perf_counter()
-        self._recent.append(now)
-        rate = sum(1 for at in self._recent if at > now - 1.0)
-        limit = max(self._spent, key=lambda part: self._spent[part])
-        if not sharp and now - started < 0.9 / MOST_RATE_HZ:
-            limit = "nothing"
-        self.moving, self._shown_sharp = not sharp, sharp
-        self.frame_drawn.emit(Figures(sharp, rate, now - started, self._viewport.size, limit))
-
-    def _spend(self, part: str, since: float) -> float:
-        """Count the time since then for a part of the work, the latest pictures most."""
-        now = time.perf_counter()
-        self._spent[part] += 0.3 * (now - since - self._spent[part])
-        return now
 
 
 def encode(pixels: Bytes, quality: int) -> bytes:

@@ -17,10 +17,9 @@ import pyvista as pv
 
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.cache import WeakCache
-from flowtex.app.streaming.free_part import Cover, covers_of_pane, free_part
 from flowtex.app.streaming.reprojection import plane_to_view
 from flowtex.app.streaming.window import OffscreenWindow, Rect
-from flowtex.camera import Camera, ViewPart
+from flowtex.camera import Camera
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
@@ -31,16 +30,12 @@ from flowtex.scene import Change, Scene, steps_of
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image
 
-__all__ = ["BACKGROUNDS", "GAP_PX", "Pane", "Rect", "Viewport"]
-
 #: Colours behind the surface, by theme.
 BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
 #: Pixels between two panes.
 GAP_PX = 2
 #: What may differ in a second pane besides settings.
 PANE_ARGUMENTS = ("scalars", "time", "field")
-#: Zoom below which the surface is seen as a whole.
-WHOLE_ZOOM = 1.5
 
 
 class Pane:
@@ -89,8 +84,6 @@ class Viewport:
         The colour behind the surface.
     whole
         The camera that shows the whole surface, from which zoom counts.
-    covers
-        What lies on the whole view; surfaces are fitted to what it leaves free.
     """
 
     whole: Camera
@@ -108,7 +101,6 @@ class Viewport:
         self.window = OffscreenWindow(640, 400)
         self.background: Any = self.window.plotter.background_color
         self._size = self.window.size
-        self.covers: tuple[Cover, ...] = ()
         self._component = FlowtexComponent(self.window.plotter)
         self._beside: dict[str, Any] = {}
         self._stop_following: Callable[[], Any] = lambda: None
@@ -198,11 +190,7 @@ class Viewport:
         other = Viewport(self.field, **options)
         if self._beside:
             other.compare(self._beside)
-        if self.covers and self.at_home:  # a picture that is saved has no panels
-            other.resize(*self.size)
-            other.home(**self._look)
-        else:
-            other.camera = self.camera
+        other.camera = self.camera
         other.set_background(self.background)
         other.set_time(self.handle.time)
         other.clock = self.clock
@@ -313,12 +301,6 @@ class Viewport:
         """Names of what the surface can be coloured by."""
         return tuple(dict.fromkeys(("speed", *self.field.scalars)))
 
-    def colour_stops(self, scene: Scene, count: int = 17) -> list[str]:
-        """Mean colours of a pane along its bar, from low to high, as ``#rrggbb``."""
-        table = scene.legend_colours
-        stops = table[np.linspace(0, len(table) - 1, count).round().astype(int)]
-        return ["#" + bytes(colour[:3]).hex() for colour in stops]
-
     def set_background(self, colour: Any) -> None:
         """Take the colour behind the surface: a theme's, or any that PyVista knows."""
         colour = BACKGROUNDS.get(colour, colour) if isinstance(colour, str) else colour
@@ -342,6 +324,16 @@ class Viewport:
     def time_beside(self, time: float) -> None:
         self._beside["time"] = time
         self.set_time(self.handle.time)
+
+    @property
+    def time_shift(self) -> float | None:
+        """What is added to the time for that of a second pane; ``None`` where that has its own."""
+        if "time" in self._beside:
+            return None
+        other = self._beside.get("field", self.field)
+        with suppress(TypeError, ValueError):  # no dates, or of two calendars
+            return float((self.field.start - other.start).total_seconds())
+        return 0.0
 
     def time_in(self, field: FlowField) -> float:
         """Return the time of another flow that is now; its last where it has no such time."""
@@ -401,21 +393,13 @@ class Viewport:
         self._size = (width, height)
         self.window.size = self.pane_size
 
-    @property
-    def free(self) -> ViewPart:
-        """The part of a pane that :attr:`covers` leave free."""
-        surface = self.handle.scene.whole.surface
-        width, height = surface.plane_size if self.flat else (1.0, 1.0)
-        covers = covers_of_pane(self.covers, len(self.panes))
-        return free_part(covers, width / height / self.aspect)
-
     def home(self, **look: Any) -> None:
         """Look at the whole surface; ``look`` are arguments of :meth:`Camera.fit`."""
-        surface, free = self.handle.scene.whole.surface, self.free
+        surface = self.handle.scene.whole.surface
         from_side = {name: look[name] for name in ("toward", "up") if name in look}
-        self.whole = Camera.fit(surface, self.aspect, free=free, **from_side)
+        self.whole = Camera.fit(surface, self.aspect, **from_side)
         is_near = look != from_side
-        self._home = Camera.fit(surface, self.aspect, free=free, **look) if is_near else self.whole
+        self._home = Camera.fit(surface, self.aspect, **look) if is_near else self.whole
         self._look, self.camera = look, self._home
 
     def refit(self) -> None:
@@ -423,26 +407,18 @@ class Viewport:
         self.home(**self._look)
 
     @property
+    def sees_all(self) -> bool:
+        """Whether the camera shows the whole surface, from no side that somebody chose."""
+        return (
+            self.at_home
+            and not any(self._look.get(n) for n in ("focus", "toward"))
+            and (self._look.get("zoom", 1.0) == 1.0)
+        )
+
+    @property
     def at_home(self) -> bool:
         """Whether the camera stands where :meth:`home` has put it."""
         return self.camera == self._home
-
-    def pan(self, dx: float, dy: float) -> None:
-        """Move what is seen by a part of the view."""
-        self.camera = self.camera.pan(dx, dy, self.aspect)
-
-    def rotate(self, dx: float, dy: float) -> None:
-        """Go around what is seen, as a drag by a part of the view asks."""
-        # The whole surface need not lie in the middle of the view, but turns about its own.
-        pivot = self.handle.scene.whole.surface.center if self.zoom < WHOLE_ZOOM else None
-        self.camera = self.camera.rotate(dx, dy, self.aspect, pivot)
-
-    def zoom_by(self, factor: float, x: float = 0.0, y: float = 0.0) -> None:
-        """Zoom in by a factor; the point at (x, y) of the view stays where it is."""
-        target = None if self.flat else self.surface_point(x, y)
-        self.camera = self.camera.zoom_by(
-            factor, x, y, aspect=self.aspect, whole=self.whole, target=target
-        )
 
     def surface_point(self, x: float, y: float, pane: int = 0) -> Floats | None:
         """Point of a pane's surface at a place of it, from -1 to 1; ``None`` beside it.

@@ -1,18 +1,13 @@
-"""Controls of a page; those of settings are made from the table in :mod:`flowtex.settings`."""
+"""Controls of a page, beside those that the view has itself."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from trame.widgets import html
 from trame.widgets import vuetify3 as v3
 
-from flowtex.settings import NEEDS, STEADINESS, Setting
-
-#: More choices than this are a menu.
-MOST_BUTTONS = 3
 #: Attributes that trame's widgets do not know by themselves.
 ARIA = [
     ("aria_label", "aria-label"),
@@ -23,35 +18,13 @@ ARIA = [
 DATA = [*ARIA, ("data_setting", "data-setting")]
 
 
-def control(setting: Setting, key: str) -> None:
-    """Put a control for a setting, with the state of this key, into the widget that is open."""
-    prefix = key.removesuffix(setting.name)
-    needs = " || ".join(
-        f"{prefix}{name} {sign} {_literal(to)}" for name, sign, to in NEEDS.get(setting.name, ())
-    )
-    idle = [(f"!({needs})", setting.condition)] if needs else []
-    if setting.name in STEADINESS:
-        steady = prefix.removesuffix("set_") + "steady"
-        is_steady = STEADINESS[setting.name]
-        reason = f"Only for a flow that {'does not vary' if is_steady else 'varies'} in time."
-        idle.insert(0, (f"{steady} !== {_literal(is_steady)}", reason))
-    with row(setting.name, setting.text, idle):
-        _widget(setting)(setting, key)
-
-
-def row(name: str, text: str, idle: Sequence[tuple[str, str]] = (), **attributes: Any) -> Any:
-    """Return a row of the panel, with a hint, to be filled.
-
-    ``idle`` has conditions in JavaScript under which the row makes no difference, and why.
-    """
-    reasons = "".join(f"{condition} ? {_literal(why + ' ')} : " for condition, why in idle)
-    dim = " || ".join(condition for condition, _ in idle) or "false"
+def row(name: str, text: str, **attributes: Any) -> Any:
+    """Return a row of the panel, with a hint, to be filled."""
     return html.Div(
         data_setting=name,
-        data_hint=(f"({reasons}'') + {_literal(text)}",),
-        data_side="start",
-        classes=(f"{{ 'flowtex-row': true, 'flowtex-idle': {dim} }}",),
+        classes="flowtex-row",
         __properties=DATA,
+        **hint(text, "start"),
         **attributes,
     )
 
@@ -79,28 +52,6 @@ def select(name: str, key: str, items: Any, **attributes: Any) -> None:
     )
 
 
-def _widget(setting: Setting) -> Callable[[Setting, str], None]:
-    if setting.control == "choice":
-        return _choice if len(setting.choices) <= MOST_BUTTONS else _menu
-    return {"checkbox": _switch, "number": _number, "slider": _slider}[setting.control]
-
-
-def _literal(value: Any) -> str:
-    """Return a value as JavaScript has it."""
-    if isinstance(value, str):
-        return "'" + value.replace("\\", "\\\\").replace("'", "\\'") + "'"
-    return json.dumps(value)
-
-
-def _name(setting: Setting) -> None:
-    html.Span(setting.label, classes="flowtex-label")
-
-
-def _switch(setting: Setting, key: str) -> None:
-    _name(setting)
-    switch(setting.label, key)
-
-
 def switch(name: str, key: str) -> None:
     """Put a switch into the row that is open."""
     v3.VSwitch(
@@ -113,10 +64,6 @@ def switch(name: str, key: str) -> None:
         inset=True,
         classes="flowtex-switch",
     )
-
-
-def _choice(setting: Setting, key: str) -> None:
-    buttons(setting.label, key, setting.choices)
 
 
 def buttons(name: str, key: str, choices: Sequence[str]) -> None:
@@ -142,20 +89,6 @@ def toggle(name: str, key: str, **attributes: Any) -> Any:
     )
 
 
-def _menu(setting: Setting, key: str) -> None:
-    select(setting.label, key, (f"{key}_choices", list(setting.choices)))
-
-
-def _slider(setting: Setting, key: str) -> None:
-    low, high = setting.low or 0, setting.high or 1
-    digits = 0 if setting.kind is int else 2
-    with html.Div(classes="flowtex-stack"):
-        with html.Div(classes="flowtex-line"):
-            _name(setting)
-            html.Span(f"{{{{ Number({key}).toFixed({digits}) }}}}", classes="flowtex-value")
-        slider(setting.label, key, low, high, setting.step)
-
-
 def slider(name: str, key: str, low: Any, high: Any, step: Any, **attributes: Any) -> None:
     """Put a slider into the widget that is open."""
     v3.VSlider(
@@ -172,11 +105,6 @@ def slider(name: str, key: str, low: Any, high: Any, step: Any, **attributes: An
         track_size=3,
         **attributes,
     )
-
-
-def _number(setting: Setting, key: str) -> None:
-    _name(setting)
-    number(setting.label, key, setting.low, setting.high, whole=setting.kind is int)
 
 
 def number(

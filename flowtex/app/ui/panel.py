@@ -1,59 +1,32 @@
-"""The panel of controls: five that everybody needs, and the rest in groups to unfold."""
+"""The panel of what a page does beside drawing: comparing, saving, sharing."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 from trame.widgets import html
 from trame.widgets import vuetify3 as v3
 
-from flowtex._util.colours import CMAPS
 from flowtex.app.controllers import Controllers
-from flowtex.app.controllers.appearance import (
-    ANOTHER_FILE,
-    ANOTHER_TIME,
-    BACKGROUNDS,
-    MAP_LINES,
-    PLAIN,
-)
-from flowtex.app.controllers.browser import RENDERERS
+from flowtex.app.controllers.appearance import ANOTHER_FILE, ANOTHER_TIME, BACKGROUNDS
 from flowtex.app.controllers.sharing import FORMATS
-from flowtex.app.ui.controls import (
-    ARIA,
-    buttons,
-    control,
-    number,
-    row,
-    select,
-    slider,
-    switch,
-)
-from flowtex.options import ROBUST, Appearance, option_text
-from flowtex.settings import GROUPS, TABLE
+from flowtex.app.streaming.element import PAINTERS
+from flowtex.app.ui.controls import ARIA, buttons, number, row, select, slider, switch
 
 
 def build_panel(controllers: Controllers) -> None:
     """Put the panel into the page that is open."""
     key = controllers.context.state.key
     with html.Div(
-        classes="flowtex-panel flowtex-glass", v_show=(panel_shown(key("panel")),), role="region"
+        classes="flowtex-panel flowtex-glass",
+        v_show=(key("panel"),),
+        role="region",
+        aria_label="Panel",
+        __properties=ARIA,
     ):
-        for name in GROUPS[""]:
-            control(TABLE[name], key(f"set_{name}"))
-        with row("colour", "What the colours tell."):
-            select("Colour by", key("colour"), (key("colours"),))
-        _group(controllers, "Colours", lambda: _colours(controllers))
-        for title in filter(None, GROUPS):
-            _group(controllers, title, partial(_settings, controllers, title))
         _group(controllers, "View", lambda: _view(controllers))
         _group(controllers, "Save", lambda: _save(controllers))
         _group(controllers, "Share", lambda: _share(controllers))
-
-
-def panel_shown(panel: str) -> str:
-    """Whether the panel is shown: as chosen, or at first where there is room for it."""
-    return f"({panel} === null ? $vuetify.display.mdAndUp : {panel})"
 
 
 def _group(controllers: Controllers, title: str, fill: Callable[[], None]) -> None:
@@ -70,58 +43,6 @@ def _group(controllers: Controllers, title: str, fill: Callable[[], None]) -> No
         v3.VIcon(f"{{{{ {is_open} ? 'mdi-chevron-up' : 'mdi-chevron-down' }}}}", size=18)
     with html.Div(v_show=(is_open,), classes="flowtex-rest"):
         fill()
-
-
-def _settings(controllers: Controllers, title: str) -> None:
-    for name in GROUPS[title]:
-        control(TABLE[name], controllers.context.state.key(f"set_{name}"))
-    if title == "Noise":
-        _image(controllers)
-
-
-def _image(controllers: Controllers) -> None:
-    with row("image", "A picture of your own, PNG or JPEG, that the flow smears."):
-        html.Span("Your image", classes="flowtex-label")
-        v3.VFileInput(
-            v_model=(controllers.context.state.key("image_file"),),
-            accept="image/png,image/jpeg,image/webp",
-            density="compact",
-            variant="plain",
-            hide_details=True,
-            prepend_icon="",
-            aria_label="Your image",
-            __properties=[*ARIA, "accept"],
-            classes="flowtex-file",
-        )
-
-
-def _colours(controllers: Controllers) -> None:
-    key = controllers.context.state.key
-    plain = [(f"{key('colour')} === '{PLAIN}'", "Only where the surface is coloured by something.")]
-    with row(
-        "cmap", "From low to high: even steps of lightness first, then maps with a middle.", plain
-    ):
-        select("Colour map", key("cmap"), (f"{list(CMAPS)}",))
-    with row("range", "Values at the ends of the colour map.", plain):
-        html.Span("Range", classes="flowtex-label")
-        with html.Span(classes="flowtex-range"):
-            number("Lowest value", key("low"))
-            number("Highest value", key("high"))
-            choose = controllers.appearance.choose_range
-            html.Button("auto", click=choose, classes="flowtex-link")
-            html.Button("robust", click=(choose, f"['{ROBUST}']"), classes="flowtex-link")
-    with row("log_scale", option_text(Appearance, "log_scale"), plain):
-        html.Span("Log scale", classes="flowtex-label")
-        switch("Log scale", key("log_scale"))
-    with row("opacity", option_text(Appearance, "opacity")):
-        html.Span("Opacity", classes="flowtex-label")
-        slider("Opacity", key("opacity"), 0, 1, 0.05)
-    for name in MAP_LINES:
-        with row(name, option_text(Appearance, name), v_if=(key("has_map"),)):
-            html.Span(name.capitalize(), classes="flowtex-label")
-            switch(name.capitalize(), key(name))
-    with row("background", "What lies behind the surface."):
-        select("Background", key("background"), (f"{list(BACKGROUNDS)}",))
 
 
 def _view(controllers: Controllers) -> None:
@@ -142,8 +63,23 @@ def _view(controllers: Controllers) -> None:
     ):
         others = f"{key('files')}.filter(name => name !== {key('file')})"
         select("File beside", key("file_beside"), (others,))
-    with row("rendering", "The server sends pictures; the browser draws with its own graphics."):
-        buttons("Drawn by", key("rendering"), RENDERERS)
+    with row("image", "A picture of your own, PNG or JPEG, that the flow smears."):
+        html.Span("Your image", classes="flowtex-label")
+        v3.VFileInput(
+            v_model=(key("image_file"),),
+            accept="image/png,image/jpeg,image/webp",
+            density="compact",
+            variant="plain",
+            hide_details=True,
+            prepend_icon="",
+            aria_label="Your image",
+            __properties=[*ARIA, "accept"],
+            classes="flowtex-file",
+        )
+    with row("background", "What lies behind the surface."):
+        select("Background", key("background"), (f"{list(BACKGROUNDS)}",))
+    with row("painter", "The browser draws with its own graphics; the server sends pictures."):
+        buttons("Drawn by", key("painter"), PAINTERS)
 
 
 def _save(controllers: Controllers) -> None:

@@ -33,7 +33,7 @@ from flowtex.rendering.webgl import velocity
 from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts, plain_list
-from flowtex.settings import TABLE, Settings
+from flowtex.settings import NEEDS, TABLE, Settings
 from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet, TriangleGeometry
 from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
 
@@ -197,13 +197,13 @@ class ClientData:
         """Return all that is no array; plain Python, for JSON.
 
         The camera is as :meth:`Camera.to_dict` has it, by default of the whole surface; the time
-        is in the field's own unit, by default the last; the clock of the streaming in seconds.
+        is in the field's own unit, by default the first; the clock of the streaming in seconds.
         """
         return {
             **self.constants(),
             "settings": dict(settings),
             "camera": self.first_camera().to_dict() if camera is None else dict(camera),
-            "time": float(self.times[-1] if time is None else time),
+            "time": float(self.times[0] if time is None else time),
             "clock": float(clock),
         }
 
@@ -509,7 +509,10 @@ def _shaders(variant: tuple[str, ...], *, traces: bool) -> dict[str, str]:
 
 def _table() -> list[dict[str, Any]]:
     """Return the table of settings, for controls."""
-    names = ("name", "label", "default", "affects", "text", "low", "high", "logarithmic")
+    names = (
+        *("name", "label", "default", "affects", "text", "low", "high", "logarithmic"),
+        "condition",
+    )
     return [
         {
             **{name: getattr(row, name) for name in names},
@@ -517,6 +520,7 @@ def _table() -> list[dict[str, Any]]:
             "control": "slider" if row.logarithmic else row.control,
             "whole": row.kind is int,
             "choices": list(row.choices),
+            "needs": [list(need) for need in NEEDS.get(row.name, ())],
         }
         for row in TABLE.values()
     ]

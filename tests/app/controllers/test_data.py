@@ -15,7 +15,7 @@ pytest.importorskip("trame_rca")
 import xarray as xr
 from earth_data import winds
 from lying_files import crashing
-from small_pages import Streamer, played
+from small_pages import Streamer, panned, played
 from waiting import until
 
 from flowtex import examples
@@ -105,13 +105,13 @@ def test_the_view_moves_while_a_later_step_is_read(
         app.stream.set_streamer(streamer)
         task = asyncio.create_task(app.stream.run())
         for day in (days[0], days[1], days[2]):
-            app.state.send(time=day)
+            app.area.element.take_time(day)
         await until(lambda: asked)
         streamer.sent = 0
-        app.viewport.pan(0.1, 0.0)
+        panned(app.viewport, 0.1, 0.0)
         app.stream.moved()
         await until(lambda: streamer.sent)
-        assert (app.viewport.handle.time, app.state.get("time")) == (shown, days[2])
+        assert (app.viewport.handle.time, app.area.player.time) == (shown, days[2])
         slow.set()
         await until(lambda: app.viewport.handle.time == days[2])
         assert days[1] not in asked, "only the latest is read"
@@ -142,10 +142,10 @@ def test_a_later_step_that_cannot_be_read_is_told_and_the_page_goes_on(
         task = asyncio.create_task(app.stream.run())
         app.stream.changed()
         await until(lambda: streamer.sent)
-        app.state.send(time=2 * 86_400.0)  # at which the reader crashes
+        app.area.element.take_time(2 * 86_400.0)  # at which the reader crashes
         await until(lambda: app.state.get("problem") != "")
         assert app.state.get("problem").startswith("winds.nc: the reader of this file crashed")
-        assert app.viewport.handle.time == app.state.get("last"), "time stands"
+        assert app.viewport.handle.time == 0.0, "time stands"
         app.state.send(problem="")
         streamer.sent = 0
         app.stream.changed()

@@ -12,7 +12,7 @@ from PIL import Image, ImageSequence
 
 pytest.importorskip("trame_rca")
 
-from small_pages import difference, small
+from small_pages import difference, panned, small
 from waiting import wait_until
 
 from flowtex._util.progress import Stopped
@@ -28,7 +28,7 @@ def scene() -> Iterator[Viewport]:
     made = Viewport(small(curved=True), zoom=2.0, samples=9, scalars="height", cmap="magma")
     made.resize(240, 160)
     made.refit()
-    made.pan(0.1, -0.2)
+    panned(made, 0.1, -0.2)
     made.set_background("light")
     yield made
     made.close()

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import threading
-import time
 from datetime import datetime, timedelta
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -62,26 +60,23 @@ def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
 
     async def story() -> None:
         assert FILE in app.state.get("comparisons")
-        app.state.send(cmap="magma", set_contrast=2.0)
+        app.area.cmap, app.area.settings.contrast = "magma", 2.0
         await beside(app)
         first, second = (pane.handle for pane in app.viewport.panes)
         assert (app.state.get("file_beside"), second.field.shape) == ("two", (14, 20))
         assert second.settings.contrast == 2.0 and second.cmap == "magma"
         assert second.scene.scalar_limits == pytest.approx((3, 6))
         assert first.scene.scalar_limits[1] < 2
-        assert app.state.get("bar_beside")["high"] == "6"
-        assert app.state.get("pane_names") == ["one", "two"]
-        app.state.send(low=0.0, high=4.0)
+        assert app.area.element.names == ("one", "two")
+        app.area.clim = (0.0, 4.0)
         assert second.scene.scalar_limits == first.scene.scalar_limits == (0, 4)
-        assert app.state.get("bar_beside") is None
-        app.state.send(set_contrast=1.0, opacity=0.5)
+        app.area.settings.contrast, app.area.opacity = 1.0, 0.5
         assert second.settings.contrast == 1.0 and second.opacity == 0.5
         # The second one has no such array.
-        app.state.send(colour="height")
+        app.area.scalars, app.area.clim = "height", None
         assert second.scalars == "speed" and second.clim is None
-        assert app.state.get("bar_beside")["name"] == "speed"
         app.state.send(compare="nothing")
-        assert len(app.viewport.panes) == 1 and app.state.get("pane_names") == []
+        assert len(app.viewport.panes) == 1 and not app.area.element.names
         assert "beside_file" not in app.controllers.sharing.present_state()
 
     played(app, story)
@@ -94,7 +89,7 @@ def test_colours_with_a_logarithm_where_the_other_file_has_none() -> None:
 
     async def story() -> None:
         await beside(app)
-        app.state.send(log_scale=True)
+        app.area.element.take_colours({"log_scale": True})
         first, second = (pane.handle for pane in app.viewport.panes)
         assert first.log_scale is True and second.log_scale is False
         assert app.state.get("problem") == ""
@@ -117,18 +112,16 @@ def test_the_time_is_that_of_the_first_or_the_last() -> None:
     async def story() -> None:
         await beside(app)
         second = app.viewport.panes[1].handle
-        app.state.send(time=0.25)
+        app.area.element.take_time(0.25)
         assert second.time == 0.25
-        assert app.state.get("pane_names") == ["one · t = 0.25", "two · t = 0.25"]
-        app.state.send(time=3.0)
+        app.area.element.take_time(3.0)
         assert second.time == 1.5
-        assert app.state.get("pane_names") == ["one · t = 3.00", "two · t = 1.50"]
+        assert app.area.element.names == ("one", "two")
         await beside(app, "three")
-        assert app.state.get("pane_names") == ["one · t = 3.00", "three"]
         app.state.send(file="three")
         # The file beside is the first one now, and the next one comes beside it.
         await until(lambda: app.controllers.beside.name == "one")
-        assert app.state.get("pane_names") == ["three", "one · t = 3.00"]
+        assert app.area.element.names == ("three", "one")
 
     played(app, story)
 
@@ -142,9 +135,9 @@ def test_dates_are_those_of_the_first() -> None:
     async def story() -> None:
         await beside(app)
         second = app.viewport.panes[1].handle
-        app.state.send(time=2.5 * 86400)
+        app.area.element.take_time(2.5 * 86400)
         assert second.time == 0.5 * 86400
-        app.state.send(time=86400.0)
+        app.area.element.take_time(86400.0)
         assert second.time == late.times[-1]
 
     played(app, story)
@@ -183,13 +176,13 @@ def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
         await until(lambda: app.controllers.data.choice.plane == "k=5")
         await beside(app, "c.vts")
         # It has no such plane, and says which one it is.
-        assert app.state.get("pane_names") == ["a.vts", "c.vts · k=1"]
+        assert app.area.element.names == ("a.vts", "c.vts · k=1")
         assert height() == pytest.approx(0.5)
         app.state.send(file_beside="torn.vts")
         await until(lambda: app.state.get("problem"))
         assert app.state.get("problem").startswith("torn.vts: ")
         assert str(tmp_path) not in app.state.get("problem")
-        assert len(app.viewport.panes) == 1 and app.state.get("pane_names") == []
+        assert len(app.viewport.panes) == 1 and not app.area.element.names
         assert (app.state.get("compare"), app.state.get("file_beside")) == (FILE, "")
         app.state.send(index=2)  # nothing is beside it that would follow
         await until(lambda: app.controllers.data.choice.plane == "k=2")
@@ -254,53 +247,22 @@ def test_two_units_of_length_are_refused() -> None:
     played(app, story)
 
 
-def test_tips_and_paths_are_of_the_pane_under_the_pointer() -> None:
+def test_a_point_is_read_in_its_own_pane() -> None:
     app = page(one=small(), two=other())
 
     async def story() -> None:
         await beside(app)
-        send = app.stream.on_interaction
-        event = {"w": 240, "h": 80, "y": 40}
-
-        def click(x: float) -> None:
-            send("test", {"type": "LeftButtonPress", **event, "x": x})
-            send("test", {"type": "LeftButtonRelease", **event, "x": x})
-
-        click(180)
-        await until(lambda: app.state.get("card"))
-        told = dict(map(tuple, app.state.get("card")["lines"]))
-        assert told["velocity"].startswith("(0, 4.") and "height" not in told
-        assert app.state.get("over")["shown"] == [1] and app.state.get("over")["panes"] == 2
-        app.controllers.point_info._hovered_at = 0.0
-        send("test", {"type": "MouseMove", **event, "x": 180})
-        assert dict(app.state.get("tip")["lines"])["velocity"].startswith("(0, 4.")
-        click(60)
-        await until(lambda: app.state.get("over")["shown"] == [0])
-        assert "height" in dict(map(tuple, app.state.get("card")["lines"]))
-        click(180)
-        await until(lambda: app.state.get("over")["shown"] == [1])
+        read: Any = app.area.points.read
+        at = {"place": [0.0, 0.0], "path": True}
+        first, second = [await read(n, at) for n in (0, 1)]
+        assert "height" in first["point"]["values"] and first["alone"] is True
+        assert "height" not in second["point"]["values"]
+        assert second["path"]["velocity"][1] == pytest.approx(4.5, abs=0.1)
+        tip = await read(1, {"place": [0.0, 0.0]})
+        assert tip == {"point": second["point"]}
         app.state.send(compare="Samples: 10")
-        assert app.state.get("card") is None and len(app.viewport.panes) == 2
-        click(180)
-        await until(lambda: app.state.get("card"))
-        assert app.state.get("over")["shown"] == [0, 1]
-        # It goes with the camera, is read anew with a full picture, and closes where there is none.
-        info: Any = app.controllers.point_info
-        before = app.state.get("over")
-        app.viewport.pan(0.1, 0.0)
-        info.follow(SimpleNamespace(sharp=False))
-        assert app.state.get("over") != before
-        info.follow(SimpleNamespace(sharp=True))
-        info.take_point([3.0, 2.0])
-        await until(lambda: not info.busy)
-        info.show_path((1e9, 1e9))
-        await until(lambda: app.state.get("card") is None)
-        # A move of the pointer soon after another one waits.
-        info._hovered_at = time.monotonic() + PATIENCE_S
-        info.hover((0.5, 0.0))
-        assert info._timer is not None
-        info.hover(None)
-        assert info._timer is None
+        both = await read(1, at)  # two panes of one flow
+        assert both["alone"] is False and len(both["samples"]) == 5
 
     played(app, story)
 
@@ -309,8 +271,9 @@ def test_a_link_and_the_lines_of_python_name_both() -> None:
     app = page(one=small(steps=4), two=other(steps=4), three=other())
 
     async def story() -> None:
+        app.area.player.go_to(3.0)
         await beside(app, "two")
-        app.state.send(colour="height")
+        app.area.scalars = "height"
         sharing = app.controllers.sharing
         state = sharing.present_state()
         assert state["beside"]["scalars"] == "speed" and state["beside"]["time"] == 1.5
@@ -321,7 +284,8 @@ def test_a_link_and_the_lines_of_python_name_both() -> None:
         assert "field_beside = ..." in lines
         assert 'pl.flowtex.add(field_beside, scalars="speed", cmap="viridis", samples=5)' in lines
         assert lines.count("handle.time = ") == 2 and "handle.time = 1.5" in lines
-        app.state.send(compare="nothing", colour="speed")
+        app.area.scalars = "speed"
+        app.state.send(compare="nothing")
         app.restore(from_link(link))
         await until(lambda: app.controllers.beside.name == "two")
         app.restore(from_link(link.replace("beside_file=two", "beside_file=three")))

@@ -16,7 +16,7 @@ pytest.importorskip("trame_rca")
 from lab import BASE, Lab, LabServer
 from served import Link, enter
 from waiting import PATIENCE_S
-from watching import DECODED
+from watching import COUNT, DRAWN, SHARP
 
 from flowtex import examples
 from flowtex.app import FlowApp
@@ -100,14 +100,10 @@ def frame_of(page: Page) -> Frame:
 
 def drawn(page: Page, frame: Frame, before: int = 0) -> Any:
     """Wait for the next full picture, and return the frame as (h, w) greys."""
-    frame.wait_for_function(
-        "n => Number(document.querySelector('[data-sharp]')?.dataset.sharp) > n"
-        " && document.querySelector('[data-picture=sharp]')",
-        arg=before,
-    )
-    frame.evaluate(DECODED)
+    frame.wait_for_function(f"n => ({COUNT})() > n && ({SHARP})()", arg=before)
+    frame.evaluate(DRAWN)
     with Image.open(io.BytesIO(page.locator("iframe[title=flowtex]").screenshot())) as picture:
-        return np.asarray(picture.convert("L"), dtype=float)[100:300, 30:-30]
+        return np.asarray(picture.convert("L"), dtype=float)[140:300, 80:-30]
 
 
 @pytest.mark.slow
@@ -130,15 +126,15 @@ def test_a_cell_shows_a_flow_that_both_sides_can_change(page: Page, jupyter: Lab
     assert "secret" not in frame.url
 
     # The browser to Python, and Python to the browser.
-    count = int(frame.get_attribute("[data-sharp]", "data-sharp") or 0)
-    frame.locator(".flowtex-view").hover(position={"x": 200, "y": 200})
+    count = int(frame.evaluate(COUNT))
+    frame.locator(".picture").hover(position={"x": 200, "y": 200})
     for _ in range(8):
         page.mouse.wheel(0, -100)
     closer = drawn(page, frame, count)
     assert np.abs(closer - before).mean() > 5
     assert float(notebook.said("app.viewport.zoom")) > 3
-    count = int(frame.get_attribute("[data-sharp]", "data-sharp") or 0)
-    assert notebook.said("app.viewport.home() or app.stream.moved()") == "None"
+    count = int(frame.evaluate(COUNT))
+    assert notebook.said("app.area.reset_camera()") == "None"
     assert np.abs(drawn(page, frame, count) - before).mean() < 1
 
     assert notebook.said("app.close()") == "None"

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("trame_rca")
 
-from small_pages import difference, picture
+from small_pages import difference, panned, picture
 
 from flowtex.app import FlowApp
 from flowtex.app.streaming.painter import COARSEST_DRAFT, Cost
@@ -49,7 +49,7 @@ def test_after_a_drag_only_what_came_into_view_is_drawn(
     painter.quick(0.01)
     for _ in painter.full():
         pass
-    flat.viewport.pan(-2 * by[0] / 240, 2 * by[1] / 160)
+    panned(flat.viewport, -2 * by[0] / 240, 2 * by[1] / 160)
     drawn = []
     draw = type(painter.pane).draw
 
@@ -74,7 +74,7 @@ def test_a_moved_picture_is_the_one_that_would_be_drawn(flat: FlowApp) -> None:
     view = scene.panes[0].plane_view()
     assert view is not None
     shot = Snapshot(scene.draw(240, 160), view)
-    scene.pan(0.2, -0.1)
+    panned(scene, 0.2, -0.1)
     moved = scene.panes[0].plane_view()
     assert moved is not None
     share, stretch = coverage(shot, moved)
@@ -82,7 +82,7 @@ def test_a_moved_picture_is_the_one_that_would_be_drawn(flat: FlowApp) -> None:
     shifted = reproject(shot, moved, (240, 160), Snapshot(shot.pixels * 0, moved))
     drawn = scene.draw(240, 160)
     assert difference(shifted[20:140, 40:190], drawn[20:140, 40:190]) < 1.5
-    scene.zoom_by(2.0)
+    scene.camera = scene.camera.zoom_by(2.0, 0, 0, aspect=1.5, whole=scene.whole)
     closer = scene.panes[0].plane_view()
     assert closer is not None and coverage(shot, closer)[1] == pytest.approx(2)
     flat.area.reset_camera()

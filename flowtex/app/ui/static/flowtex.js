@@ -1,43 +1,49 @@
 // Built from client/src by client/build.js; change that instead.
-"use strict";(()=>{var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
-r",_:"farther",0:"whole"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape";function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){document.
-fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(()=>{})}function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
-next=null,call(value),later(run,wait)};return value=>{next={value},running||run()}}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}function placeIn(element,event){let box=element.getBoundingClientRect();return{x:2*(event.clientX-box.left)/Math.max(box.
-width,1)-1,y:1-2*(event.clientY-box.top)/Math.max(box.height,1)}}function loadFiles(address,partsOfFile){return async(key,steps,signal)=>{let name=address()+[String(key??"whole"),...steps].
-join("."),answer=await fetch(name,{signal});if(!answer.ok)throw new Error(`${name}: ${answer.status}`);return partsOfFile(
-await answer.arrayBuffer())}}var vue=()=>window.Vue;var MESSAGE_MS=100,PROPS=["source","settings","camera","time","playing"],isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(
-b),slowly=call=>throttled(setTimeout,MESSAGE_MS,call),BrowserView=class{props;emit;client=null;viewer=null;lastCamera=null;lastTime=NaN;isDisposed=!1;started=0;load=loadFiles(
-()=>this.props.source.parts,file=>this.client?.partsOfFile(file)??[]);watcher=new MutationObserver(()=>this.look());constructor(props,emit){
-this.props=props,this.emit=emit}async begin(element){let address=new URL(this.props.source.client,document.baseURI).href;
-if(this.client=await import(address),this.isDisposed)return;let viewer=new this.client.Viewer(element,this.options());this.
-viewer=viewer,viewer.root.style.height="100%",this.watcher.observe(viewer.root,{attributeFilter:["data-sharp"]}),await this.
-show()}options(){let{emit}=this,sendCamera=slowly(camera=>emit("update:camera",camera)),sendTime=slowly(time=>emit("upda\
-te:time",time));return{rebuild:!0,controls:!1,bare:!0,onCamera:camera=>sendCamera(this.lastCamera=camera),onTime:time=>sendTime(
-this.lastTime=time),onPlaying:playing=>emit("update:playing",playing),onPoint:({index,position})=>emit("point",this.viewer?.
-header?.geometry.triangles?position:[...index]),onSetting:(name,value)=>emit("setting",[name,value]),source:{load:this.load,
-hasSteps:!0}}}async show(){let{source,playing}=this.props;this.started=performance.now(),this.viewer?.setHeader(source.header);
-for(let part of await this.load(null,[]))this.isDisposed||this.viewer?.setPart(part);playing&&this.viewer?.play()}look(){
-let now=performance.now();this.viewer?.sharp?this.emit("sharp",now-this.started):this.started=now}take(name){let{viewer,
-lastCamera,lastTime}=this,{settings,camera,time,playing}=this.props;if(!viewer)return;({source:()=>{this.show()},settings:()=>viewer.
-setSettings(settings),camera:()=>camera&&!isEqual(camera,lastCamera)&&viewer.setCamera(camera),time:()=>time!==lastTime&&
-!viewer.playing&&viewer.setTime(time),playing:()=>playing?viewer.play():viewer.pause()})[name]()}dispose(){this.isDisposed=
-!0,this.watcher.disconnect(),this.viewer?.dispose()}},browser={name:"flowtex-client",props:PROPS,emits:["update:camera",
-"update:time","update:playing","setting","sharp","point","hover"],setup(props,{emit}){let{h,ref,watch,onMounted,onBeforeUnmount}=vue(),
-place=ref(null),view=new BrowserView(props,emit);onMounted(()=>place.value&&void view.begin(place.value)),onBeforeUnmount(
-()=>view.dispose());let follow=name=>watch(()=>props[name],()=>view.take(name));PROPS.forEach(follow);let sendHover=slowly(
-at=>emit("hover",at)),onPointermove=event=>{if(!place.value)return;let{x,y}=placeIn(place.value,event);sendHover(event.buttons?
-null:[x,y])},onPointerleave=()=>sendHover(null);return()=>h("div",{ref:place,onPointermove,onPointerleave})}};var PANELS=".flowtex-title, .flowtex-buttons, .flowtex-panel, .flowtex-corner, .flowtex-player",CORNER_PX=200,GAP_PX=4;function coverOf(panel,whole){
-let{left,top,right,bottom,width}=panel.getBoundingClientRect();if(!width)return null;let end=panel.matches(".flowtex-cor\
-ner")?Math.min(right,left+CORNER_PX):right,foot=panel.matches(".flowtex-panel")?whole.bottom:bottom,share=(edge,start,size)=>Number(
-clamp((edge-start)/size,0,1).toFixed(4));return[share(left-GAP_PX,whole.left,whole.width),share(top-GAP_PX,whole.top,whole.
-height),share(end+GAP_PX,whole.left,whole.width),share(foot+GAP_PX,whole.top,whole.height)]}var covers={name:"flowtex-co\
-vers",emits:["change"],setup(_,{emit}){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),last="",look=()=>{let page=place.
-value?.parentElement;if(!page?.clientWidth||!page.clientHeight)return;let whole=page.getBoundingClientRect(),player=page.
-querySelector(".flowtex-player")?.getBoundingClientRect();player&&page.style.setProperty("--foot",`${whole.bottom-player.
-top}px`);let present=[...page.querySelectorAll(PANELS)].map(panel=>coverOf(panel,whole)).filter(cover=>cover!==null);JSON.
-stringify(present)!==last&&(last=JSON.stringify(present),emit("change",present))},watcher=new ResizeObserver(look);return onMounted(
-()=>{let page=place.value?.parentElement;if(page)for(let element of[page,...page.querySelectorAll(PANELS)])watcher.observe(
-element)}),onBeforeUnmount(()=>watcher.disconnect()),()=>h("div",{ref:place,hidden:!0})}};var DELAY_MS=400,GAP_PX2=10;function put(box,owner){let at=owner.getBoundingClientRect(),{offsetWidth:width,offsetHeight:height}=box,
+"use strict";(()=>{var CLOSE_KEY="Escape";function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function forwardKeys(root,event){event.target===
+document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()}
+function toggleFullscreen(element){document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(
+()=>{})}function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
+next=null,call(value),later(run,wait)};return value=>{next={value},running||run()}}function loadFiles(address,partsOfFile){return async(key,steps,signal,_has,whole="whole")=>{let name=address()+[String(key??
+whole),...steps].join("."),answer=await fetch(name,{signal});if(!answer.ok)throw new Error(`${name}: ${answer.status}`);
+return partsOfFile(await answer.arrayBuffer())}}var page=()=>window,vue=()=>page().Vue,trame=()=>page().trame;var DRAWN_MS=33,MESSAGE_MS=100,GAP_PX=2,STREAM="trame.rca.topic.stream",session=()=>trame().client.getConnection().getSession();
+function hasWebGL2(){return document.createElement("canvas").getContext("webgl2")!==null}var TrameView=class{props;emit;element;name=Math.
+random().toString(36).slice(2);ended=new AbortController;client=null;view=null;painter;scenes=[];loaded=[];area="";early=null;came=0;shown=0;subscription=null;watcher=new ResizeObserver(
+()=>this.resize());constructor(props,emit,element){this.props=props,this.emit=emit,this.element=element,this.painter=hasWebGL2()?
+"browser":"server";let listener=event=>this.view&&forwardKeys(this.view.first.root,event);document.addEventListener("key\
+down",listener,{signal:this.ended.signal})}async paint(painter=this.painter){this.painter=painter;let start=await trame().
+trigger(this.props.begin,[painter]),early=this.early=[],address=new URL(start.client,document.baseURI).href;if(this.client??=
+await import(address),this.ended.signal.aborted)return;this.area=start.area,this.subscription??=session().subscribe(STREAM,
+([frame])=>{this.takeFrame(frame)}),this.view?.dispose(),this.view?.remove();let view=this.view=new this.client.FlowtexView;
+view.options=this.options(),this.connect(view),this.element.append(view),this.scenes=[],this.early=null,await Promise.all(
+[start,...early].map(changes=>this.take(changes)))}options(){return{rebuild:!0,named:!0,streamed:this.painter==="server",
+onColours:choice=>this.tell("colours",choice)}}connect(view){let wait=this.painter==="server"?DRAWN_MS:MESSAGE_MS;for(let name of[
+"camera","time","clock"]){let send2=throttled(setTimeout,wait,value=>this.tell(name,value));view.addEventListener(name,event=>send2(
+event.detail))}for(let name of["playing","setting"])view.addEventListener(name,event=>this.tell(name,event.detail))}tell(name,value){
+this.emit(name,{value,page:this.name})}async take(changes){let{view,early}=this;if(early)return void early.push(changes);
+if(!view||changes.by===this.name)return;let{scenes,settings,camera,time,timeBeside,clock,playing}=changes,loading=scenes&&
+this.show(scenes),{viewers,first}=view,isStill=!first.playing;for(let viewer of viewers){for(let[name,value]of Object.entries(
+settings??{}))viewer.followSetting(name,value);camera!==void 0&&viewer.setCamera(camera),time!==void 0&&isStill&&viewer.
+followTime(time),clock!==void 0&&isStill&&viewer.setClock(clock)}typeof timeBeside=="number"&&viewers[1]?.setTime(timeBeside),
+playing===!0?first.play():playing===!1&&first.pause(),await loading}async show(scenes){let{view,scenes:before}=this;if(!view)
+return;this.scenes=scenes;let loads=scenes.map((_,n)=>this.load(n));if(before.length!==scenes.length){this.loaded=[],view.
+open(scenes.length,n=>({reader:this.reader(n),source:this.painter==="browser"?{load:loads[n],hasSteps:!0}:void 0})),this.
+watcher.disconnect();for(let{stage}of view.viewers)this.watcher.observe(stage)}let fill=async(viewer,n)=>{let{generation}=scenes[n].
+header,isThere=this.loaded[n]===generation,name=this.painter==="server"?"controls":isThere?"colours":void 0;viewer.setHeader(
+scenes[n].header);try{let parts=await loads[n](null,[],void 0,void 0,name);if(this.scenes!==scenes)return;for(let part of parts)
+viewer.setPart(part);this.loaded[n]=generation}catch(error){this.scenes===scenes&&viewer.panel.fail("The flow could not \
+be loaded.",String(error))}viewer.change()},filled=view.viewers.map(fill);this.resize(),await Promise.all(filled)}load(n){
+return loadFiles(()=>this.scenes[n]?.parts??"",file=>this.client?.partsOfFile(file)??[])}reader(n){return(at,path)=>trame().
+trigger(this.props.read,[n,{...at,path}])}resize(){let{view,area}=this;if(!view?.viewers.length||!area)return;view.first.
+resize();let{width,height}=view.first.canvas,count=view.viewers.length,size={w:count*width+(count-1)*GAP_PX,h:height,p:1};
+session().call("trame.rca.size",[area,"view",size])}async takeFrame({name,meta,content}){if(name!==this.area||this.painter!==
+"server")return;let number=this.came+=1,picture=await createImageBitmap(new Blob([content],{type:meta.type}));if(number<
+this.shown||this.painter!=="server")return;this.shown=number;let{view}=this,whole=(view?.viewers.length??1)*(view?.first.
+canvas.width??1);view?.paint(picture,Math.max(Math.round(GAP_PX*picture.width/whole),1),meta.sharp),picture.close()}dispose(){
+this.ended.abort(),this.watcher.disconnect(),this.subscription&&session().unsubscribe(this.subscription),this.view?.dispose()}},
+browser={name:"flowtex-client",props:["begin","read"],emits:["camera","time","clock","playing","setting","colours"],setup(props,{
+emit,expose}){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),view=null;return onMounted(()=>{place.value&&(view=
+new TrameView(props,emit,place.value),view.paint())}),onBeforeUnmount(()=>view?.dispose()),expose({take:changes=>{view?.
+take(changes)},paint:painter=>{view?.paint(painter)}}),()=>h("div",{ref:place})}};function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var DELAY_MS=400,GAP_PX2=10;function put(box,owner){let at=owner.getBoundingClientRect(),{offsetWidth:width,offsetHeight:height}=box,
 middle=[at.left+(at.width-width)/2,at.top+(at.height-height)/2],below=[middle[0],at.bottom+GAP_PX2],above=[middle[0],at.
 top-height-GAP_PX2],places={start:[at.left-width-2*GAP_PX2,middle[1]],end:[at.right+2*GAP_PX2,middle[1]],top:above},[left,
 top]=places[owner.dataset.side??""]??below;(left<0||left+width>innerWidth)&&([left,top]=below),top+height>innerHeight&&([
@@ -53,46 +59,13 @@ signal:ended.signal,capture:!0};window.addEventListener("pointerover",hint.point
 in",hint.focus,options);for(let name of["focusout","blur"])window.addEventListener(name,hint.leave,options);for(let name of[
 "pointerdown","keydown"])window.addEventListener(name,hint.hide,options);window.addEventListener("scroll",hint.scroll,options),
 document.documentElement.addEventListener("pointerleave",hint.leave,{signal:ended.signal})}),onBeforeUnmount(()=>ended.abort()),
-()=>h("div",{ref:place,role:"tooltip",class:"flowtex-tooltip",hidden:!0})}};var COMMANDS={...CAMERA_KEYS,d:"detail",".":"next",",":"previous"},TOGGLES={[PLAY_KEY]:"play",[CLOSE_KEY]:"close",t:"the\
-me","?":"help"},OWNERS="input, textarea, select, [contenteditable], [role=slider], .v-overlay--active";function press(event,emit){
-let{target,key}=event,isClose=key===CLOSE_KEY;if(!hasModifier(event)&&!(!isClose&&target instanceof Element&&target.closest(
-OWNERS))&&!(key===PLAY_KEY&&target instanceof HTMLButtonElement)){if(key===FULLSCREEN_KEY)toggleFullscreen(document.documentElement);else if(key in
-COMMANDS)emit("command",COMMANDS[key]);else if(key in TOGGLES)emit("toggle",TOGGLES[key]);else return;isClose||event.preventDefault()}}
-var keys={name:"flowtex-keys",emits:["command","toggle","linked"],setup(_,{emit}){let onKeyDown=event=>press(event,emit);
-return vue().onMounted(()=>{window.addEventListener("keydown",onKeyDown),window.location.hash.length>1&&emit("linked",window.
-location.hash)}),vue().onBeforeUnmount(()=>window.removeEventListener("keydown",onKeyDown)),()=>null}};var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf=line=>line.map(place=>place.map(v=>v.toFixed(1)).
-join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[[ax,
-ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];for(;due<
-size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.half*uy,
-HEAD.half*ux];heads.push([[x,y],[left+wide,low+tall],[left-wide,low-tall]])}due-=size}return heads}function pathShapes({
-path:path2,sampled,point,directed,dots=[]}){let lines=(all,kind)=>all.map(line=>["polyline",{class:kind,points:textOf(line)}]),
-isFree=([[x,y]])=>!point||Math.hypot(x-point[0],y-point[1])>FREE_RADIUS,heads=directed?path2.flatMap(line=>arrowHeads(line)).
-filter(isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1],r:POINT_RADIUS}]]:[];return[...lines(path2,
-"whole-casing"),...lines(path2,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["poly\
-gon",{class:"arrow",points:textOf(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].
-map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring(
-"point")]}var INSET={width:232,height:112,margin:9},DOT={least:1.5,most:4.5},POINT_RADIUS2=6;function polyline(line,kind,mapping){
-let points=line.map(place=>mapping(place).map(v=>v.toFixed(1)).join(",")).join(" ");return vue().h("polyline",{class:kind,
-points})}function circle([cx,cy],r,attributes){return vue().h("circle",{cx,cy,r,...attributes})}function pane(over,number,width,height){
-let{h}=vue(),mapping=([x,y])=>[(number+(x+1)/2)*width,(1-y)/2*height],lines=all=>all.map(line=>line.map(mapping)),{path:whole,
-sampled,directed}=over,point=over.point&&mapping(over.point),marks=pathShapes({path:lines(whole),sampled:lines(sampled),
-point,directed}).map(([tag,attributes])=>h(tag,attributes)),id=`flowtex-pane-${number}`,clip=h("clipPath",{id},h("rect",
-{x:number*width,y:0,width,height}));return h("g",{"clip-path":`url(#${id})`},[clip,...marks])}var path={name:"flowtex-pa\
-th",props:["over"],setup(props){let{h,ref,onMounted,onBeforeUnmount}=vue(),place=ref(null),size=ref([1,1]),watcher=new ResizeObserver(
-([{contentRect}])=>{size.value=[contentRect.width,contentRect.height]});return onMounted(()=>place.value&&watcher.observe(
-place.value)),onBeforeUnmount(()=>watcher.disconnect()),()=>{let{over}=props;if(!over)return h("div",{ref:place});let[width,
-height]=size.value,wide=width/over.panes,panes=over.shown.map(n=>pane(over,n,wide,height));return h("div",{ref:place},h(
-"svg",panes))}}};function fitting(places,aspect){let{width:wide,height:high,margin}=INSET,flat=([x,y])=>[x*aspect,-y],flattened=places.
-map(flat),[xs,ys]=[0,1].map(k=>flattened.map(place=>place[k])),[left,top]=[Math.min(...xs),Math.min(...ys)],[width,height]=[
-Math.max(...xs)-left,Math.max(...ys)-top],ratios=[(wide-2*margin)/(width||1e-9),(high-2*margin)/(height||1e-9)],scale=Math.
-min(...ratios);return place=>{let[x,y]=flat(place);return[wide/2+(x-left-width/2)*scale,high/2+(y-top-height/2)*scale]}}
-function enlarged({samples,sampled,point,aspect}){let{h}=vue(),places=samples.map(({x,y})=>[x,y]),mapping=fitting(places,
-aspect),centres=places.map(mapping),lines=sampled.map(line=>polyline(line,"sampled",mapping)),dots=samples.map(({weight,
-grey},n)=>{let[cx,cy]=centres[n],[nx,ny]=centres[n>0?n-1:1]??[cx+DOT.most,cy+DOT.most],most=clamp(.75*Math.hypot(nx-cx,ny-
-cy),DOT.least,DOT.most);return circle([cx,cy],most*(.35+.65*weight),{fill:grey})});point&&dots.push(circle(mapping(point),
-POINT_RADIUS2,{class:"point"}));let{width,height}=INSET;return h("svg",{viewBox:`0 0 ${width} ${height}`,width,height},[
-...lines,...dots])}var inset={name:"flowtex-inset",props:["over"],setup(props){return()=>vue().h("div",props.over?.samples.
-length?[enlarged(props.over)]:[])}};async function send(file,address){let query=new URLSearchParams({name:file.name});try{let answer=await fetch(`${address}\
+()=>h("div",{ref:place,role:"tooltip",class:"flowtex-tooltip",hidden:!0})}};var TOGGLES={[CLOSE_KEY]:"close",t:"theme","?":"help"},OWNERS="input, textarea, select, [contenteditable], [role=slider]\
+, .v-overlay--active";function press(event,emit){let[target]=event.composedPath(),{key}=event,isClose=key===CLOSE_KEY;hasModifier(
+event)||!(key in TOGGLES)||!isClose&&target instanceof Element&&target.closest(OWNERS)||(emit("toggle",TOGGLES[key]),isClose||
+event.preventDefault())}var keys={name:"flowtex-keys",emits:["toggle","linked"],setup(_,{emit}){let onKeyDown=event=>press(
+event,emit);return vue().onMounted(()=>{window.addEventListener("keydown",onKeyDown,{capture:!0}),window.location.hash.length>
+1&&emit("linked",window.location.hash)}),vue().onBeforeUnmount(()=>window.removeEventListener("keydown",onKeyDown,{capture:!0})),
+()=>null}};async function send(file,address){let query=new URLSearchParams({name:file.name});try{let answer=await fetch(`${address}\
 ?${query.toString()}`,{method:"POST",body:file});return answer.ok?"":await answer.text()}catch{return`${file.name}: coul\
 d not be sent`}}var upload={name:"flowtex-upload",props:["address","accept"],emits:["problem","busy"],setup(props,{emit}){
 let{h,ref,onMounted,onBeforeUnmount}=vue(),isOver=ref(!1),input=ref(null),ended=new AbortController,take=async files=>{for(let file of files??
@@ -106,6 +79,6 @@ value.value=""))},choose={ref:input,type:"file",accept:props.accept,onChange:cha
 flowtex-upload"},[h("input",{...choose,"aria-label":"A file of yours"}),h("button",{class:"flowtex-link",onClick:()=>input.
 value?.click()},"Open a file of yours"),h("div",{class:"flowtex-drop",hidden:!isOver.value},`Drop it here: ${props.accept}`)])}};function linked(hash){let folder=new URL(".",document.baseURI),secret=sessionStorage.getItem(`flowtex ${folder.pathname}\
  secret`);return secret&&(folder.search=new URLSearchParams({secret}).toString()),folder.href+hash}Object.assign(window,
-{flowtex_page:{install(app){for(let component of[browser,covers,hints,inset,keys,path,upload])app.component(component.name,
-component);Object.assign(app.config.globalProperties,{flowtex_fullscreen:()=>toggleFullscreen(document.documentElement),
-flowtex_address:linked,flowtex_copy:text=>navigator.clipboard?.writeText(text)})}}});})();
+{flowtex_page:{install(app){for(let component of[browser,hints,keys,upload])app.component(component.name,component);Object.
+assign(app.config.globalProperties,{flowtex_fullscreen:()=>toggleFullscreen(document.documentElement),flowtex_address:linked,
+flowtex_copy:text=>navigator.clipboard?.writeText(text)})}}});})();

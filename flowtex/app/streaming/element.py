@@ -1,0 +1,385 @@
+"""The Python side of ``<flowtex-view>``: what the page is handed, and what a person does there.
+
+The page asks for files of parts: of the whole surface, and of tiles, at some times;
+:mod:`flowtex.web.source` says what is in them. The page says which of two painters draws: the
+browser with WebGL2, or VTK here, whose pictures a stream sends. Then of the parts it has only those
+of which controls and legend are made.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.colours import CMAPS, rgb
+from flowtex._util.progress import Stopped
+from flowtex.app.server.files import Content, Give, Routes
+from flowtex.app.server.page import PageState, Signal, running_loop
+from flowtex.app.server.validation import mapping, name_among, number
+from flowtex.app.streaming.player import Player
+from flowtex.app.streaming.stream import FrameStream
+from flowtex.app.streaming.viewport import Pane, Viewport
+from flowtex.camera import Camera, CameraError
+from flowtex.errors import FieldError
+from flowtex.options import ROBUST
+from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.protocol import Header, Parts, parts_file
+from flowtex.settings import TABLE
+from flowtex.tiles import TileKey
+from flowtex.web.assets import asset
+from flowtex.web.source import TileSource
+from flowtex.web.view import colours_of
+
+_log = logging.getLogger(__name__)
+_numbers = itertools.count(1)
+
+#: Who may draw.
+PAINTERS = ("server", "browser")
+#: What a page calls the whole surface in place of a tile.
+WHOLE = "whole"
+#: Parts of it that pages ask for by one name: what controls and legend need, and what other colours
+#: change.
+SOME = {
+    "controls": ("cmap", "maps", "lonlat", "coastlines", "graticule"),
+    "colours": ("cmap", "maps", "mesh"),
+}
+#: Directions in which nodes lie farthest that stand for all of a surface.
+DIRECTIONS = 400
+#: Names of what a page may choose of the appearance, and the kinds of their values.
+CHOICES: dict[str, tuple[type, ...]] = {
+    "scalars": (str, bool),
+    "cmap": (str,),
+    "clim": (list, str, type(None)),
+    "log_scale": (bool,),
+    "opacity": (int, float),
+    "coastlines": (bool,),
+    "graticule": (bool,),
+}
+
+
+class HandedScene:
+    """A scene as the page has it: its header, and files of its parts at an address of its own."""
+
+    def __init__(self, routes: Routes) -> None:
+        self._routes = routes
+        self._source: TileSource | None = None
+        self._told: set[TileKey | None] = set()
+        self._generation, self._stem, self._address = 0, "", ""
+
+    def update(self, pane: Pane, background: Any) -> None:
+        """Hand over what a pane shows in place of what was before, or that in other colours."""
+        scene = pane.handle.scene
+        textures = scene.textures
+        colours = colours_of(scene, textures.geometry.field, rgb(background))
+        colours = replace(colours, bar=True)  # VTK draws none into its pictures
+        data = ClientData(textures, colours, pyramid=scene.pyramid, traces=True)
+        source = self._source
+        if source is not None and source.scene.textures is textures:
+            source.scene = source.scene.recoloured(colours)
+        else:
+            self.close()
+            self._generation = next(_numbers)
+            source = self._source = TileSource(data)
+        self._routes.withdraw(self._stem)
+        self._stem = f"parts-{next(_numbers)}"
+        self._address = self._routes.give_each(self._stem, lambda name: self._give(source, name))
+
+    def told(self, pane: Pane, **own: Any) -> dict[str, Any]:
+        """Return the header, with what is this pane's own, and the address of the parts."""
+        header: Header = {}
+        if self._source is not None:
+            handle = pane.handle
+            header = self._source.scene.header(
+                handle.settings, time=handle.time, clock=handle.clock
+            )
+        return {
+            "header": {**header, "generation": self._generation, **own},
+            "parts": self._address,
+        }
+
+    def _give(self, source: TileSource, name: str) -> Give:
+        """Return how the parts become a file of a tile, or of the whole, and of its time steps."""
+        place, *numbers = name.split(".")
+        steps = [int(number) for number in numbers]
+        key = None
+        if place != WHOLE and place not in SOME:
+            level, row, column = map(int, place.split(","))
+            key = TileKey(level, row, column)
+        if not all(0 <= step < source.scene.steps for step in steps):
+            raise LookupError(name)
+
+        async def content() -> Content:
+            loop = asyncio.get_running_loop()
+            try:
+                if place in SOME:
+                    parts = await loop.run_in_executor(None, some_parts, source.scene, place)
+                else:
+                    parts = await asyncio.wrap_future(source.ask(key, steps))
+            except Stopped:  # of a scene that is not shown any more
+                parts = {}
+            except Exception as error:
+                self._tell(key, error)
+                raise FileNotFoundError(name) from error
+            # Packing takes a while, and the loop has other pages to serve.
+            body = await loop.run_in_executor(None, parts_file, parts)
+            return body, "application/octet-stream", None
+
+        return content
+
+    def _tell(self, key: TileKey | None, error: Exception) -> None:
+        """Log, once each, what could not be made; coarser tiles are in the place of others."""
+        if key not in self._told:
+            self._told.add(key)
+            what = "the surface" if key is None else f"tile {tuple(key)}"
+            _log.warning("%s could not be made: %s", what, error)
+
+    def close(self) -> None:
+        """Hand nothing over any more."""
+        self._routes.withdraw(self._stem)
+        self._told.clear()
+        if self._source is not None:
+            self._source.close()
+        self._source = None
+
+
+class Element:
+    """What a page shows of a viewport, and what is done there.
+
+    Attributes
+    ----------
+    painter
+        Who draws, ``"server"`` or ``"browser"``; empty before a page says.
+    names
+        What the panes are called, where that is not the name of their field.
+    failed, painter_changed
+        Signal with what is wrong with something that a person did, and one after another painter
+        draws.
+    """
+
+    def __init__(
+        self, state: PageState, viewport: Viewport, stream: FrameStream, player: Player
+    ) -> None:
+        self.painter = ""
+        self.names: tuple[str, ...] = ()
+        self.failed, self.painter_changed = Signal(), Signal()
+        self.ref = state.key("element")
+        self._server, self._viewport, self._stream = state.server, viewport, stream
+        self._player = player
+        self._routes = Routes.of(state.server)
+        self._client = self._routes.give(
+            "client.js", lambda: (asset("client.js"), "text/javascript", None)
+        )
+        self._scenes: list[HandedScene] = []
+        self._shown: tuple[Any, ...] = ()
+        self._told: dict[str, Any] = {}
+        self._due: asyncio.Handle | None = None
+        #: Name of the page that says something just now.
+        self._by = ""
+        player.time_changed.connect(self._follow_time)
+        player.playing_changed.connect(self.follow)
+
+    # --- what the page is told ------------------------------------------------------------------
+
+    def begin(self, painter: Any) -> dict[str, Any]:
+        """Return all that a page needs that has come, or that another painter draws in now."""
+        self.painter = painter if name_among(painter, PAINTERS) else PAINTERS[0]
+        self._stream.paused, self._stream.fits = self.painter == "browser", False
+        self.painter_changed.emit()
+        self._stream.changed()
+        self._told = self._present()
+        area = self._stream.area_name
+        return {"client": self._client, "area": area, "scenes": self._hand_over(), **self._told}
+
+    def draw_by(self, painter: str) -> None:
+        """Let another painter draw; the page begins anew with it."""
+        self._call("paint", painter)
+
+    def follow(self) -> None:
+        """Tell the page what has changed on this side; other scenes once all else has been done."""
+        if not self.painter or self._due is not None:
+            return
+        loop = running_loop()
+        if loop is not None and self._shown != self._appearances():
+            self._due = loop.call_soon(self._tell)
+        else:
+            self._tell()
+
+    def _follow_time(self) -> None:
+        with self._said_by(self._player.page):
+            self.follow()
+
+    def _tell(self) -> None:
+        self._due = None
+        changes: dict[str, Any] = {}
+        if self._shown != self._appearances():
+            changes["scenes"] = self._hand_over()
+        present = self._present()
+        changes |= {k: v for k, v in present.items() if v != self._told.get(k)}
+        self._told = present
+        if changes:
+            self._call("take", {**changes, "by": self._by})
+
+    def repeat(self) -> None:
+        """Tell the page once more what there is, in place of something that cannot be."""
+        self._shown, self._told = (), {}
+        self.follow()
+
+    def _call(self, method: str, *values: Any) -> None:
+        self._server.js_call(self.ref, method, *values)
+
+    def _present(self) -> dict[str, Any]:
+        """Return what may change from one moment to the next."""
+        viewport = self._viewport
+        return {
+            "settings": dict(viewport.settings),
+            "camera": None if viewport.sees_all else viewport.camera.to_dict(),
+            "time": viewport.handle.time,
+            "timeBeside": viewport.time_beside if viewport.time_shift is None else None,
+            "clock": viewport.clock,
+            "playing": self._player.playing,
+        }
+
+    def _appearances(self) -> tuple[Any, ...]:
+        """Return all that the client cannot follow by itself."""
+        return (
+            self._viewport.background,
+            self.names,
+            *(_appearance(pane) for pane in self._viewport.panes),
+        )
+
+    def _hand_over(self) -> list[dict[str, Any]]:
+        """Hand over what the panes show in place of what was handed over before."""
+        viewport, present = self._viewport, self._present()
+        panes, changes = viewport.panes, viewport.differences
+        for scene in self._scenes[len(panes) :]:
+            scene.close()
+        self._scenes = self._scenes[: len(panes)]
+        self._scenes += [HandedScene(self._routes) for _ in panes[len(self._scenes) :]]
+        settings = {name: value for name, value in changes.items() if name in TABLE}
+        result = []
+        for n, (scene, pane) in enumerate(zip(self._scenes, panes, strict=True)):
+            scene.update(pane, viewport.background)
+            own = {"camera": present["camera"], "differs": list(settings)}
+            if n:
+                own |= {"own": settings, "timeShift": viewport.time_shift}
+            if n < len(self.names):
+                own["name"] = self.names[n]
+            result.append(scene.told(pane, **own))
+        self._shown = self._appearances()
+        return result
+
+    # --- what a person does ---------------------------------------------------------------------
+
+    @contextmanager
+    def _said_by(self, page: Any) -> Iterator[None]:
+        """Tell the other pages what one of them says, and leave that one alone."""
+        self._by = page if isinstance(page, str) else ""
+        try:
+            yield
+        except FieldError as error:
+            self._by = ""
+            self.failed.emit(error)
+            self.repeat()
+        finally:
+            self._by = ""
+
+    def take_camera(self, values: Any, page: Any = "") -> bool:
+        """Look from a camera that somebody sent; tells whether it sees something."""
+        viewport = self._viewport
+        try:
+            camera = Camera.from_dict(values, viewport.camera)
+        except CameraError:
+            return False
+        near = camera.is_near(viewport.field.surface)
+        if near:
+            with self._said_by(page):
+                viewport.camera = camera
+                self.follow()
+            self._stream.moved()
+        return near
+
+    def take_time(self, time: Any, page: Any = "") -> None:
+        """Show a time of the field."""
+        checked = number(time, *map(float, self._viewport.field.times[[0, -1]]))
+        if checked is not None:
+            self._player.go_to(checked, page if isinstance(page, str) else "")
+
+    def take_clock(self, clock: Any, page: Any = "") -> None:
+        """Show a moment of the streaming of a steady flow."""
+        checked = number(clock, 0, 1e9)
+        if checked is not None:
+            with self._said_by(page):
+                self._viewport.clock = checked
+                self.follow()
+            self._stream.changed()
+
+    def take_playing(self, playing: Any, page: Any = "") -> None:
+        """Follow whether time goes by on the page."""
+        with self._said_by(page):
+            self._player.playing = bool(playing)
+
+    def take_setting(self, pair: Any, page: Any = "") -> None:
+        """Set what the page asks for, and tell it what is not possible."""
+        if isinstance(pair, list) and len(pair) == 2 and name_among(pair[0], TABLE):
+            with self._said_by(page):
+                self._viewport.settings.update(**{pair[0]: pair[1]})
+
+    def take_colours(self, choice: Any, page: Any = "") -> None:
+        """Colour by what the page asks for, or tell it why that cannot be."""
+        del page  # it gets the colours as well
+        changes: dict[str, Any] = {
+            name: value
+            for name, value in mapping(choice).items()
+            if isinstance(value, CHOICES.get(name, ()))
+        }
+        clim = changes.get("clim")
+        if isinstance(clim, list):
+            ends = tuple(number(end, -1e300, 1e300) for end in clim)
+            changes["clim"] = ends if len(ends) == 2 and None not in ends else None
+        elif clim not in (None, ROBUST) or changes.get("scalars") is True:
+            return
+        if "cmap" in changes and not name_among(changes["cmap"], CMAPS):
+            return
+        scene = self._viewport.scene
+        with self._said_by(""):
+            scene.appearance = replace(scene.appearance, **changes)
+
+    def close(self) -> None:
+        """Hand nothing over any more."""
+        self.painter = ""
+        if self._due is not None:
+            self._due.cancel()
+        for scene in self._scenes:
+            scene.close()
+
+
+def _appearance(pane: Pane) -> tuple[Any, ...]:
+    """Return what of a pane its textures, its colours and its words are made of."""
+    scene = pane.handle.scene
+    settings = scene.settings
+    built = [getattr(settings, row.name) for row in TABLE.values() if row.affects != "uniform"]
+    baked = () if settings.noise == "procedural" else (settings.seed, settings.tiles)
+    return (*built, *baked, scene.field, scene.appearance, id(scene.image))
+
+
+def some_parts(scene: ClientData, place: str) -> Parts:
+    """Return parts of the whole surface; of its nodes, controls need those that are farthest."""
+    parts = {name: part for name, part in scene.surface().items() if name in SOME[place]}
+    if place != "controls":
+        return parts
+    nodes = scene.textures.geometry.position.reshape(-1, 3)
+    nodes = nodes[np.isfinite(nodes).all(axis=1)]
+    turns = np.arange(DIRECTIONS) * np.pi * (3 - 5**0.5)
+    z = 1 - (2 * np.arange(DIRECTIONS) + 1) / DIRECTIONS
+    r = np.sqrt(1 - z * z)
+    around = np.stack([r * np.cos(turns), r * np.sin(turns), z], axis=1)
+    ways = np.concatenate([around, np.eye(3), -np.eye(3)])
+    farthest = {int((nodes @ way).argmax()) for way in ways} if len(nodes) else set()
+    return {**parts, "position": np.ascontiguousarray(nodes[sorted(farthest)], "<f4")}

@@ -1,0 +1,221 @@
+"""Points of the surface as a page shows them: their values, and the paths through them.
+
+A path is read in a thread: with new textures it takes as long as a renderer takes to load them.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex.app.server.validation import mapping, number
+from flowtex.app.streaming.viewport import Pane, Viewport
+from flowtex.field import FlowField
+from flowtex.options import SPEED
+from flowtex.probe import PointValues, Probe, locate, probe, values_at
+
+#: Digits of a number.
+DIGITS = 4
+#: How many times as long as the part with samples the path is that is shown.
+PATH_LENGTH = 4.0
+#: Samples on a side as which fewer count, so that there is something to see.
+FEWEST_SAMPLES = 10
+#: Units longer than this are left out.
+UNIT_LENGTH = 12
+#: Distance from a curved surface, and from a flat one, that counts as on it, in cells.
+CURVED_TOLERANCE, FLAT_TOLERANCE = 0.1, 1e-6
+
+
+def number_text(x: float, digits: int = DIGITS) -> str:
+    """Write a number in a few digits, as the browser's client writes it."""
+    if not np.isfinite(x):
+        return "–"
+    x += 0.0  # zero has no sign
+    if x != 0 and not 1e-3 <= abs(x) < 1e5:
+        mantissa, exponent = f"{x:.2e}".split("e")
+        return f"{mantissa}e{int(exponent)}"
+    return np.format_float_positional(float(f"{x:.{digits}g}"), trim="-")
+
+
+def with_unit(x: float, unit: str) -> str:
+    """Write a number with its unit, where that is short enough."""
+    return number_text(x) + (f" {unit}" if 0 < len(unit) <= UNIT_LENGTH else "")
+
+
+class PointReader:
+    """Reads points of a viewport for a page."""
+
+    def __init__(self, viewport: Viewport) -> None:
+        self._viewport = viewport
+        self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex reading")
+
+    async def read(self, pane: Any, at: Any) -> dict[str, Any] | None:
+        """Return what is at a point of a pane; ``None`` beside the surface.
+
+        ``at`` has the ``place`` in the view, (x, y) from -1 to 1, the ``index`` (i, j) on a
+        grid, or the ``position`` on triangles; with ``path`` the path is told as well.
+        """
+        panes = self._viewport.panes
+        if pane not in range(len(panes)):
+            return None
+        shown, asked = panes[pane], mapping(at)
+        index = self._index(pane, asked)
+        if index is None:
+            return None
+        if not asked.get("path"):
+            return {
+                "point": values_of(values_at(shown.handle.field, index, shown.handle.time), index)
+            }
+        # Two panes of one flow show its path in both, as the first one draws it.
+        first = shown if "field" in self._viewport.differences else panes[0]
+        scene, clock = first.handle.scene.copy(), self._viewport.clock
+        camera, size = self._viewport.camera, self._viewport.pane_size
+
+        def work() -> Probe | None:
+            try:
+                return probe(scene, index, pixel=camera, size=size, clock=clock)
+            except ValueError:  # it is not in view
+                return None
+
+        found = await asyncio.get_running_loop().run_in_executor(self._worker, work)
+        if found is None:
+            return None
+        alone = "field" in self._viewport.differences
+        return {**path_of(found, index, first.handle.field), "alone": alone}
+
+    def _index(self, number_: int, at: Mapping[str, Any]) -> tuple[float, float] | None:
+        """Return the place (j, i) on the surface."""
+        pane: Pane = self._viewport.panes[number_]
+        field = pane.handle.field
+        place = _numbers(at.get("place"), 2)
+        if place is not None:
+            x, y = (min(max(v, -1.0), 1.0) for v in place)
+            point = self._viewport.surface_point(x, y, number_)
+            # A flat surface is met exactly: its border is where it is drawn.
+            flat = pane.handle.scene.whole.surface.frame is not None
+            tolerance = FLAT_TOLERANCE if flat else CURVED_TOLERANCE
+            return None if point is None else locate(field, point, tolerance=tolerance)
+        if field.triangles is not None:
+            position = _numbers(at.get("position"), 3)
+            return None if position is None else locate(field, position, tolerance=np.inf)
+        index = _numbers(at.get("index"), 2)
+        if index is None:
+            return None
+        last_j, last_i = field.surface.last_index
+        i, j = index
+        return (j, i) if 0 <= i <= last_i and 0 <= j <= last_j else None
+
+    def close(self) -> None:
+        """Read nothing any more."""
+        self._worker.shutdown(wait=False, cancel_futures=True)
+
+
+def _numbers(value: Any, count: int) -> list[float] | None:
+    """Return so many finite numbers that a page has sent; ``None`` for anything else."""
+    found = [number(v) for v in value] if isinstance(value, (list, tuple)) else []
+    known = [v for v in found if v is not None]
+    return known if len(known) == len(found) == count else None
+
+
+def values_of(point: PointValues, index: tuple[float, float]) -> dict[str, Any]:
+    """Return a point as the client has it."""
+    j, i = index
+    values = {SPEED: point.speed, **point.scalars}
+    return {
+        "position": point.position.tolist(),
+        "index": [i, j],
+        "values": {name: float(value) for name, value in values.items()},
+    }
+
+
+def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> dict[str, Any]:
+    """Return the path through a point, its samples and words on them, as the client has them.
+
+    ``path`` and ``sampled`` are points of the whole path and of the part with samples, downstream
+    where the flow has a sign; ``samples`` are dicts of ``position``, ``weight``, 1 for the
+    greatest, and ``colour``.
+    """
+    # Far beyond the samples the slices are too coarse to look at, and no picture needs them.
+    reach = float(np.fmax(np.abs(found.lags).max(), FEWEST_SAMPLES * abs(found.step)))
+    near = np.abs(found.path_lags) <= PATH_LENGTH * reach
+    path, path_lags = found.path[near], found.path_lags[near]
+    inside = (path_lags <= found.lags[0]) & (path_lags >= found.lags[-1])
+    lags = np.concatenate([path_lags[inside], found.lags])
+    _, order = np.unique(-lags, return_index=True)
+    sampled = np.concatenate([path[inside], found.points])[order]
+    weights = found.weights / found.weights.max()
+    return {
+        "point": values_of(found.field_values, index),
+        "path": {
+            "path": path.tolist(),
+            "sampled": sampled.tolist(),
+            "directed": not field.sign_free,
+            "velocity": _in_surface(found, field).tolist(),
+        },
+        "samples": [
+            {"position": position, "weight": weight, "colour": colour}
+            for position, weight, colour in zip(
+                found.points.tolist(), weights.tolist(), colours_of(found), strict=True
+            )
+        ],
+        "words": [list(line) for line in words_of(found)],
+    }
+
+
+def _in_surface(found: Probe, field: FlowField) -> Floats:
+    """Return the velocity in the surface, along the path where the flow leaves it."""
+    point, at = found.field_values, int(np.abs(found.path_lags).argmin())
+    ends = found.path[max(at - 1, 0)], found.path[min(at + 1, len(found.path) - 1)]
+    along = ends[1] - ends[0]
+    size = float(np.linalg.norm(along))
+    if not (field.leaves_surface and np.isfinite(size) and size > 0):
+        return point.velocity
+    velocity: Floats = point.speed * along / size
+    return velocity
+
+
+def colours_of(found: Probe) -> list[str]:
+    """Colours of the samples: greys, or those of a picture over white."""
+    rgb = np.repeat(found.greys[:, None], 3, axis=1)
+    if found.noise.ndim == 2:
+        rgb = found.noise[:, :3] + 1.0 - found.noise[:, 3:]
+    whole = np.rint(255 * np.clip(rgb, 0, 1)).astype(int)
+    return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in whole.tolist()]
+
+
+def words_of(found: Probe) -> list[tuple[str, str]]:
+    """Return what is told of the samples, as words and numbers."""
+    length = found.field_values.length_unit
+    unit = length if found.parameter == "arclength" else found.field_values.time_unit
+    pixels = f"{number_text(found.grain / found.pixel, 3)} pixels"
+    lines = [
+        ("samples", _samples(found)),
+        ("level of detail", f"{found.level:.2f}"),
+        ("grain", f"{with_unit(found.grain, length)}, {pixels}"),
+        ("step", with_unit(found.step, unit)),
+        ("behind", with_unit(max(0.0, float(found.lags[0])), unit)),
+        ("ahead", with_unit(max(0.0, -float(found.lags[-1])), unit)),
+    ]
+    if not isinstance(found.value, float):
+        return lines
+    mean = float(found.weights @ found.noise)
+    return [*lines, ("value", f"{mean:+.2f} × {found.gain:.2f} = {found.value:+.2f}")]
+
+
+def _samples(found: Probe) -> str:
+    """How many samples there are, and why not as many as the setting says."""
+    count = len(found.lags)
+    reasons = []
+    if found.asked > found.setting + 1:
+        reasons.append(f"{found.setting} are set, in motion it takes twice as many")
+    elif found.asked > found.setting:
+        reasons.append(f"{found.setting} are set, and the point itself is one more")
+    if count < found.asked:
+        reasons.append("the path ends")
+    text = f"{count} of {found.asked}" if count < found.asked else f"{count}"
+    return f"{text}: {'; '.join(reasons)}" if reasons else text

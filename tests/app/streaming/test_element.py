@@ -1,0 +1,201 @@
+"""What a page is handed, and what is done there."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("trame_rca")
+
+from aiohttp import web
+from small_pages import small, small_page
+
+import flowtex
+from flowtex.app import FlowApp
+from flowtex.rendering.webgl.protocol import file_infos
+from flowtex.tiles import Pyramid
+
+pytestmark = pytest.mark.usefixtures("opengl")
+
+
+def parts_of(answer: web.StreamResponse) -> dict[str, list[int]]:
+    """Names and shapes of the arrays in a file."""
+    assert isinstance(answer, web.Response)
+    body = answer.body
+    assert isinstance(body, bytes)
+    return {info["name"]: info["shape"] for info in file_infos(body)[0]}
+
+
+def large(**scalars: Any) -> FlowApp:
+    y, x = np.mgrid[-1:1:200j, -1:1:300j]
+    points, velocity = np.stack([x, y], -1), np.stack([-y, x], -1)
+    scalars = {name: x for name in scalars}
+    return small_page(flowtex.FlowField.from_arrays(points, velocity, scalars=scalars), 3, 96, 64)
+
+
+class Told:
+    """What an application calls of the page."""
+
+    def __init__(self, app: FlowApp, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.calls: list[tuple[str, Any]] = []
+        self._ref = app.area.element.ref
+        monkeypatch.setattr(app.server, "js_call", self)
+
+    def __call__(self, ref: str, method: str, value: Any) -> None:
+        assert ref == self._ref
+        self.calls.append((method, value))
+
+    def taken(self) -> dict[str, Any]:
+        """Return what the page was told since."""
+        calls, self.calls = self.calls, []
+        return {name: value for _, changes in calls for name, value in changes.items()}
+
+
+def asking(app: FlowApp, scene: dict[str, Any]) -> Any:
+    stem = scene["parts"].rsplit("/", 1)[1]
+
+    def ask(name: str) -> dict[str, list[int]]:
+        return parts_of(asyncio.run(app.context.routes.answer(stem + name)))
+
+    return ask
+
+
+def test_a_tile_is_made_when_it_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 10_000)
+    app = large()
+    (scene,) = app.area.element.begin("browser")["scenes"]
+    assert app.stream.paused
+    assert scene["header"]["pyramid"]["shapes"] == [[200, 300], [101, 151], [51, 76]]
+    ask = asking(app, scene)
+    found = ask("0,0,1.0")
+    assert found["tile/0/0/1/scalars/0"] == [200, 44]
+    assert {"header", "padded", "unit", "flow/0"} <= {name.split("/", 4)[4] for name in found}
+    assert {"mesh", "places", "padded"} <= ask("whole").keys()
+    assert ask("whole.0").keys() == {"flow/0", "scalars/0"}
+    for name in ("", "0,0.0", "0,0,1.7", "0,0,x.0", "whole.7", "part"):
+        with pytest.raises(web.HTTPNotFound):
+            ask(name)
+    for _ in range(2):  # told once
+        with pytest.raises(web.HTTPNotFound):
+            ask("0,5,5.0")
+    (record,) = caplog.records
+    assert "there is no tile (0, 5, 5)" in record.getMessage()
+    with monkeypatch.context() as patch:
+        patch.setattr(Pyramid, "textures", None)
+        with pytest.raises(web.HTTPNotFound):
+            ask("0,0,0.0")
+    # What was wrong was the network, which is there again when it is asked for later.
+    assert "tile/0/0/0/scalars/0" in ask("0,0,0.0")
+    app.close()
+    with pytest.raises(web.HTTPNotFound):
+        ask("0,0,1.0")
+
+
+def test_tiles_in_other_colours_are_not_traced_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 10_000)
+    app = large(p=None)
+    told = Told(app, monkeypatch)
+    (first,) = app.area.element.begin("browser")["scenes"]
+    assert "tile/0/0/1/scalars/0" in asking(app, first)("0,0,1.0")
+    monkeypatch.setattr(flowtex.textures.TextureSet, "layers", None)
+    app.area.scalars = "p"
+    (second,) = told.taken()["scenes"]
+    assert second["parts"] != first["parts"]
+    assert second["header"]["generation"] == first["header"]["generation"]
+    assert second["header"]["scalars"]["name"] == "p"
+    assert "tile/0/0/1/scalars/0/1" in asking(app, second)("0,0,1.0")
+    app.close()
+
+
+def test_where_the_server_draws_the_page_has_what_its_controls_need() -> None:
+    app = large()
+    (scene,) = app.area.element.begin("server")["scenes"]
+    assert not app.stream.paused
+    parts = asking(app, scene)("controls")
+    assert parts.keys() == {"cmap", "maps", "position"} and parts["position"][0] < 500
+    app.close()
+
+
+def test_a_page_is_told_what_changes_here_and_what_others_say(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    app = small_page(small(steps=4), 3, 96, 64)
+    told, element = Told(app, monkeypatch), app.area.element
+    app.area.settings.contrast = 2.0
+    assert told.calls == []  # there is no page yet
+    begun = element.begin("browser")
+    assert begun["camera"] is None and begun["settings"]["contrast"] == 2.0
+    camera = app.viewport.camera.pan(0.1, 0.0, 1.5)
+    element.take_camera(camera.to_dict(), "a")
+    element.take_time(1.5, "a")
+    element.take_clock(0.5, "a")
+    element.take_playing(True, "a")
+    assert app.viewport.camera == camera
+    assert {changes["by"] for _, changes in told.calls} == {"a"}  # which the page itself leaves
+    told.calls.clear()
+    assert (app.viewport.handle.time, app.area.player.playing) == (1.5, True)
+    app.area.reset_camera()
+    app.area.player.go_to(2.0)
+    app.area.player.playing = False
+    assert told.taken() == {"camera": None, "time": 2.0, "playing": False, "by": ""}
+    element.take_setting(["samples", 7], "b")
+    assert told.taken()["settings"]["samples"] == app.area.settings.samples == 7
+    app.close()
+
+
+def test_what_cannot_be_is_told_and_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = small_page(small(), 9, 96, 64)
+    told, element = Told(app, monkeypatch), app.area.element
+    element.begin("browser")
+    element.take_setting(["samples", 1000])
+    assert "samples is 1000; expected" in app.state.get("problem")
+    assert told.taken()["settings"]["samples"] == 9
+    element.take_colours({"scalars": "height", "log_scale": True})
+    assert "log_scale is for values above 0" in app.state.get("problem")
+    assert told.taken()["scenes"][0]["header"]["scalars"]["name"] == "speed"
+    app.close()
+
+
+def test_colours_are_those_that_are_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = small_page(small(), 3, 96, 64)
+    told, element = Told(app, monkeypatch), app.area.element
+    element.begin("browser")
+    element.take_colours({"scalars": "height", "clim": [0, 2], "cmap": "magma", "opacity": 0.5})
+    assert (app.area.scalars, app.area.clim, app.area.cmap) == ("height", (0, 2), "magma")
+    header = told.taken()["scenes"][0]["header"]
+    assert (header["opacity"], header["scalars"]["high"], header["scalars"]["bar"]) == (
+        0.5,
+        2,
+        True,
+    )
+    element.take_colours({"clim": "robust"})
+    assert app.area.clim == "robust"
+    element.take_colours({"clim": None})
+    assert app.area.clim is None
+    element.take_colours({"scalars": False})
+    assert not app.area.scalars
+    app.close()
+
+
+def test_two_panes_are_two_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = small_page(small(steps=4), 3, 96, 64)
+    told = Told(app, monkeypatch)
+    app.area.element.begin("browser")
+    app.area.compare({"lod": False})
+    first, second = (scene["header"] for scene in told.taken()["scenes"])
+    assert first["differs"] == second["differs"] == ["lod"]
+    assert second["own"] == {"lod": False} and second["timeShift"] == 0
+    app.area.compare({"time": 1.0})
+    changes = told.taken()
+    assert changes["timeBeside"] == 1.0 and changes["scenes"][1]["header"]["timeShift"] is None
+    app.viewport.time_beside = 2.0
+    app.area.changed()
+    assert told.taken() == {"timeBeside": 2.0, "by": ""}
+    app.area.compare(None)
+    assert len(told.taken()["scenes"]) == 1
+    app.close()

@@ -1,0 +1,152 @@
+"""Points as a page shows them: values, paths, samples, and words on them."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from triangle_meshes import sphere
+
+pytest.importorskip("trame_rca")
+
+from small_pages import small_page
+
+from flowtex import FlowField
+from flowtex.app import FlowApp
+from flowtex.app.streaming.points import number_text, path_of, with_unit, words_of
+from flowtex.options import Appearance
+from flowtex.probe import locate, probe
+from flowtex.scene import Scene
+from flowtex.settings import Settings
+
+
+def flat() -> FlowField:
+    y, x = np.mgrid[-1:1:21j, -2:2:41j]
+    velocity = np.stack([1 + 0 * x, 0.25 * x], axis=-1)
+    points = np.stack([x, y], -1)
+    return FlowField.from_arrays(points, velocity, periodic="", length_unit="m", time_unit="s")
+
+
+def view_of(field: FlowField, **settings: object) -> Scene:
+    chosen = Settings()
+    chosen.update(**settings)
+    return Scene(field, chosen)
+
+
+@pytest.mark.parametrize(
+    ("x", "text"),
+    [
+        (0.0, "0"),
+        (0.123456, "0.1235"),
+        (-12345.6, "-12350"),
+        (123456.0, "1.23e5"),
+        (-1e-4, "-1.00e-4"),
+        (3.0, "3"),
+        (np.nan, "–"),
+    ],
+)
+def test_numbers_are_short(x: float, text: str) -> None:
+    assert number_text(x) == text
+
+
+def test_a_long_unit_is_left_out() -> None:
+    assert with_unit(2.0, "m") == "2 m"
+    assert with_unit(2.0, "") == "2"
+    assert with_unit(2.0, "diameters / free-stream speed") == "2"
+
+
+def test_a_path_can_be_sent() -> None:
+    view = view_of(flat(), samples=21)
+    at = locate(view.field, (0.3, 0.1))
+    assert at is not None
+    found = probe(view, at, pixel=0.01)
+    told = json.loads(json.dumps(path_of(found, at, view.field), allow_nan=False))
+    assert told["point"]["position"] == pytest.approx([0.3, 0.1, 0.0])
+    assert told["point"]["index"] == pytest.approx([23, 11])
+    assert len(told["samples"]) == 21 and max(s["weight"] for s in told["samples"]) == 1.0
+    assert told["samples"][10]["position"] == pytest.approx([0.3, 0.1, 0.0])
+    greys = [int(sample["colour"][1:3], 16) / 255 for sample in told["samples"]]
+    assert greys == pytest.approx(found.greys, abs=1 / 500)
+    # The part with samples goes from the first of them to the last.
+    ends = [told["path"]["sampled"][n] for n in (0, -1)]
+    assert ends == [pytest.approx(found.points[n]) for n in (0, -1)]
+    assert told["path"]["directed"] is True
+    words = dict(told["words"])
+    assert words["samples"] == "21" and words["grain"] == "0.015 m, 1.5 pixels"
+    assert words["step"] == "0.0105 m" and words["value"].endswith(f"= {found.value:+.2f}")
+
+
+def test_a_number_of_samples_that_is_not_the_one_set_has_a_reason() -> None:
+    def said(**settings: object) -> str:
+        got = probe(view_of(flat(), **settings), (10.0, 20.0), pixel=0.01)
+        return dict(words_of(got))["samples"]
+
+    assert said(samples=21) == said(samples=21, two_sided=False) == "21"
+    assert said(samples=20) == "21: 20 are set, and the point itself is one more"
+    assert said(samples=20, two_sided=False) == "20"
+    assert said(samples=20, motion="speed") == "39: 20 are set, in motion it takes twice as many"
+    assert said(samples=1, motion="speed") == "1"
+    got = probe(view_of(flat()), (10.0, 0.5), pixel=0.02)
+    assert dict(words_of(got))["samples"] == f"{len(got.lags)} of 49: the path ends"
+
+
+def test_a_point_where_nothing_moves() -> None:
+    y, x = np.mgrid[-1:1:9j, -1:1:9j]
+    speed = np.where(x > 0, 1.0, 0.0)
+    field = FlowField.from_arrays(np.stack([x, y], -1), np.stack([speed, 0 * x], -1), periodic="")
+    told = path_of(probe(view_of(field), (4.5, 1.5), pixel=0.01), (4.5, 1.5), field)
+    json.dumps(told, allow_nan=False)
+    assert dict(told["words"])["step"] == "–" and len(told["samples"]) == 1
+
+
+def test_a_picture_shows_its_colours() -> None:
+    dye = np.zeros((4, 4, 4), np.uint8)
+    dye[...] = [255, 0, 0, 51]
+    view = Scene(flat(), Settings(), Appearance(image=dye))
+    view.settings.noise = "image"
+    told = path_of(probe(view, (10.0, 20.0), pixel=0.01), (10.0, 20.0), view.field)
+    assert {sample["colour"] for sample in told["samples"]} == {"#ffcccc"}
+    assert "value" not in dict(told["words"])
+
+
+def read(app: FlowApp, **at: Any) -> Any:
+    return asyncio.run(app.area.points.read(0, at))
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_place_of_the_view_is_a_point_of_the_surface() -> None:
+    app = small_page(flat(), 5, 240, 160)
+    middle = read(app, place=[0.0, 0.0])["point"]
+    assert middle["position"] == pytest.approx([0, 0, 0], abs=1e-9)
+    assert middle["values"]["speed"] == pytest.approx(1.0)
+    assert read(app, place=[0.0, 0.999]) is None
+    assert read(app, index=[20, 10])["point"]["position"] == pytest.approx(middle["position"])
+    for at in ({"index": [41.0, 1.0]}, {"index": [math.nan, 1]}, {"place": "ab"}, {}):
+        assert read(app, **at) is None
+    app.close()
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_point_on_triangles_is_told_by_its_place() -> None:
+    points, triangles = sphere(3)
+    field = FlowField.from_triangles(points, triangles, np.cross([0.0, 0.0, 1.0], points))
+    app = small_page(field, 5, 240, 160)
+    place = np.array([0.6, 0.64, 0.48])
+    told = read(app, position=(1.2 * place).tolist())["point"]
+    np.testing.assert_allclose(told["position"], place, atol=0.05)
+    assert read(app, index=[1.0, 1.0]) is None
+    assert np.linalg.norm(read(app, place=[0.0, 0.0])["point"]["position"]) > 0.97
+    app.close()
+
+
+def test_a_flow_that_leaves_the_surface_has_the_velocity_in_it() -> None:
+    inside = flat()
+    velocity = inside.velocity + np.array([0.0, 0.0, 0.6])
+    field = FlowField.from_arrays(inside.points, velocity[0], periodic="")
+    told = path_of(probe(view_of(field), (10.0, 28.0), pixel=0.01), (10.0, 28.0), field)
+    assert told["path"]["velocity"] == pytest.approx([1.0, 0.2, 0.0], abs=2e-3)
+    assert told["point"]["values"]["speed"] == pytest.approx(1.02, abs=1e-3)
