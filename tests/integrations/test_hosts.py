@@ -1,4 +1,4 @@
-"""The widget in applications of Panel, Shiny, Solara and Streamlit, and in Notebook 7: `make integrations`.
+"""The widget in applications of Panel, Shiny, Solara and Streamlit: `make integrations`.
 
 Each is started with a file of its own kind, shows a flow, and where it carries messages a drag in
 the browser is heard in Python.
@@ -135,7 +135,7 @@ def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: 
             def moved() -> bool:
                 with suppress(OSError, ValueError):  # it is being written
                     # The flow lies 0 to 2 along x, and follows the hand to the right.
-                    return json.loads(heard.read_text())["focal_point"][0] < 0.95
+                    return float(json.loads(heard.read_text())["focal_point"][0]) < 0.95
                 return False
 
             wait_until(moved)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import base64
+import html
 import io
 import re
 import subprocess
@@ -8,6 +9,7 @@ import sys
 import threading
 import types
 from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from typing import Any
 
 import numpy as np
@@ -465,6 +467,29 @@ def test_it_is_written_as_a_page_from_where_it_is(
     assert '"parallel_scale":0.123' in text
     assert widget.to_html(tmp_path / "page.html", title="here") is None
     assert "<title>here</title>" in (tmp_path / "page.html").read_text()
+    frame = widget.as_html()
+    (held,) = re.findall('srcdoc="([^"]*)"', frame)
+    assert html.unescape(held) == widget.to_html()
+    assert "height: 400px" in frame and "width: 100%" in frame
+
+
+def test_messages_of_any_thread_have_the_session_of_the_widget(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session: ContextVar[str] = ContextVar("session", default="none")
+    session.set("Ada")
+    widget = make(gyre(nodes=12))
+    sent: list[tuple[str, str]] = []
+
+    def send(_self: FlowWidget, content: Any, buffers: Any = None) -> None:
+        sent.append((session.get(), threading.current_thread().name))
+
+    monkeypatch.setattr(FlowWidget, "send", send)
+    session.set("Bob")
+    widget._views.handle_message({"kind": "ready"})
+    wait_until(lambda: sent)
+    assert all(name == "Ada" for name, _ in sent)
+    assert any(thread != threading.current_thread().name for _, thread in sent)
 
 
 def test_many_views_of_one_mesh_share_what_is_made_of_it(
