@@ -17,4 +17,4 @@ lock() {
 
 lock --resolution lowest-direct --only-binary :all: --python-platform x86_64-manylinux_2_28 \
     pyproject.toml tools/locks/tests.in -o tools/locks/lowest.txt
-lock --universal --group dev --group site pyproject.toml -o tools/locks/newest.txt
+lock --universal --group dev --group integrations --group site pyproject.toml -o tools/locks/newest.txt

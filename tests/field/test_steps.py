@@ -99,7 +99,7 @@ def test_scenes_and_pictures_read_what_they_show(series: FlowField, opengl: Any)
     assert scene.time == 2 * 86400.0
     picture = flowtex.render(late, time="2000-01-03", size=(60, 40), lines="streamlines")
     assert picture.std() > 10
-    assert not {1, 4, 5} & set(read)
+    assert not {4, 5, 6} & set(read)
     assert np.array_equal(
         picture, flowtex.render(late, time=2 * 86400.0, size=(60, 40), lines="streamlines")
     )

@@ -216,8 +216,8 @@ def test_pathlines_are_those_of_numpy(browser: Browser, tmp_path: Path, name: st
     field = VARYING[name]()
     export(field, tmp_path / "page.html", samples=9, lines="pathlines")
     found = texels(browser, tmp_path / "page.html")
-    last = len(field.times) - 1
-    textures, wanted = wanted_texels(field, last, lines="pathlines")
+    # The series begins between its first two steps.
+    textures, wanted = wanted_texels(field, 1, lines="pathlines")
     agree(textures, found, wanted)
 
 

@@ -121,7 +121,8 @@ def read_datasets(
         raise FieldError(msg)
     projection = GLOBE if globe else projection
     sel = {**(sel or {}), **selection}
-    known = recognise(data, u, v, sel=sel, isel=isel)
+    datasets = as_datasets(data)
+    known = recognise(datasets, u, v, sel=sel, isel=isel)
     for note in known.notes:
         notify(note)
     places = known.places
@@ -132,7 +133,7 @@ def read_datasets(
         )
         raise FieldError(msg)
     times, numbers = drawn_steps(known.u, known.pair.u)
-    scalars = _scalars(known, as_datasets(data), Choice(dict(sel), dict(isel or {})))
+    scalars = _scalars(known, datasets, Choice(dict(sel), dict(isel or {})))
     words: dict[str, Any] = {
         "name": ", ".join(filter(None, (name, known.u.level))),
         **_words(scalars),
@@ -395,8 +396,14 @@ def _on_mesh(
     )
 
 
-def as_datasets(data: Any) -> list[Any]:
-    """Return datasets whose axes cf_xarray can tell, with times as dates."""
+class Datasets(list[Any]):
+    """Datasets whose axes cf_xarray can tell, with times as dates."""
+
+
+def as_datasets(data: Any) -> Datasets:
+    """Return datasets of xarray's with their axes guessed, which takes long, unless they are."""
+    if isinstance(data, Datasets):
+        return data
     xarray = import_extra("xarray", "xarray")
     import_extra("cf_xarray", "xarray")
     result = []
@@ -411,7 +418,7 @@ def as_datasets(data: Any) -> list[Any]:
             except (ValueError, OverflowError, TypeError):
                 decoded = ds  # its times are those of no calendar
             result.append(decoded.cf.guess_coord_axis())
-    return with_mesh_axes(result)
+    return Datasets(with_mesh_axes(result))
 
 
 class _Scalar(NamedTuple):
