@@ -1,7 +1,7 @@
 // <flowtex-view>: a scene in any page, or two beside each other that move together.
 //
 // A host sets `options` and then `scenes`, or makes the views by `open` and hands over headers and parts
-// itself. What a person does is told by events. Each view draws in a shadow of its own.
+// itself. Events report what a person does. Each view draws in a shadow of its own.
 
 import type { Header, NamedPart } from "./protocol.ts";
 import type { Options } from "./options.ts";
@@ -31,7 +31,7 @@ const EVENTS = {
 type Report = keyof typeof EVENTS;
 
 export class FlowtexView extends HTMLElement {
-  /** Taken by views when they are made; what it reports is told by events as well. */
+  /** Taken by views when they are made; events report the same. */
   options: Options = {};
   /** The first one has the bar. */
   viewers: Viewer[] = [];

@@ -31,7 +31,7 @@ export interface Reading {
   samples?: PathSample[];
   /** Whether the path is that of one view alone, whose flow is another one. */
   alone?: boolean;
-  /** What is told of the samples: words and numbers. */
+  /** Words and numbers about the samples. */
   words?: [string, string][];
 }
 

@@ -66,7 +66,7 @@ function enlarged(samples: PathSample[], point: Vector, camera: Camera): SVGElem
   return picture;
 }
 
-/** The samples of a path, and what is told of them. */
+/** The samples of a path, and words and numbers about them. */
 export function samplesOf(samples: PathSample[], point: Vector, camera: Camera): HTMLElement {
   const bars = samples.map(({ weight, colour }) => {
     const bar = dom("i");

@@ -122,7 +122,7 @@ _ABOUT: dict[str, Check] = {
 
 
 def check_about(about: Any, place: str) -> dict[str, Any]:
-    """Return what is told of a pyramid, if it is as it was written."""
+    """Return the description of a pyramid, if it is as it was written."""
     told = about.get("format") if isinstance(about, dict) else None
     if told != FORMAT:
         msg = (

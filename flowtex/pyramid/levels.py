@@ -61,7 +61,7 @@ class _Piece(NamedTuple):
 
 
 class Levels:
-    """The levels of a pyramid in a store; ``about`` is what is told of it."""
+    """The levels of a pyramid in a store; ``about`` is its description."""
 
     def __init__(self, place: str | Path) -> None:
         self.place = place_text(place)

@@ -112,7 +112,7 @@ class Child:
 
         A ChildError tells that the child is dead, dies, needs more memory than it may have, does
         not answer in ``timeout`` seconds, after which it is ended, or raises an error. Where the
-        work was cancelled, it is told, and goes on to live.
+        work was cancelled, it hears of it, and goes on.
         """
         while not self._asking.acquire(timeout=CHECK_INTERVAL_S):
             check()

@@ -185,7 +185,7 @@ class Element:
         player.time_changed.connect(self._follow_time)
         player.playing_changed.connect(self.follow)
 
-    # --- what the page is told ------------------------------------------------------------------
+    # --- what the page receives ------------------------------------------------------------------
 
     def begin(self, painter: Any) -> dict[str, Any]:
         """Return all that a page needs that has come, or that another painter draws in now."""

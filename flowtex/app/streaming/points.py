@@ -58,7 +58,7 @@ class PointReader:
         """Return what is at a point of a pane; ``None`` beside the surface.
 
         ``at`` has the ``place`` in the view, (x, y) from -1 to 1, the ``index`` (i, j) on a
-        grid, or the ``position`` on triangles; with ``path`` the path is told as well.
+        grid, or the ``position`` on triangles; with ``path`` the path as well.
         """
         panes = self._viewport.panes
         if pane not in range(len(panes)):
@@ -189,7 +189,7 @@ def colours_of(found: Probe) -> list[str]:
 
 
 def words_of(found: Probe) -> list[tuple[str, str]]:
-    """Return what is told of the samples, as words and numbers."""
+    """Return words and numbers about the samples."""
     length = found.field_values.length_unit
     unit = length if found.parameter == "arclength" else found.field_values.time_unit
     pixels = f"{number_text(found.grain / found.pixel, 3)} pixels"

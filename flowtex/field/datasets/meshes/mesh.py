@@ -30,7 +30,7 @@ class Mesh:
 
     ``kind`` has words for the convention. ``x`` and ``y`` are coordinates of the nodes, or those of
     the corners of each face where ``corners``, the nodes of each face, is missing. ``counts`` tells
-    how many corners each face has, where this is told apart, and ``first`` is the number of the
+    how many corners each face has, where these differ, and ``first`` is the number of the
     first node.
     """
 
