@@ -144,7 +144,9 @@ def test_planes_and_arrays_can_be_chosen(page: Page) -> None:
     last = settled(page, before)
     assert "k = 5" in page.inner_text(".flowtex-planes")
     assert difference(last, middle) > 3
+    before = count(page)
     choose(page, page.locator(".flowtex-planes .flowtex-row"), "water")
+    settled(page, before)
     before = count(page)
     page.locator(".flowtex-planes").get_by_role("button", name="i", exact=True).click()
     settled(page, before)
