@@ -31,7 +31,7 @@ export class HeldParts {
     this.all.delete(name);
   }
 
-  /** Remove all, or those whose names are told. */
+  /** Remove all parts, or those whose names match. */
   clear(isGone: (name: string) => boolean = () => true): void {
     for (const name of [...this.all.keys()]) if (isGone(name)) this.remove(name);
   }

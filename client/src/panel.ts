@@ -213,7 +213,7 @@ export class Panel {
     });
     const name = header?.name ?? "";
     const title = differences.join(", ") || (options.named && this.viewer.together.length < 2 ? "" : name);
-    // In a second view that is at a time of its own, that is told here: the bar has the first one's.
+    // The bar shows the time of the first view; a second view at another time shows it in its title.
     const { first } = this;
     const isApart = first !== this.viewer.player && this.viewer.player.time !== first.time;
     const moment = header && isApart && this.viewer.player.varies ? this.moment(header) : "";

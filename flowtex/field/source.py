@@ -44,7 +44,7 @@ class Source:
     """What can be chosen of a file, a mesh or a field, from which one field after another is made.
 
     ``name`` is a word for captions, ``nbytes`` the size in memory, and ``identity`` the state of
-    the files when they were opened; empty where there is none.
+    the files when they were opened; empty without files.
     """
 
     def __init__(self, name: str = "") -> None:

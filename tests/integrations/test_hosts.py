@@ -22,7 +22,7 @@ import pytest
 from waiting import PATIENCE_S, wait_until
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Frame, Page
+    from playwright.sync_api import Page
 
 pytestmark = [pytest.mark.slow, pytest.mark.browser]
 
@@ -97,29 +97,15 @@ def served(host: str, folder: Path) -> Iterator[str]:
         process.wait(PATIENCE_S)
 
 
-def drawn_in(page: Page) -> Frame:
-    """Wait for a full picture, and return the frame that has it."""
-
-    def has_picture(frame: Frame) -> bool:
-        with suppress(Exception):  # a frame that is gone
-            return frame.locator('.flowtex[data-sharp="true"]').count() > 0
-        return False
-
-    def found() -> Frame | None:
-        page.wait_for_timeout(50)
-        return next(filter(has_picture, page.frames), None)
-
-    return wait_until(found, lambda: page.inner_text("body"))  # type: ignore[no-any-return]
-
-
 @pytest.mark.parametrize("host", HOSTS)
 def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: Path) -> None:
     if find_spec(host) is None:
         pytest.skip(f"{host} is not installed: make integrations")
     with served(host, tmp_path) as address:
         page.goto(address)
-        frame = drawn_in(page)
-        canvas = frame.locator(".flowtex canvas").first
+        place = page.frame_locator("iframe") if host in FRAMED else page
+        place.locator('.flowtex[data-sharp="true"]').first.wait_for()
+        canvas = place.locator(".flowtex canvas").first
         box = canvas.bounding_box()
         assert box is not None and box["width"] > 200 and box["height"] > 90
         was = canvas.screenshot()

@@ -1,6 +1,6 @@
 """Finding the mesh of a dataset by UGRID, by the names of models, or by the bounds of cells.
 
-Its dimensions, levels and times then get a form in which axes can be told.
+Its dimensions, levels and times then get a form in which the axes are recognised.
 """
 
 from __future__ import annotations
