@@ -35,16 +35,15 @@ async function noticeOf(name, file) {
 }
 
 export const BUILDS = [
-  ["src/client.ts", `${WEB}/client.js`, "esm", NOTICE],
-  ["src/page.ts", `${WEB}/page.js`, "esm", NOTICE],
-  ["src/storepage.ts", `${WEB}/storepage.js`, "esm", `${NOTICE}\n${STORE_NOTICE}`],
-  ["src/live.ts", `${WEB}/live.js`, "iife", NOTICE],
-  ["src/app/app.ts", `${STATIC}/flowtex.js`, "iife", ""],
-].map(([entry, outfile, format, notice]) => ({
+  ["src/core.ts", `${WEB}/core.js`, "flowtex", NOTICE],
+  ["src/store.ts", `${WEB}/store.js`, "flowtexStore", STORE_NOTICE],
+  ["src/app/app.ts", `${STATIC}/flowtex.js`, undefined, ""],
+].map(([entry, outfile, globalName, notice]) => ({
   ...COMMON,
   entryPoints: [entry],
   outfile,
-  format,
+  format: "iife",
+  globalName,
   banner: { js: `${ORIGIN}\n${notice}`.trim() },
 }));
 

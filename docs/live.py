@@ -252,7 +252,7 @@ def _begin(app: Any) -> None:
     folder = Path(app.outdir) / "_static"
     os.environ[FOLDER] = str(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(asset("live.js"), folder / "flowtex-live.js")
+    shutil.copyfile(asset("core.js"), folder / "flowtex-live.js")
     flowtex.show = show  # type: ignore[assignment]
 
 

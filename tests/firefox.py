@@ -12,7 +12,7 @@ import shutil
 import subprocess
 from collections.abc import Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -87,8 +87,17 @@ class Firefox:
 
     def screenshot(self) -> Bytes:
         """Return what the window shows, (H, W, 3)."""
-        shot = self._call("browsingContext.captureScreenshot", context=self._page)["data"]
-        with Image.open(io.BytesIO(base64.b64decode(shot))) as opened:
+        shots: list[str] = []
+
+        def is_taken() -> bool:
+            # A canvas that is drawn to meanwhile cannot be captured.
+            with suppress(AssertionError):
+                answer = self._call("browsingContext.captureScreenshot", context=self._page)
+                shots.append(answer["data"])
+            return bool(shots)
+
+        wait_until(is_taken)
+        with Image.open(io.BytesIO(base64.b64decode(shots[0]))) as opened:
             return np.asarray(opened.convert("RGB"))
 
     def close(self) -> None:

@@ -48,8 +48,8 @@ def _texts_of_checkout() -> dict[str, str]:
 
 def _client_of_checkout() -> list[Path]:
     folder = ROOT / "flowtex" / "web"
-    found = [path for path in folder.iterdir() if path.suffix in (".js", ".css", ".html")]
-    assert {"client.js", "page.js", "storepage.js", "page.css", "page.html"} <= {
+    found = [path for path in folder.iterdir() if path.suffix in (".js", ".mjs", ".css", ".html")]
+    assert {"core.js", "store.js", "exports.mjs", "scene.mjs", "page.css", "page.html"} <= {
         path.name for path in found
     }
     return found
@@ -111,7 +111,7 @@ def test_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
 HELD = re.compile(
     r"flowtex/(?:[\w/]+\.pyi?|py\.typed"
     r"|_shaders/(?:common|vtk|webgl2)/\w+\.glsl"
-    r"|web/\w+\.(?:js|css|html)|app/(?:[\w/]+\.(?:js|css|html))"
+    r"|web/\w+\.(?:m?js|css|html)|app/(?:[\w/]+\.(?:js|css|html))"
     r"|examples/data/\w+\.(?:npz|md)|earth/coastlines\.(?:npz|md))"
     r"|flowtex-[\d.]+\.dist-info/(?:METADATA|RECORD|WHEEL|entry_points\.txt|licenses/LICENSE)"
 )
@@ -253,8 +253,9 @@ def test_installed_wheel_shows_the_widget_without_node(
     assert told["node"] is None
     assert Path(told["package"]).is_relative_to(empty_environment.parents[1])
     page.goto("about:blank")
-    client = Path(told["package"]).parent / "web" / "client.js"
-    assert client.read_text(encoding="utf-8") == told["client"]
+    web = Path(told["package"]).parent / "web"
+    told_parts = [web.joinpath(name).read_text("utf-8") for name in ("core.js", "exports.mjs")]
+    assert "".join(told_parts) == told["client"]
     page.evaluate(SHOWN, [told["client"], told["header"], told["parts"]])
     page.locator('.flowtex[data-sharp="true"]').wait_for()
     drawn = page.evaluate(DRAWN)

@@ -18,7 +18,7 @@ from flowtex.camera import Camera
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Parts, part_info, parts_file
 from flowtex.tiles import TileKey
-from flowtex.web.assets import asset
+from flowtex.web.assets import client_module
 from flowtex.web.source import TileSource
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class ClientPage:
         self.page.on("request", lambda request: self.asked.append(request.url))
         self.page.route("http://tiles.test/*", self._send_tile)
         self.page.set_content(HTML)
-        self.page.evaluate(LOAD, asset("client.js").read_text(encoding="utf-8"))
+        self.page.evaluate(LOAD, client_module())
 
     def _send_tile(self, route: Route) -> None:
         key, steps = json.loads(unquote(route.request.url.rsplit("/", 1)[1]))

@@ -32,9 +32,6 @@ declare global {
   }
 }
 
-window.flowtexScene = (name, scene) => scenes.get(name)?.(scene);
-window.flowtexPart = (digest, text) => texts.get(digest)?.(text);
-
 /** Run a script, which hands over what it has. A script, as pages that lie in a folder may not fetch files. */
 function handedOver<T>(address: string, takers: Map<string, (what: T) => void>): Promise<T> {
   const name = address.replace(/^.*\//, "").replace(/\.js$/, "");
@@ -151,14 +148,15 @@ class LiveView {
   }
 }
 
-function begin(): void {
+/** Show the live views of this page, if it has any. */
+export function showLiveViews(): void {
   const elements = document.querySelectorAll<HTMLElement>(".flowtex-live");
+  if (!elements.length) return;
+  window.flowtexScene = (name, scene) => scenes.get(name)?.(scene);
+  window.flowtexPart = (digest, text) => texts.get(digest)?.(text);
   const views = Array.from(elements, (element) => new LiveView(element));
   const recolour = () => views.forEach((view) => view.recolour());
   const attributeFilter = ["data-theme", "class"];
   new MutationObserver(recolour).observe(document.documentElement, { attributeFilter });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolour);
 }
-
-if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", begin);
-else begin();

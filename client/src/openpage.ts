@@ -1,13 +1,17 @@
 // What an exported page does: flowtex/web/export.py writes the page around it.
 
-import type { Header, NamedPart } from "./protocol.ts";
-import { Embedded } from "./sources/embedded.ts";
-import type { Source } from "./sources/source.ts";
-import { mountPage } from "./element.ts";
 import { forwardKeys } from "./keyboard.ts";
+import { showPacked, type OpenStore } from "./packed.ts";
+import type { PackedScene } from "./sources/embedded.ts";
 
-/** Opens the store in which the rest of a page lies. */
-export type OpenStore = (header: Header) => Source;
+/** Take the parts out of the page. */
+function partsOfPage(): PackedScene["parts"] {
+  return Array.from(document.querySelectorAll<HTMLElement>("script[data-part]"), (element) => {
+    element.remove();
+    const { view, part = "" } = element.dataset;
+    return [Number(view), JSON.parse(part), element.textContent ?? ""];
+  });
+}
 
 /** Unpack the page, and take the preview away once the client has drawn. */
 export async function openPage(openStore?: OpenStore): Promise<void> {
@@ -15,17 +19,7 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
   const status = document.getElementById("status") as HTMLElement;
   const loading = document.getElementById("loading") as HTMLElement;
   try {
-    // Of a second header there is what differs from the first.
-    const headers: Header[] = JSON.parse(document.getElementById("headers")?.textContent ?? "");
-    const known = new Map<string, NamedPart>();
-    const texts = new Map<string, string>();
-    const embedded = headers.map(
-      (header, n) => new Embedded({ ...headers[0], ...header }, String(n), known, texts),
-    );
-    const scenes = embedded.map((source) => {
-      const { header } = source;
-      return { header, parts: [], source: openStore ? openStore(header) : source };
-    });
+    const headers = JSON.parse(document.getElementById("headers")?.textContent ?? "");
     const look = () => {
       // The client says why in its own place, which the preview covers.
       status.hidden = !place.querySelector('[data-failed="true"]');
@@ -41,24 +35,16 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
     const watch = new MutationObserver(look);
     const attributeFilter = ["data-drawn", "data-failed"];
     watch.observe(place, { subtree: true, childList: true, attributeFilter });
-    let isComing = true;
-    const { root, together } = mountPage(place, scenes, { isComing: () => isComing });
+    const scene = { headers, parts: partsOfPage() };
+    const { view, filled } = showPacked(place, scene, openStore, (n, part, parts) => {
+      const which = headers.length > 1 ? ` of view ${n + 1}` : "";
+      (loading.lastElementChild as HTMLElement).textContent = `${which}, ${part} of ${parts} parts`;
+    });
+    const { root } = view.first;
     // Keys are the view's from the beginning, without a click.
     document.addEventListener("keydown", (event) => forwardKeys(root, event));
-    // Meanwhile the shaders are built.
-    for (const [n, viewer] of together.entries()) {
-      const view = together.length > 1 ? ` of view ${n + 1}` : "";
-      const { parts } = embedded[n];
-      for (const [m, packed] of parts.entries()) {
-        (loading.lastElementChild as HTMLElement).textContent = `${view}, ${m} of ${parts.length} parts`;
-        const part = await embedded[n].unpacked(packed);
-        known.set(part.digest, part);
-        viewer.setPart(part);
-      }
-    }
-    isComing = false;
+    await filled;
     loading.textContent = "Drawing the first picture";
-    for (const viewer of together) viewer.change();
   } catch (error) {
     loading.remove();
     status.hidden = false;

@@ -1,6 +1,6 @@
 """A view among the text of a page of one's own: its scene as a script beside the page.
 
-All views of a page share one copy of the client, ``live.js``, which loads a scene when its element
+All views of a page share one copy of the client, ``core.js``, which loads a scene when its element
 comes into sight::
 
     <script src="flowtex-live.js" defer></script>

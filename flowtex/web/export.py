@@ -1,9 +1,9 @@
-"""A flow as one HTML file that draws without a server of its own.
+"""A flow as one file that draws without a server of its own: an HTML page, or a module for one.
 
 The client, its style, the header and all arrays lie in the file. Arrays are gzipped with the
 bytes of equal significance side by side, which is where slopes resemble one another, and written
-in base64. A Content-Security-Policy lets nothing run but the two texts whose digests it names,
-and lets nothing be fetched.
+in base64. A page's Content-Security-Policy lets nothing run but the one text whose digest it
+names, and lets nothing be fetched.
 
 A page of a pyramid in a store may have the coarsest level and one moment alone, and read the rest
 from the store: its policy names the server of the store.
@@ -16,7 +16,7 @@ import hashlib
 import html
 import json
 import string
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
@@ -34,7 +34,7 @@ from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, part_info, part_text
 from flowtex.tiles import Pyramid
 from flowtex.web import preview
-from flowtex.web.assets import asset
+from flowtex.web.assets import asset, client_script
 from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
 from flowtex.web.source import TileSource
 from flowtex.web.view import WebView, web_views
@@ -49,6 +49,8 @@ CLIENT_BYTES = 250_000
 READER_BYTES = 60_000
 #: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
 TILE_BYTES = 40_000_000
+#: Endings of the names of modules.
+MODULES = (".mjs", ".js")
 #: Size of the preview picture.
 PREVIEW = (480, 300)
 
@@ -93,9 +95,13 @@ def export(
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
-    """Write a flow as one HTML file that needs no server and no network.
+    """Write a flow as one file that needs no server and no network.
 
-    With ``store`` the page has no more than the coarsest level of a pyramid, and reads tiles and
+    The file is an HTML page or, if its name ends on ``.mjs`` or ``.js``, a module that other pages
+    import. The module exports ``mount(element, settings, height)``, and the ``render`` of an
+    anywidget module, which MyST's directive ``{{anywidget}}`` calls.
+
+    With ``store`` the file has no more than the coarsest level of a pyramid, and reads tiles and
     time steps from where the pyramid lies: from a bucket, or from any web server.
 
     Parameters
@@ -103,7 +109,8 @@ def export(
     mesh
         What ``plotter.flowtex.add`` takes.
     path
-        File to write; one that is there already is replaced, once the new one is whole.
+        File to write, such as ``"page.html"`` or ``"flow.mjs"``; one that is there already is
+        replaced, once the new one is whole.
     steps
         Number of time steps to keep, evenly chosen with the first and the last among them; all
         of them by default. One step alone is drawn as a steady flow.
@@ -165,8 +172,9 @@ def write_page(
     estimated = estimate(scenes, linked=link is not None)
     if announce is not None:
         announce(estimated, scenes[0].steps)
+    pieces = module_pieces if path.suffix in MODULES else page_pieces
     with whole_file(path) as file:
-        file.writelines(text.encode() for text in page_pieces(views, scenes, link=link, **options))
+        file.writelines(text.encode() for text in pieces(views, scenes, link=link, **options))
     return Page(path, path.stat().st_size, estimated, scenes[0].steps)
 
 
@@ -249,8 +257,52 @@ def page_pieces(
     that is shown until the page has drawn, made here where there is none. ``link`` tells where
     the rest is, and ``scenes`` are then of :func:`linked_data`.
     """
+    headers = _headers(views, scenes, link, title, camera=camera, time=time, clock=clock)
+    if picture is None:
+        picture = preview.preview_png(
+            views[0], PREVIEW, camera=headers[0]["camera"], time=time, coarser=1
+        )
+    before, after = asset("page.html").read_text("utf-8").split("$parts\n")
+    values = _values(headers, title or headers[0]["name"] or "Flow", picture, link)
+    yield string.Template(before).substitute(values)
+    for n, info, text in _packed(scenes, link, time):
+        part = html.escape(json.dumps(info))
+        yield f'<script type="text/plain" data-view="{n}" data-part="{part}">{text}</script>\n'
+    yield string.Template(after).substitute(values)
+
+
+def module_pieces(
+    views: Sequence[WebView],
+    scenes: Sequence[ClientData],
+    *,
+    time: float | None = None,
+    title: str | None = None,
+    link: StoreLink | None = None,
+    **shown: Any,
+) -> Iterator[str]:
+    """Give the text of a module piece by piece; the arguments are those of :func:`page_pieces`."""
+    headers = _headers(views, scenes, link, title, time=time, **shown)
+    before, after = asset("scene.mjs").read_text("utf-8").split("$parts\n")
+    values = {
+        "script": client_script(with_store=link is not None),
+        "headers": _headers_text(headers),
+        "store": "" if link is None else ", flowtexStore.open",
+    }
+    yield string.Template(before).substitute(values)
+    for packed in _packed(scenes, link, time):
+        yield json_text(packed) + ",\n"
+    yield string.Template(after).substitute(values)
+
+
+def _headers(
+    views: Sequence[WebView],
+    scenes: Sequence[ClientData],
+    link: StoreLink | None,
+    title: str | None,
+    **shown: Any,
+) -> list[Header]:
     headers = [
-        scene.header(view.scene.settings, camera=camera, time=time, clock=clock)
+        scene.header(view.scene.settings, **shown)
         for view, scene in zip(views, scenes, strict=True)
     ]
     for n, header in enumerate(headers):
@@ -259,18 +311,11 @@ def page_pieces(
             header["store"] = store_header(views[n], scenes[n], link)
         if len(views) > 1:
             header["differs"] = list(views[1].own_settings)
-    if picture is None:
-        picture = preview.preview_png(
-            views[0], PREVIEW, camera=headers[0]["camera"], time=time, coarser=1
-        )
-    before, after = asset("page.html").read_text("utf-8").split("$parts\n")
-    values = _values(headers, title or headers[0]["name"] or "Flow", picture, link)
-    yield string.Template(before).substitute(values)
-    if link is None:
-        yield from _elements([_parts(scene) for scene in scenes])
-    else:
-        yield from _elements([first_parts(scene, time).items() for scene in scenes])
-    yield string.Template(after).substitute(values)
+    return headers
+
+
+def _headers_text(headers: Sequence[Header]) -> str:
+    return json_text([headers[0], *(different(h, headers[0]) for h in headers[1:])])
 
 
 def _values(
@@ -278,7 +323,8 @@ def _values(
 ) -> dict[str, str]:
     """Return what the page's template asks for."""
     background = "#" + "".join(f"{round(255 * c):02x}" for c in headers[0]["background"])
-    client = asset("page.js" if link is None else "storepage.js").read_text("utf-8")
+    opened = "" if link is None else "flowtexStore.open"
+    client = f"{client_script(with_store=link is not None)}\nflowtex.openPage({opened});\n"
     script = "\n" + client.replace("</script", r"<\/script").replace("<!--", r"<\!--")
     look = string.Template(asset("page.css").read_text("utf-8")).substitute(background=background)
     return {
@@ -288,7 +334,7 @@ def _values(
         "style": look,
         # Browsers tell JPEG by itself.
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
-        "headers": json_text([headers[0], *(different(h, headers[0]) for h in headers[1:])]),
+        "headers": _headers_text(headers),
         "script": script,
     }
 
@@ -327,11 +373,14 @@ def _parts(scene: ClientData) -> Iterator[tuple[str, AnyArray]]:
     )
 
 
-def _elements(views: Sequence[Iterable[tuple[str, AnyArray]]]) -> Iterator[str]:
-    """Give the parts of all views as elements of the page; equal arrays lie in it once."""
+def _packed(
+    scenes: Sequence[ClientData], link: StoreLink | None, time: float | None
+) -> Iterator[tuple[int, dict[str, Any], str]]:
+    """Give view, description and text of the parts of all views; equal arrays have a text once."""
     written: dict[str, dict[str, Any]] = {}
-    for n, parts in enumerate(views):
+    for n, scene in enumerate(scenes):
         names: set[str] = set()
+        parts = _parts(scene) if link is None else first_parts(scene, time).items()
         for name, array in parts:
             if name in names:  # values of all times, which each of them has
                 continue
@@ -339,8 +388,4 @@ def _elements(views: Sequence[Iterable[tuple[str, AnyArray]]]) -> Iterator[str]:
             info, text = part_info(name, array), ""
             if info["digest"] not in written:
                 written[info["digest"]], text = part_text(array)
-            info |= written[info["digest"]]
-            yield (
-                f'<script type="text/plain" data-view="{n}" '
-                f'data-part="{html.escape(json.dumps(info))}">{text}</script>\n'
-            )
+            yield n, info | written[info["digest"]], text

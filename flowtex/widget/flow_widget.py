@@ -26,7 +26,7 @@ from flowtex.options import (
 from flowtex.scene import NO_IMAGE, Change, Scene
 from flowtex.settings import TABLE
 from flowtex.textures.images import load_image
-from flowtex.web.assets import asset
+from flowtex.web.assets import client_module
 from flowtex.web.export import PREVIEW, page_text, write_page
 from flowtex.web.view import web_views
 from flowtex.widget.display import Displayed
@@ -77,7 +77,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     >>> widget.close()
     """
 
-    _esm = asset("client.js")
+    _esm = client_module()
 
     _header = traitlets.Dict().tag(sync=True)
     _header_beside = traitlets.Dict().tag(sync=True)

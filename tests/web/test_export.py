@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -28,7 +29,7 @@ from flowtex.web.preview import preview_png
 from flowtex.web.view import web_views
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Page, Route
 
 WICKED = "</script ><!--<script \"'&<b>"
 
@@ -166,6 +167,44 @@ def test_a_page_is_drawn_and_played_from_a_file_without_a_network(
         page.keyboard.press("Space")
         page.locator(f'.flowtex [aria-label="{label}"]').wait_for()
     assert said == []
+
+
+#: A page that shows the flow of a module twice: by itself, and as hosts of anywidget's modules do.
+HOST = """<!doctype html><title>Host</title><div id="plain"></div><div id="hosted"></div>
+<script type="module">
+import flow, { mount } from "./flow.mjs";
+mount(document.getElementById("plain"), { samples: 5 }, 200);
+const el = document.getElementById("hosted").attachShadow({ mode: "open" });
+const values = { samples: 7, height: 160 };
+window.end = flow.render({ el, model: { get: (name) => values[name] } });
+</script>"""
+
+
+@pytest.mark.browser
+def test_a_module_shows_its_flow_in_any_page(page: Page, tmp_path: Path) -> None:
+    module = tmp_path / "flow.mjs"
+    export(gyre(2), module, samples=9, title=WICKED)
+    asked: list[str] = []
+    files = {"/": HOST, "/flow.mjs": module.read_text("utf-8")}
+
+    def answer(route: Route) -> None:
+        path = urlsplit(route.request.url).path
+        asked.append(path)
+        kind = "text/html" if path == "/" else "text/javascript"
+        route.fulfill(body=files[path], content_type=kind)
+
+    page.route("http://site.test/**", answer)
+    page.goto("http://site.test/")
+    for place, height, samples in (("#plain", 200, "5"), ("#hosted", 160, "7")):
+        view = page.locator(f"{place} .flowtex-views")
+        view.locator(COMPLETE).wait_for()
+        box = view.bounding_box()
+        assert box is not None
+        assert box["height"] == height
+        assert view.locator("[data-name=samples] input").first.input_value() == samples
+    page.evaluate("() => end()")
+    assert page.locator(".flowtex-views").count() == 1
+    assert asked == ["/", "/flow.mjs"]
 
 
 @pytest.mark.browser

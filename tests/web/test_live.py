@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.browser
 
 PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>gyre</title>
-<script src="live.js" defer></script>
+<script src="client.js" defer></script>
 <div class="flowtex-explained">
 <div class="flowtex-live" data-scene="gyre.js" style="height: 200px; width: 400px"></div></div>"""
 
@@ -32,7 +32,7 @@ def test_a_pixel_is_explained_without_a_server(page: Page, tmp_path: Path) -> No
     write_scene(tmp_path, "gyre", views)
     # Some parts are large enough to lie apart.
     assert len(list(tmp_path.glob("*.js"))) > 1
-    (tmp_path / "live.js").write_bytes(asset("live.js").read_bytes())
+    (tmp_path / "client.js").write_bytes(asset("core.js").read_bytes())
     (tmp_path / "page.html").write_text(PAGE, encoding="utf-8")
     page.set_viewport_size({"width": 420, "height": 700})
     page.goto((tmp_path / "page.html").as_uri())

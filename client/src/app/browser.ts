@@ -5,7 +5,7 @@
 // trame-rca, whose events the view does not need, as it moves the camera by itself.
 
 import type { CameraState } from "../camera.ts";
-import type * as Client from "../client.ts";
+import type * as Client from "../core.ts";
 import type { FlowtexView } from "../element.ts";
 import { forwardKeys } from "../keyboard.ts";
 import { throttled } from "../lifetime.ts";

@@ -1,13 +1,20 @@
-// A source of parts that lie in a page as text: flowtex/web/export.py writes them.
+// A source of parts that lie in a page or module as text: flowtex/web/export.py writes them.
 
 import { isOfStep, partOfText, stepOf, tilePart, type Header, type NamedPart, type PartInfo } from "../protocol.ts";
 import type { LoadTile, Source } from "./source.ts";
 import { nameOf } from "../tilechoice.ts";
 
-/** A part with its text as the page has it; equal ones have it once. */
+/** A part with its text; equal ones have it once. */
 type Packed = [info: PartInfo, text: string];
 
-/** What lies in the page of one of its views, taken out of it. */
+/** A scene, or two beside each other, as text. */
+export interface PackedScene {
+  /** Of a second header there is what differs from the first. */
+  headers: Header[];
+  parts: [view: number, ...packed: Packed][];
+}
+
+/** The packed parts of one view. */
 export class Embedded implements Source {
   /** Unpacking goes on in the page itself, and what is needed most comes first. */
   readonly atOnce = 1;
@@ -18,19 +25,17 @@ export class Embedded implements Source {
   private readonly known: Map<string, NamedPart>;
   private readonly texts: Map<string, string>;
 
-  /** `known` has what is unpacked, and `texts` what is not, of all views by digests. */
-  constructor(header: Header, view: string, known: Map<string, NamedPart>, texts: Map<string, string>) {
+  /** `known` has unpacked parts and `texts` those of tiles, of all views by their digests. */
+  constructor(header: Header, packed: Packed[], known: Map<string, NamedPart>, texts: Map<string, string>) {
     this.header = header;
     this.known = known;
     this.texts = texts;
-    for (const element of document.querySelectorAll<HTMLElement>(`script[data-view="${view}"]`)) {
-      const info: PartInfo = JSON.parse(element.dataset.part ?? "");
-      const packed: Packed = [info, element.textContent ?? ""];
-      const tile = tilePart(info.name)?.[0];
-      if (!tile) this.parts.push(packed);
-      else this.tiles.set(tile, [...(this.tiles.get(tile) ?? []), packed]);
-      if (tile && packed[1]) texts.set(info.digest, packed[1]);
-      element.remove();
+    for (const part of packed) {
+      const [{ name, digest }, text] = part;
+      const tile = tilePart(name)?.[0];
+      if (!tile) this.parts.push(part);
+      else this.tiles.set(tile, [...(this.tiles.get(tile) ?? []), part]);
+      if (tile && text) texts.set(digest, text);
     }
   }
 
@@ -48,5 +53,12 @@ export class Embedded implements Source {
     const { digest, name } = info;
     const part = this.known.get(digest);
     return part ? { ...part, name } : partOfText(info, text || (this.texts.get(digest) ?? ""));
+  }
+
+  /** Unpack a part of the whole, and keep it for the views that have an equal one. */
+  async kept(packed: Packed): Promise<NamedPart> {
+    const part = await this.unpacked(packed);
+    this.known.set(part.digest, part);
+    return part;
   }
 }

@@ -33,7 +33,7 @@ from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, parts_file
 from flowtex.settings import TABLE
 from flowtex.tiles import TileKey
-from flowtex.web.assets import asset
+from flowtex.web.assets import client_module
 from flowtex.web.source import TileSource
 from flowtex.web.view import colours_of
 
@@ -174,7 +174,7 @@ class Element:
         self._player = player
         self._routes = Routes.of(state.server)
         self._client = self._routes.give(
-            "client.js", lambda: (asset("client.js"), "text/javascript", None)
+            "client.js", lambda: (client_module().encode(), "text/javascript", None)
         )
         self._scenes: list[HandedScene] = []
         self._shown: tuple[Any, ...] = ()

@@ -20,7 +20,10 @@ AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
 LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
 OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN
 THE SOFTWARE. */
-var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
+"use strict";var flowtex=(()=>{var __defProp=Object.defineProperty;var __getOwnPropDesc=Object.getOwnPropertyDescriptor;var __getOwnPropNames=Object.getOwnPropertyNames;var __hasOwnProp=Object.prototype.hasOwnProperty;var __export=(target,all)=>{for(var name in all)__defProp(target,name,{get:all[name],enumerable:!0})},__copyProps=(to,from,except,desc)=>{
+if(from&&typeof from=="object"||typeof from=="function")for(let key of __getOwnPropNames(from))!__hasOwnProp.call(to,key)&&
+key!==except&&__defProp(to,key,{get:()=>from[key],enumerable:!(desc=__getOwnPropDesc(from,key))||desc.enumerable});return to};var __toCommonJS=mod=>__copyProps(__defProp({},"__esModule",{value:!0}),mod);var core_exports={};__export(core_exports,{FlowtexView:()=>FlowtexView,Viewer:()=>Viewer,decoded:()=>decoded,initialize:()=>initialize,
+mountPage:()=>mountPage,openPage:()=>openPage,packedModule:()=>packedModule,partsOfFile:()=>partsOfFile,render:()=>render});var EPSILON=1e-6,ARRAY_TYPE=typeof Float32Array<"u"?Float32Array:Array;var degree=Math.PI/180,radian=180/Math.PI;function transpose(out,a){if(out===a){var a01=a[1],a02=a[2],a12=a[5];out[1]=a[3],out[2]=a[6],out[3]=a01,out[5]=a[7],out[6]=
 a02,out[7]=a12}else out[0]=a[0],out[1]=a[3],out[2]=a[6],out[3]=a[1],out[4]=a[4],out[5]=a[7],out[6]=a[2],out[7]=a[5],out[8]=
 a[8];return out}function fromRotation(out,rad,axis){var x=axis[0],y=axis[1],z=axis[2],len=Math.sqrt(x*x+y*y+z*z),s,c,t;return len<EPSILON?
 null:(len=1/len,x*=len,y*=len,z*=len,s=Math.sin(rad),c=Math.cos(rad),t=1-c,out[0]=x*x*t+c,out[1]=y*x*t+z*s,out[2]=z*x*t-
@@ -37,15 +40,102 @@ result(),v(a),v(b)),scale2=(a,by)=>scale(result(),v(a),by),cross2=(a,b)=>cross(r
 v(a)),add=(a,b,t=1)=>scaleAndAdd(result(),v(a),v(b),t);function rotated(a,axis,degrees){let turn=fromRotation(zeros(16),
 degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),v(a),turn)}function toFrame(frame,a){let columns=transpose(
 zeros(9),frame);return transformMat3(result(),v(a),columns)}function fromFrame(frame,a){return transformMat3(result(),v(
-a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
+a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
+colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
+let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
+Math.min(share,1)}}function mapOf(header,maps,name){let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
+4*count2).fill(255);for(let n=0;n<count2;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
+let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
+choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
+unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
+high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{
+low,high}=scalars.choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,
+high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),{coastlines=header.
+earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{
+opacity=header.opacity}=choice,colours={scalars,mesh,earth,opacity},maps=parts.get("maps");if(!choice.cmap||!maps)return{
+colours,part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.
+cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){
+let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[
+0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,
+light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],
+cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+
+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*
+contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),
+roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*
+fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from(
+{length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.
+paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")}\
+)`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
+this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
+this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
+state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.
+state.position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,
+this.state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}sight(pixels){let{
+parallel,position,view_angle:angle}=this.state;return parallel?{eye:null,halfHeight:this.height,pixels}:{eye:position,halfHeight:tangent(
+angle),pixels}}get planes(){let[right,up,ahead]=this.axes,{parallel,parallel_scale:half,view_angle:angle}=this.state,{position,
+focal_point:focus}=this.state,tall=parallel?half:tangent(angle);return[right,scale2(right,-1),up,scale2(up,-1)].map((side,n)=>{
+let size=n<2?tall*this.aspect:tall;if(parallel)return[...side,size-dot2(side,focus)];let normal=add(side,ahead,size);return[
+...normal,-dot2(normal,position)]})}get eye(){return this.state.parallel?[...scale2(this.axes[2],-1),0]:[...this.state.position,
+1]}at(point){let ahead=this.axes[2];if(this.state.parallel)return{height:this.height,ray:ahead};let way=subtract2(point,
+this.state.position);return{height:dot2(way,ahead)*tangent(this.state.view_angle),ray:unit(way)}}project(point){let[right,
+up]=this.axes,{height}=this.at(point);if(!(height>0))return null;let{parallel,position,focal_point:focus}=this.state,way=subtract2(
+point,parallel?focus:position);return[dot2(right,way)/height/this.aspect,dot2(up,way)/height]}pan(dx,dy){let[right,up]=this.
+axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){if(this.globe)return this.
+roam(dx,dy);let{state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,
+up,-limits.turn*dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.
+turn*dy),state.position=add(state.focal_point,back),state.up=unit(cross2(back,right))}roam(dx,dy){let{state,limits,globe}=this,
+away=length2(state.position),above=Math.max(away-globe,0)*tangent(state.view_angle),height=state.parallel?state.parallel_scale:
+above,degrees=Math.min(height/globe*180/Math.PI,limits.turn),cosine=Math.hypot(state.position[0],state.position[1])/away,
+aside=Math.min(degrees*this.aspect/Math.max(cosine,LEAST_COSINE),limits.turn);this.turn(NORTH,-aside*dx);let[right]=this.
+axes,steep=Math.abs(state.position[2])/away,before=copyOf(state);this.turn(right,degrees*dy),Math.abs(state.position[2])/
+away>Math.max(STEEPEST,steep)&&(this.state=before);let[,,ahead]=this.axes,upward=add(NORTH,ahead,-dot2(NORTH,ahead));length2(
+upward)>1-STEEPEST&&(this.state.up=unit(upward))}turn(axis,degrees){let{state}=this;for(let name of["position","focal_po\
+int","up"])state[name]=rotated(state[name],axis,degrees)}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||factor<=0)return;
+this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,farthest/this.
+zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*
+height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){let[
+right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);return state.
+parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
+let distance=Math.max(height/tangent(this.limits.view_angle),this.nearest);this.state.position=add(this.state.focal_point,
+ahead,-distance),this.state.view_angle=Math.atan(height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)
+return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(
+this.state.position,ahead,depth))}shift(by){this.state.focal_point=add(this.state.focal_point,by),this.state.position=add(
+this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,up}=state;return{...state,position:[...position],
+focal_point:[...focus],up:[...up]}}function fitted(surface,limits,positions2,aspect){let{center,extent,planar,frame}=surface,
+half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),up=planar?fromFrame(frame,[0,1,0]):[0,
+0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row2=>toFrame(frame,row2)),[low,high]=[[1/0,1/0],
+[-1/0,-1/0]],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+1],positions2[n+2]];if(!Number.
+isFinite(node[0]))continue;let[x,y,z]=rows.map(row2=>dot2(row2,node));[x,y].forEach((value,k)=>{low[k]=Math.min(low[k],value),
+high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=Math.max(distance,z+wide/half/
+(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);return{position:add(center,back,
+planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/(1-2*limits.margin),view_angle:limits.
+view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,extent,planar}=surface,camera=copyOf(state);
+if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&state.parallel){let[high,usual,all]=[
+1e9,limits.aspect,aspect].map(shape2=>fitted(surface,limits,positions2,shape2).parallel_scale),isUsual=Math.abs(state.parallel_scale/
+usual-1)<.001;state.parallel_scale>.98*high&&(camera.parallel_scale=isUsual?all:Math.max(state.parallel_scale,all))}else if(!state.
+parallel&&state.view_angle>.9*limits.view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(
+state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function firstLook(surface,limits,first,nodes,aspect){
+return first?widened(surface,limits,first,nodes,aspect):fitted(surface,limits,nodes,aspect)}function pointInPlane({center,
+frame},camera,x,y){let[start,along]=camera.ray(x,y),normal=fromFrame(frame,[0,0,1]);return add(start,along,dot2(subtract2(
+center,start),normal)/dot2(along,normal))}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.
+extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){
+let{state,aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
+toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
+m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
+up.map(c=>c/half)].forEach((row2,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row2[n];m[12+k]=-dot2(row2,focus)}),state.parallel){
+for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),
+depth=dot2(subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+
+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(
+ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=
+(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
 LONGEST_STRIP_MS=150,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;function quality(price,fixed,pixels,samples,budget){let room=Math.
 max(budget-fixed,Math.min(fixed/2,budget),2)/price;if(pixels*(samples+PIXEL_COST)<=room)return{scale:1,samples};let fewer=Math.
 min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),
 samples:fewer}:{scale:1,samples:clamp(Math.floor(room/pixels-PIXEL_COST),fewer,samples)}}function movingTime(price,fixed,pixels,samples,isPlaying){
 if(!isPlaying)return MOVING_MS;let fewer=Math.min(DRAFT_SAMPLES,samples),clear=fixed+price*pixels*CLEAR_SCALE**2*(fewer+
-PIXEL_COST);return clamp(clear,MOVING_MS,PLAYING_MS)}function rowsIn(budget,price,fixed,width,samples){let row=price*width*
+PIXEL_COST);return clamp(clear,MOVING_MS,PLAYING_MS)}function rowsIn(budget,price,fixed,width,samples){let row2=price*width*
 (samples+PIXEL_COST),worthIt=Math.max(Math.min(3*fixed,LONGEST_STRIP_MS),fixed);return Math.max(Math.floor(Math.max(budget-
-fixed,worthIt)/row),FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/(samples+PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){
+fixed,worthIt)/row2),FEWEST_ROWS)}function motionFactor(samples){return(2*samples+PIXEL_COST)/(samples+PIXEL_COST)}function learnedPrice(price,spent,fixed,pixels,samples,factor){
 let latest=Math.max(spent-fixed,.05)/(pixels*(samples+PIXEL_COST)*factor);return price+(latest-price)*(latest>price?.7:.3)}
 function draftUniforms(settings,samples,density){let[grain,spacing,all]=[settings.grain,settings.spacing,settings.samples].
 map(Number),drawn=Math.max(grain*density,Math.min(grain,1)),stretched=all*spacing*grain*density/(samples*drawn);return{u_grain:drawn,
@@ -109,108 +199,7 @@ FRAMEBUFFER,null)}numbers(draw,width=1,height=1){let gl=this.context;this.picker
 0),gl.bindFramebuffer(gl.FRAMEBUFFER,this.picker.frame),gl.viewport(0,0,width,height),gl.disable(gl.SCISSOR_TEST),gl.enable(
 gl.DEPTH_TEST),gl.clearBufferuiv(gl.COLOR,0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT),draw();let bits=new Uint32Array(4*width*
 height);return gl.readPixels(0,0,width,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null),
-bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=new Graphics}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
-attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
-12z",pause:"M8.5 6v12M15.5 6v12",previous:"M17 6v12l-9-6zM6.5 6v12",next:"M7 6v12l9-6zM17.5 6v12",home:"M4 11.5 12 5l8 6\
-.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8-4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 \
-17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M4 7h8M17 7h3M4 17h3M12 17h8M14.5 4.8v4.4M9.5 14.8v4.4",
-save:"M12 4v11M7.5 10.8 12 15.3l4.5-4.5M5 19.5h14",full:"M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"\
-M6 14.5l6-6 6 6"};function icon(name){let space="http://www.w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.
-setAttribute("viewBox","0 0 24 24"),svg.setAttribute("aria-hidden","true");let path=document.createElementNS(space,"path");
-return path.setAttribute("d",ICONS[name]),name==="play"&&path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x,digits=4){
-if(!Number.isFinite(x))return"–";let size=Math.abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace(
-"e+","e"):String(Number(x.toPrecision(digits)))}var UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=
-UNIT_LENGTH?`${text} ${unit2}`:text}function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(
-Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.
-reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())
-pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(format)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
-colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
-let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
-Math.min(share,1)}}function mapOf(header,maps,name){let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
-4*count2).fill(255);for(let n=0;n<count2;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
-let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
-choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
-unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
-high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{
-low,high}=scalars.choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,
-high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),{coastlines=header.
-earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{
-opacity=header.opacity}=choice,colours={scalars,mesh,earth,opacity},maps=parts.get("maps");if(!choice.cmap||!maps)return{
-colours,part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.
-cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){
-let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[
-0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,
-light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],
-cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+
-strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*
-contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),
-roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*
-fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from(
-{length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.
-paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")}\
-)`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
-this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
-this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
-state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.
-state.position))}get zoom(){return this.homeHeight/this.height}get axes(){let ahead=unit(subtract2(this.state.focal_point,
-this.state.position)),right=unit(cross2(ahead,this.state.up));return[right,cross2(right,ahead),ahead]}sight(pixels){let{
-parallel,position,view_angle:angle}=this.state;return parallel?{eye:null,halfHeight:this.height,pixels}:{eye:position,halfHeight:tangent(
-angle),pixels}}get planes(){let[right,up,ahead]=this.axes,{parallel,parallel_scale:half,view_angle:angle}=this.state,{position,
-focal_point:focus}=this.state,tall=parallel?half:tangent(angle);return[right,scale2(right,-1),up,scale2(up,-1)].map((side,n)=>{
-let size=n<2?tall*this.aspect:tall;if(parallel)return[...side,size-dot2(side,focus)];let normal=add(side,ahead,size);return[
-...normal,-dot2(normal,position)]})}get eye(){return this.state.parallel?[...scale2(this.axes[2],-1),0]:[...this.state.position,
-1]}at(point){let ahead=this.axes[2];if(this.state.parallel)return{height:this.height,ray:ahead};let way=subtract2(point,
-this.state.position);return{height:dot2(way,ahead)*tangent(this.state.view_angle),ray:unit(way)}}project(point){let[right,
-up]=this.axes,{height}=this.at(point);if(!(height>0))return null;let{parallel,position,focal_point:focus}=this.state,way=subtract2(
-point,parallel?focus:position);return[dot2(right,way)/height/this.aspect,dot2(up,way)/height]}pan(dx,dy){let[right,up]=this.
-axes,{height}=this;this.shift(add(scale2(right,dx*this.aspect*height),up,dy*height))}rotate(dx,dy){if(this.globe)return this.
-roam(dx,dy);let{state,limits}=this,up=unit(state.up),back=subtract2(state.position,state.focal_point);back=rotated(back,
-up,-limits.turn*dx*Math.min(this.aspect,limits.widest_turn));let right=unit(cross2(up,back));back=rotated(back,right,limits.
-turn*dy),state.position=add(state.focal_point,back),state.up=unit(cross2(back,right))}roam(dx,dy){let{state,limits,globe}=this,
-away=length2(state.position),above=Math.max(away-globe,0)*tangent(state.view_angle),height=state.parallel?state.parallel_scale:
-above,degrees=Math.min(height/globe*180/Math.PI,limits.turn),cosine=Math.hypot(state.position[0],state.position[1])/away,
-aside=Math.min(degrees*this.aspect/Math.max(cosine,LEAST_COSINE),limits.turn);this.turn(NORTH,-aside*dx);let[right]=this.
-axes,steep=Math.abs(state.position[2])/away,before=copyOf(state);this.turn(right,degrees*dy),Math.abs(state.position[2])/
-away>Math.max(STEEPEST,steep)&&(this.state=before);let[,,ahead]=this.axes,upward=add(NORTH,ahead,-dot2(NORTH,ahead));length2(
-upward)>1-STEEPEST&&(this.state.up=unit(upward))}turn(axis,degrees){let{state}=this;for(let name of["position","focal_po\
-int","up"])state[name]=rotated(state[name],axis,degrees)}zoomBy(factor,x=0,y=0){if(!Number.isFinite(factor)||factor<=0)return;
-this.flat||this.focusAt(x,y);let{farthest_zoom:farthest,deepest_zoom:deepest}=this.limits,by=clamp(factor,farthest/this.
-zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);this.shift(add(scale2(right,x*this.aspect*
-height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){let[
-right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);return state.
-parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
-let distance=Math.max(height/tangent(this.limits.view_angle),this.nearest);this.state.position=add(this.state.focal_point,
-ahead,-distance),this.state.view_angle=Math.atan(height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)
-return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(
-this.state.position,ahead,depth))}shift(by){this.state.focal_point=add(this.state.focal_point,by),this.state.position=add(
-this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,up}=state;return{...state,position:[...position],
-focal_point:[...focus],up:[...up]}}function fitted(surface,limits,positions2,aspect){let{center,extent,planar,frame}=surface,
-half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),up=planar?fromFrame(frame,[0,1,0]):[0,
-0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row=>toFrame(frame,row)),[low,high]=[[1/0,1/0],
-[-1/0,-1/0]],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+1],positions2[n+2]];if(!Number.
-isFinite(node[0]))continue;let[x,y,z]=rows.map(row=>dot2(row,node));[x,y].forEach((value,k)=>{low[k]=Math.min(low[k],value),
-high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=Math.max(distance,z+wide/half/
-(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);return{position:add(center,back,
-planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/(1-2*limits.margin),view_angle:limits.
-view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,extent,planar}=surface,camera=copyOf(state);
-if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&state.parallel){let[high,usual,all]=[
-1e9,limits.aspect,aspect].map(shape2=>fitted(surface,limits,positions2,shape2).parallel_scale),isUsual=Math.abs(state.parallel_scale/
-usual-1)<.001;state.parallel_scale>.98*high&&(camera.parallel_scale=isUsual?all:Math.max(state.parallel_scale,all))}else if(!state.
-parallel&&state.view_angle>.9*limits.view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(
-state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function firstLook(surface,limits,first,nodes,aspect){
-return first?widened(surface,limits,first,nodes,aspect):fitted(surface,limits,nodes,aspect)}function pointInPlane({center,
-frame},camera,x,y){let[start,along]=camera.ray(x,y),normal=fromFrame(frame,[0,0,1]);return add(start,along,dot2(subtract2(
-center,start),normal)/dot2(along,normal))}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.
-extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){
-let{state,aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
-toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
-m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
-up.map(c=>c/half)].forEach((row,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row[n];m[12+k]=-dot2(row,focus)}),state.parallel){for(let n=0;n<
-3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),depth=dot2(
-subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+near)/(far-
-near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(ahead,eye),
-m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*
-m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
+bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=new Graphics}function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
 let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&65535,low[k]+place[k]/65535*size[k]));lines[lines.length-1].push(
 point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along=0,kept=line.filter((point,n)=>{
 let before=along;return n&&(along+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along/spacing)>Math.floor(
@@ -230,21 +219,24 @@ log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Ma
 low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
 name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(
 number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,
-row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
+row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
 let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
 {name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expect\
 ed ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){
 let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,
 info.bytes);return start+=info.bytes,info.stride===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){
 let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(
-4,first))),first]}function partOfPlanes(info,planes){let count2=info.shape.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:
-1,{stride=1}=info,steps=count2/stride;if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed\
- as it tells`);let bytes=new Uint8Array(planes.length);for(let n=0,from=0;n<width*stride;n+=1){let[plane,channel]=[Math.
-floor(n/stride),n%stride];for(let k=0;k<steps;k+=1)bytes[(k*stride+channel)*width+plane]=planes[from++]}return decoded(info,
-summed(info,bytes,width))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function summed(info,bytes,width){let{
-differences=0,stride=1,scale:scale3=null}=info,numbers=new UNSIGNED[width](bytes.buffer);for(let order=0;order<differences;order+=
-1)for(let n=stride;n<numbers.length;n+=1)numbers[n]+=numbers[n-stride];return scale3===null?bytes.buffer:Float32Array.from(
-new Int32Array(bytes.buffer),n=>n*2**scale3).buffer}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+4,first))),first]}async function partOfText(info,text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<
+packed.length;n+=1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream(
+"gzip"));return partOfPlanes(info,new Uint8Array(await new Response(unpacked).arrayBuffer()))}function partOfPlanes(info,planes){
+let count2=info.shape.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:1,{stride=1}=info,steps=count2/
+stride;if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed as it tells`);let bytes=new Uint8Array(
+planes.length);for(let n=0,from=0;n<width*stride;n+=1){let[plane,channel]=[Math.floor(n/stride),n%stride];for(let k=0;k<
+steps;k+=1)bytes[(k*stride+channel)*width+plane]=planes[from++]}return decoded(info,summed(info,bytes,width))}var UNSIGNED={
+1:Uint8Array,2:Uint16Array,4:Uint32Array};function summed(info,bytes,width){let{differences=0,stride=1,scale:scale3=null}=info,
+numbers=new UNSIGNED[width](bytes.buffer);for(let order=0;order<differences;order+=1)for(let n=stride;n<numbers.length;n+=
+1)numbers[n]+=numbers[n-stride];return scale3===null?bytes.buffer:Float32Array.from(new Int32Array(bytes.buffer),n=>n*2**
+scale3).buffer}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
 let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
 return result2}function coordinates({shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},
 (_,n)=>(n+before+.5)/size);return grid(middles(shape2[1],columns),middles(shape2[0],rows))}function noiseCoordinates({alongI,
@@ -406,11 +398,11 @@ frame();return{begin:n=>(gl.bindFramebuffer(gl.FRAMEBUFFER,frame2),gl.framebuffe
 result2,0,n),[width,height]),end:()=>{},finish:()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),
 size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}}}let pairs=Math.ceil(width/2),[,frame]=this.target(pairs,height),read=new Uint32Array(
 pairs*height*4),halves=new Uint16Array(read.buffer),texels=new Uint16Array(4*width*height);return{begin:()=>(gl.bindFramebuffer(
-gl.FRAMEBUFFER,frame),[pairs,height]),end:n=>{gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,read);for(let row=0;row<
-height;row+=1){let first=8*pairs*row;texels.set(halves.subarray(first,first+4*width),4*width*row)}gl.activeTexture(gl.TEXTURE0),
-gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),sendLayer(gl,size,n,texels)},finish:()=>{}}}*slices(step){let{graphics,trace,
-header}=this,gl=graphics.context,{geometry,slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.size,
-geometry.columns.size],size={width,height,layers:slices.count,channels:4,levels:geometry.levels},result2=gl.createTexture();
+gl.FRAMEBUFFER,frame),[pairs,height]),end:n=>{gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,read);for(let row2=0;row2<
+height;row2+=1){let first=8*pairs*row2;texels.set(halves.subarray(first,first+4*width),4*width*row2)}gl.activeTexture(gl.
+TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),sendLayer(gl,size,n,texels)},finish:()=>{}}}*slices(step){let{graphics,
+trace,header}=this,gl=graphics.context,{geometry,slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.
+size,geometry.columns.size],size={width,height,layers:slices.count,channels:4,levels:geometry.levels},result2=gl.createTexture();
 this.result=result2,gl.activeTexture(gl.TEXTURE0),makeLayers(gl,result2,size);let{poles}=this,own=this.texture(poles.size.
 width,poles.size.height,gl.RGBA32F,this.flow(step)),rays=this.texture(...poles.raysSize,gl.RGBA32F,poles.angles),constant=[
 this.texture(columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.padded()),this.texture(
@@ -449,7 +441,21 @@ let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:
 this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
 for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};function throttled(later,wait,call){let next=null,
 running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;next=null,call(value),later(run,wait)};return value=>{
-next={value},running||run()}}var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
+next={value},running||run()}}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
+attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
+12z",pause:"M8.5 6v12M15.5 6v12",previous:"M17 6v12l-9-6zM6.5 6v12",next:"M7 6v12l9-6zM17.5 6v12",home:"M4 11.5 12 5l8 6\
+.5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8-4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 \
+17 0M7 18a5 5 0 0 1 10 0M10.3 18a1.7 1.7 0 0 1 3.4 0",settings:"M4 7h8M17 7h3M4 17h3M12 17h8M14.5 4.8v4.4M9.5 14.8v4.4",
+save:"M12 4v11M7.5 10.8 12 15.3l4.5-4.5M5 19.5h14",full:"M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",hide:"M6 9.5l6 6 6-6",show:"\
+M6 14.5l6-6 6 6"};function icon(name){let space="http://www.w3.org/2000/svg",svg=document.createElementNS(space,"svg");svg.
+setAttribute("viewBox","0 0 24 24"),svg.setAttribute("aria-hidden","true");let path=document.createElementNS(space,"path");
+return path.setAttribute("d",ICONS[name]),name==="play"&&path.setAttribute("class","solid"),svg.append(path),svg}function numberText(x,digits=4){
+if(!Number.isFinite(x))return"–";let size=Math.abs(x);return size!==0&&(size>=1e5||size<.001)?x.toExponential(2).replace(
+"e+","e"):String(Number(x.toPrecision(digits)))}var UNIT_LENGTH=12;function withUnit(text,unit2){return unit2&&unit2.length<=
+UNIT_LENGTH?`${text} ${unit2}`:text}function pictureOf(views,size=1,format={}){let widths=views.map(({canvas})=>Math.max(
+Math.round(size*canvas.width),1)),height=Math.max(Math.round(size*views[0].canvas.height),1),all=new OffscreenCanvas(widths.
+reduce((sum,width)=>sum+width,0),height),pen=all.getContext("2d",{alpha:!1}),left=0;for(let[n,{canvas}]of views.entries())
+pen?.drawImage(canvas,left,0,widths[n],height),left+=widths[n];return all.convertToBlob(format)}var DEGREES=180/Math.PI,FEWEST_DECIMALS=2,MOST_DECIMALS=4,NEAR=1e-4,DAY_S=86400;function weights(t){let[a,b,c]=[t-1,t-2,
 t-3];return[-(a*b*c)/6,t*b*c/2,-(t*a*c)/2,t*a*b/6]}function around(share,count2){let at=share*(count2-1),first=clamp(Math.
 floor(at)-1,0,count2-4);return[first,weights(at-first)]}function wayOn([x0,y0,x1,y1],{data,shape:shape2},position){let[rows,
 columns]=shape2,[i,across]=around((position[0]-x0)/(x1-x0),columns),[j,upward]=around((position[1]-y0)/(y1-y0),rows),way=[
@@ -542,9 +548,9 @@ ends,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.c
 t"})),lifetime.listen(this.log,"change",()=>viewer.chooseColours({log_scale:this.log.checked})),lifetime.listen(this.opacity,
 "input",()=>viewer.chooseColours({opacity:this.opacity.valueAsNumber})),this.robust.title="Leave out the least and the g\
 reatest values.",lifetime.listen(swatches,"click",event=>{let name=event.target.dataset.cmap;name&&viewer.chooseColours(
-{cmap:name})});let row=(name,...fields)=>dom("div",{class:"row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=
-row("Range",dom("span",{class:"between"},[...ends,auto,this.robust])),this.mapRow=row("Colour map",swatches),this.mapRow.
-classList.add("ranged"),this.opacityRow.classList.add("ranged"),this.element.append(row("Colour by",scalars),this.mapRow,
+{cmap:name})});let row2=(name,...fields)=>dom("div",{class:"row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=
+row2("Range",dom("span",{class:"between"},[...ends,auto,this.robust])),this.mapRow=row2("Colour map",swatches),this.mapRow.
+classList.add("ranged"),this.opacityRow.classList.add("ranged"),this.element.append(row2("Colour by",scalars),this.mapRow,
 this.rangeRow,this.logRow,this.opacityRow)}get rows(){return[this.element,this.lines]}updateLines(){let{header,parts,lifetime}=this.
 viewer,names=EARTH_LINES.filter(name=>header?.earth&&parts.has(name));this.lines.hidden=!names.length,this.lines.children.
 length!==names.length&&this.lines.replaceChildren(...names.map(name=>{let input=dom("input",{type:"checkbox",role:"switc\
@@ -572,31 +578,33 @@ name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="u
 let holds=needs.map(([name,sign,value])=>settings[name]===value==(sign==="=="));return!needs.length||holds.includes(!0)}
 var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){
 this.viewer=viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??
-!1;for(let row of header.table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row),{input,output}=control,
-name=dom("span",{class:"name"},[row.label]),attributes={class:"row","data-setting":row.name},line=dom("label",attributes,
-[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row.name,{...control,
-row,line}),this.element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{row,line,show}]of this.controls){
-name in settings&&show(settings[name]);let isIdle=!isInUse(row,settings);line.classList.toggle("idle",isIdle),line.title=
-isIdle?`${row.condition} ${row.text}`:row.text}}control(row){return row.control==="checkbox"?this.switch(row):row.control===
-"choice"?this.menu(row):row.control==="number"?this.numberField(row):this.slider(row)}switch({name}){let input=dom("inpu\
-t",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.
-checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom("option",
-{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.viewer.
-choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[min,max]=[
-low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.
+!1;for(let row2 of header.table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row2),{input,output}=control,
+name=dom("span",{class:"name"},[row2.label]),attributes={class:"row","data-setting":row2.name},line=dom("label",attributes,
+[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row2.name,{...control,
+row:row2,line}),this.element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{row:row2,line,show}]of this.
+controls){name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.toggle("idle",isIdle),
+line.title=isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control==="checkbox"?this.switch(
+row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.slider(row2)}switch({name}){
+let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.
+choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom(
+"option",{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.
+viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[
+min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.
 viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.viewer.choose(name,
-clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row){let{toSlider,fromSlider,min,max,step}=scaleOf2(
-row),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("ou\
-tput"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(Number(shown))};this.viewer.
-lifetime.listen(input,"input",()=>write(value()));let kind=row.affects==="uniform"?"input":"change";return this.viewer.lifetime.
-listen(input,kind,()=>this.viewer.choose(row.name,value())),{input,output,show:shown=>{input.value=String(toSlider(Number(
-shown))),write(shown)}}}};function scaleOf2(row){let{low,high,whole,logarithmic}=row,[least,most]=[low??0,high??1],toSlider=value=>logarithmic?
-Math.log2(value):value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?Math.round(value):Number(clamp(
-value,least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;
-return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,fromSlider,min,max,step}=scaleOf2(
+row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("o\
+utput"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(Number(shown))};this.viewer.
+lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="uniform"?"input":"change";return this.viewer.
+lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,show:shown=>{input.value=String(toSlider(
+Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,[least,most]=[low??0,high??
+1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?
+Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?
+1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole",d:"detail",".":"next",",":"previous"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={
-left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function toggleFullscreen(element){document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(
-()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom(
+left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}
+function forwardKeys(root,event){event.target===document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent(
+"keydown",event))&&event.preventDefault()}function toggleFullscreen(element){document.fullscreenElement?document.exitFullscreen():
+element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom(
 "i",{hidden:""});show(header,settings,map){let{name,label,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||
 !bar||!map||!!settings.show_level,this.element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.
 background=rampOf(map,header,settings,STOPS2),this.mark.hidden=!0;let placeOf=shareOf(header.scalars),ticks=legendTicks(
@@ -621,28 +629,28 @@ map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
 cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;places=[];constructor(header,places){
 this.header=header;let start=0;for(let[rows,columns]of header.blocks){let end=start+PLACE*rows*columns;this.places.push(
-places.subarray(start,end)),start=end}}blocksOf(name,[level,row,column]){let[rows,columns]=this.header.blocks[level];if(name===
-ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends=[Math.min(size*(row+1),rows),Math.min(size*(column+1),
-columns)];return[size*row,size*column,...ends]}children(name,[level,row,column]){let{blocks,tileBlocks}=this.header,counts=blocks[level-
-1].map(n=>Math.ceil(n/tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:[[2*row,2*column],[row,column].map((n,k)=>Math.min(
-2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<to[1];i+=1)keys.push([level-1,j,i]);return keys}finerPart([
-,row,column],above){let{tileBlocks}=this.header,half=tileBlocks/2,[,j,i]=above===ROOT?[0,0,0]:keyOf(above);return[half*row-
-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,{depth,finest}=this.header,waiting=[ROOT];for(let name of waiting){
-let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,needed:!1,pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(
-name,key),width=this.header.blocks[key[0]][1],coarse=new Set;for(let j=top;j<bottom;j+=1)for(let i=left;i<right;i+=1){let at=PLACE*
-(j*width+i),place=this.places[key[0]].subarray(at,at+PLACE);if(!isSeen(view,place))continue;let pixels=cellSize(view,place);
-key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.needed=!0,coarse.has(j*width+i)||(choice.pixels=Math.
-max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(name,key).filter(child=>{let[row,column,size]=this.finerPart(
-child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.floor(block/width)-row,block%width-column];return j>=0&&j<size&&
-i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.push(...choice.finer)}return chosen}};function isSeen({planes},[
-x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=-radius*length2(p.slice(0,3)))}function cellSize({eye,halfHeight,
-pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(subtract2([x,y,z],eye))-radius,size):1;return size*.5*pixels/
-(halfHeight*away)}function wantedTiles(chosen){return[...chosen].filter(([name,{needed}])=>name!==ROOT&&needed).sort(([,
-a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){let shown=new Map,hide=name=>{shown.delete(
-name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.filter(
-covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),!1):(shown.
-set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**level,nodes-
-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
+places.subarray(start,end)),start=end}}blocksOf(name,[level,row2,column]){let[rows,columns]=this.header.blocks[level];if(name===
+ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends=[Math.min(size*(row2+1),rows),Math.min(size*(column+
+1),columns)];return[size*row2,size*column,...ends]}children(name,[level,row2,column]){let{blocks,tileBlocks}=this.header,
+counts=blocks[level-1].map(n=>Math.ceil(n/tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:[[2*row2,2*column],[row2,column].
+map((n,k)=>Math.min(2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<to[1];i+=1)keys.push([
+level-1,j,i]);return keys}finerPart([,row2,column],above){let{tileBlocks}=this.header,half=tileBlocks/2,[,j,i]=above===ROOT?
+[0,0,0]:keyOf(above);return[half*row2-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,{depth,
+finest}=this.header,waiting=[ROOT];for(let name of waiting){let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,needed:!1,
+pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(name,key),width=this.header.blocks[key[0]][1],coarse=new Set;for(let j=top;j<
+bottom;j+=1)for(let i=left;i<right;i+=1){let at=PLACE*(j*width+i),place=this.places[key[0]].subarray(at,at+PLACE);if(!isSeen(
+view,place))continue;let pixels=cellSize(view,place);key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.
+needed=!0,coarse.has(j*width+i)||(choice.pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(
+name,key).filter(child=>{let[row2,column,size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.
+floor(block/width)-row2,block%width-column];return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.
+push(...choice.finer)}return chosen}};function isSeen({planes},[x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=
+-radius*length2(p.slice(0,3)))}function cellSize({eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(
+subtract2([x,y,z],eye))-radius,size):1;return size*.5*pixels/(halfHeight*away)}function wantedTiles(chosen){return[...chosen].
+filter(([name,{needed}])=>name!==ROOT&&needed).sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){
+let shown=new Map,hide=name=>{shown.delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.
+get(name)??{},done=finer.filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(
+name)?(done.forEach(hide),!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){
+let line=n=>Math.min(n*2**level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
 size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
 function vertexShares(count2){return Float32Array.from({length:SHARES.length*count2},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
 let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
@@ -663,20 +671,20 @@ geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.sc
 place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(layer.scene,moment,corners)},layer,place}}
 function placeAmong({rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(share*size-.5-before,0,nodes-
 1);return[at(u,columns,shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[i,j]){let{pyramid,geometry,mesh}=header,
-[level,row,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(
-n+tile*side,level,nodes);return[at(i,column,columns),at(j,row,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.
-part("position"),{frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(
-fromFrame(frame,local),center),[start,along]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/
-dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){let{header,parts}=scene,{scalars}=header,
-[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({name,steps,number}));for(let each of[
-scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.
-name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+between2*(after[n]-before[n]);values[each.
-name]=interpolated(corners,value)}return values}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(
+n+tile*side,level,nodes);return[at(i,column,columns),at(j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{
+data}=scene.part("position"),{frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+
+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,
+start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){let{header,parts}=scene,
+{scalars}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({name,steps,number}));
+for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.
+data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+between2*(after[n]-before[n]);
+values[each.name]=interpolated(corners,value)}return values}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
-subtract2(view.eye,scale2(geometry.center,w))),sparse=isSparse(header,settings),chosen=sparse?"ramp":s.kernel,kernel=signFree&&
+subtract2(view.eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2?"ramp":s.kernel,kernel=signFree&&
 chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[
 geometry.columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.
-two_sided||signFree||sparse?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(
+two_sided||signFree||sparse2?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(
 header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(
 kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,
 ...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,
@@ -1111,7 +1119,7 @@ header);this.playButton.hidden=this.track.hidden=this.paceRow.hidden=!varies&&!s
 button.hidden=!varies;this.paceMenu.value=String(this.viewer.player.pace),this.slider.disabled=!varies&&settings.motion===
 "off";let width=header&&this.date(header)?.length||8+withUnit("",header?.slices.timeUnit??"").length;this.timeText.style.
 minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,differences=(header?.differs??
-[]).filter(name2=>name2 in settings).map(name2=>{let label2=header?.table.find(row=>row.name===name2)?.label??name2,value=settings[name2];
+[]).filter(name2=>name2 in settings).map(name2=>{let label2=header?.table.find(row2=>row2.name===name2)?.label??name2,value=settings[name2];
 return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}),name=header?.name??"",title=differences.join(", ")||
 (options.named&&this.viewer.together.length<2?"":name),{first}=this,isApart=first!==this.viewer.player&&this.viewer.player.
 time!==first.time,moment=header&&isApart&&this.viewer.player.varies?this.moment(header):"";this.title.textContent=[title,
@@ -1264,9 +1272,9 @@ player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let sta
 now()-started,pixels=region.width*region.rows,factor=this.factor(samples),fixed=region.rows<region.height?this.fixed.strip:
 this.fixed.draft;program.price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.
 layers.reduce((sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.
-warm&&share<ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row={width,height,top:0,rows:1},[w,h]=[width,height].
-map(n=>Math.max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row,1),this.triangles=triangles;
-let fixed=[row,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(program,shown,
+warm&&share<ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row2={width,height,top:0,rows:1},[w,h]=[width,height].
+map(n=>Math.max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row2,1),this.triangles=triangles;
+let fixed=[row2,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(program,shown,
 region,1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){
 let{graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
 view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
@@ -1296,39 +1304,40 @@ pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;leve
 isFinite(error)&&side<=1)||side>limits.maxSideHeights*pixels)break}return level})}triangles(levels,joins){let sizes=Array.
 from(levels,level=>level<0?0:this.limits.tileCells>>level),index=new Uint32Array(6*sizes.reduce((sum,size)=>sum+size*size,
 0)),end=0;return levels.forEach((level,block)=>{level>=0&&(end=this.add(index,end,level,joins,block))}),index.slice(0,end)}add(index,start,level,joins,block){
-let{rows,columns,limits}=this,{shape:shape2,cells}=this.mesh,step=1<<level,count2=limits.tileCells/step+1,row=rows[Math.
+let{rows,columns,limits}=this,{shape:shape2,cells}=this.mesh,step=1<<level,count2=limits.tileCells/step+1,row2=rows[Math.
 floor(block/columns.length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+
 side]),snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count2*count2);for(let b=0;b<
-count2;b+=1){let y=Math.min(b*step,row.cells);for(let a=0;a<count2;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===
-0||b===count2-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count2-1)&&(py=snapped(py,row.cells,a?right:left)),
-nodes[b*count2+a]=(row.first+py)*shape2[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=
-p,index[end++]=q,index[end++]=r)};for(let b=0;b<count2-1;b+=1){let y=Math.min(row.first+Math.min(b*step,row.cells),shape2[0]-
+count2;b+=1){let y=Math.min(b*step,row2.cells);for(let a=0;a<count2;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===
+0||b===count2-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count2-1)&&(py=snapped(py,row2.cells,a?right:left)),
+nodes[b*count2+a]=(row2.first+py)*shape2[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=
+p,index[end++]=q,index[end++]=r)};for(let b=0;b<count2-1;b+=1){let y=Math.min(row2.first+Math.min(b*step,row2.cells),shape2[0]-
 2);for(let a=0;a<count2-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape2[1]-2);if(cells&&!cells[y*
 (shape2[1]-1)+x])continue;let at=b*count2+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count2+1],nodes[at+count2]];put(p,
 q,r),put(p,r,s)}}return end}},NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.
 count,this.width]=axis?[columns+1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(
 this.count*this.width)}at(line,along){return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=
 1){let[first,last]=[this.at(0,n),this.at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=
-this.values[last]=most}}};function eachBlock({step,row,column,shape:shape2},[rows,columns],call){let bottom=Math.min(row+
-(shape2[0]<<step),rows),right=Math.min(column+(shape2[1]<<step),columns);for(let j=row;j<bottom;j+=1){let own=(j-row>>step)*
-shape2[1];for(let i=column;i<right;i+=1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){
-let around2=(n,by,count2,closed)=>closed?(n+by+count2)%count2:clamp(n+by,0,count2-1);return nodes.map((own,block)=>{let[
-j,i]=[Math.floor(block/columns),block%columns],least=own;for(let by of[-1,1]){let row=around2(j,by,rows,periodic[0]),column=around2(
-i,by,columns,periodic[1]);least=Math.min(least,nodes[row*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){
-let nodes=new Int16Array(blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{
-part.levels[own]>=0&&(target[block]=value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(
-nodes,blocks,periodic),strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,
-blocks,(block,own)=>{levels[own]=Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+step)}let lines=[
-new Lines(blocks,0),new Lines(blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%
-blocks[1]];[[j,i],[i,j]].forEach(([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(
-line+far,along);values[at]=Math.max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());
-let joined=parts.map(part=>bordersOf(part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}
-function bordersOf({step,row,column,shape:shape2,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),
-changed=!1;for(let side of[0,1,2,3]){let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{
-let place=[Math.floor(own/shape2[1]),own%shape2[1]],[first,start]=axis?[column,row]:[row,column],pick=Math.min(first+(place[axis]+
-far)*size,line.count-1),from=start+place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<
-end;n+=1)coarsest=Math.max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<
-end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
+this.values[last]=most}}};function eachBlock({step,row:row2,column,shape:shape2},[rows,columns],call){let bottom=Math.min(
+row2+(shape2[0]<<step),rows),right=Math.min(column+(shape2[1]<<step),columns);for(let j=row2;j<bottom;j+=1){let own=(j-row2>>
+step)*shape2[1];for(let i=column;i<right;i+=1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,
+columns],periodic){let around2=(n,by,count2,closed)=>closed?(n+by+count2)%count2:clamp(n+by,0,count2-1);return nodes.map(
+(own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],least=own;for(let by of[-1,1]){let row2=around2(j,by,rows,
+periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.min(least,nodes[row2*columns+i],nodes[j*columns+column])}
+return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(
+part,blocks,(block,own)=>{part.levels[own]>=0&&(target[block]=value(part.levels[own]))});for(let part of parts)put(nodes,
+part,()=>part.step);let finest=finestAround(nodes,blocks,periodic),strides=new Int16Array(nodes.length);for(let part of parts){
+let{levels,step}=part;eachBlock(part,blocks,(block,own)=>{levels[own]=Math.min(levels[own],finest[block]+most-step)}),put(
+strides,part,level=>level+step)}let lines=[new Lines(blocks,0),new Lines(blocks,1)];for(strides.forEach((stride,block)=>{
+let[j,i]=[Math.floor(block/blocks[1]),block%blocks[1]];[[j,i],[i,j]].forEach(([line,along],axis)=>{let{values}=lines[axis];
+for(let far of[0,1]){let at=lines[axis].at(line+far,along);values[at]=Math.max(values[at],stride)}})});;){lines.forEach(
+(line,axis)=>periodic[axis]&&line.close());let joined=parts.map(part=>bordersOf(part,lines));if(!joined.some(([,changed])=>changed))
+return joined.map(([borders])=>borders)}}function bordersOf({step,row:row2,column,shape:shape2,levels},lines){let size=1<<
+step,borders=new Int8Array(4*levels.length),changed=!1;for(let side of[0,1,2,3]){let[axis,far]=[side>>1,side&1],line=lines[axis],
+{values}=line;levels.forEach((level,own)=>{let place=[Math.floor(own/shape2[1]),own%shape2[1]],[first,start]=axis?[column,
+row2]:[row2,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+place[1-axis]*size,end=Math.max(
+Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.max(coarsest,values[line.at(pick,
+n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,
+values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
 alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;anchor=[
 0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts){
@@ -1367,29 +1376,29 @@ get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.use
 object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);
 this.stopTracing(),this.earth.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).
 digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.
-resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared=whole?graphics.
-common.get(whole):void 0,object=shared?.object??graphics.counted(make()),resource=shared??{kind,object,count:0,key:whole,
-users:0};return resource.users+=1,this.resources.set(name,resource),shared||(resource.count=fill(object)||0),whole&&graphics.
-common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{let target=elements?
-gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(
-target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.
-meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(
-this.part("mesh"),this.part("blocks"));let{shape:shape2,periodic}=geometry,parts={blocks:this.part("mesh").data,cells:this.
-parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape:shape2,periodic,...parts},mesh)}cornersAt(place){
-let{triangles,shape:shape2}=this.header.geometry;return triangles?cornersOf(this.part("triangles").data,place):cornersAt(
-shape2,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){return this.
-drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String([drawn.levels,
-drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.every(step=>this.
-resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.header;return slices.trace?[...this.resources.
-keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.columns.size:
-0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,steps=String(
-this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&
-stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=anchor;let fill=array=>this.
-fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("array","VertexArray","",make,
-fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.header,{shape:shape2,rows,
-columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.key(["\
-triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape2,[
-...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
+resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?
+graphics.common.get(whole):void 0,object=shared2?.object??graphics.counted(make()),resource=shared2??{kind,object,count:0,
+key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared2||(resource.count=fill(object)||0),
+whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
+let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
+target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
+fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.
+meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape:shape2,periodic}=geometry,parts={blocks:this.
+part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape:shape2,periodic,...parts},
+mesh)}cornersAt(place){let{triangles,shape:shape2}=this.header.geometry;return triangles?cornersOf(this.part("triangles").
+data,place):cornersAt(shape2,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
+return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String(
+[drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.
+every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.header;return slices.trace?
+[...this.resources.keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.
+columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,
+steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==
+this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=
+anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("\
+array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.
+header,{shape:shape2,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
+key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape2,
+[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
 null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("p\
 osition").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(
 nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(
@@ -1475,42 +1484,42 @@ host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choos
 key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(name)?.
 scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.
 map(({scene,key},n)=>{let{levels,shape:shape2}=scene.levels(sight);for(let finer of shown.get(names[n])??[])this.hide(levels,
-shape2[1],finer,names[n]);let{pyramid}=this.root.header,[row,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<key[0]);
-return{step:key[0],row,column,shape:shape2,levels}});return this.layers=layers,this.setTriangles(names,parts),layers.map(
-({scene})=>scene)}hide(levels,columns,finer,above){let[row,column,size]=this.pyramid?.finerPart(keyOf(finer),above)??[0,
-0,0];for(let j=row;j<Math.min(row+size,levels.length/columns);j+=1)levels.fill(-1,j*columns+column,j*columns+Math.min(column+
-size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[names[n],levels]));if(drawn===this.drawn&&
-this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.header,most=Math.
-log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.triangles?[]:join(parts,blocks,geometry.periodic,
-most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){let{header}=this.
-root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.pyramid,this.
-root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(
-header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=
-this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,header.pyramid.depth);
-this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(),this.trim(steps);for(let name of wanted)this.isHere(
-name,steps)&&this.load(name,steps,until);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));
-return this.wanted=wanted.length,this.pending=wanted.filter(name=>!this.isHere(name,steps)||!this.isLoaded(name,steps)).
-length,this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,steps,depth){let needs=[steps,
-...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.failed.has(this.need(name,some))),found=names.map(name=>{
-let[level,row,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([level,row,column]));)[level,row,column]=[level+1,row>>
-1,column>>1];return level<depth?nameOf([level,row,column]):ROOT});return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){
-let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){
-let scene=this.tiles.get(name)?.scene;return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.
-tiles.get(name)?.scene;return!scene||this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.
-host.refine(),!1):(scene.load(steps),!0)}ask(){let{requests,lifetime}=this.host;!requests||this.isWaiting||!(this.missing.
-length||this.hasAsked)||(this.isWaiting=!0,lifetime.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=this.
-missing.length>0;let lacking=(name,step)=>this.tiles.get(name)?.scene?.lacking(step)??flowsOf(this.root.header,step),needed=this.
-missing.flatMap(name=>this.chosen.steps.flatMap(step=>lacking(name,step))),steps=[...new Set(needed)].sort((a,b)=>a-b);requests.
-wantTiles(this.missing.map(keyOf),steps)},REQUEST_MS))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(
-([,a],[,b])=>b.used-a.used)){let{parts,scene,used}=tile,kind=scene?.header.slices.trace?"flow":"slices",held=[...parts.keys()].
-filter(part=>part.startsWith(`${kind}/`)),needed=scene?steps.flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.
-slice(0,Math.max(held.length-STEPS_HELD2[kind],0))){let step=stepOf(part);if(needed.includes(step))continue;for(let each of[
-kind,"extra"])this.release(tile,`${each}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.
-header));for(let each of values)this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;
-bytes+=scene?.tracedBytes??0,bytes>(this.host.options.source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){
-let tile=this.tiles.get(name);tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);
-this.tiles.delete(name)}release(tile,part){part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.
-delete(part)}};function viewState({header,camera,anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,
+shape2[1],finer,names[n]);let{pyramid}=this.root.header,[row2,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<
+key[0]);return{step:key[0],row:row2,column,shape:shape2,levels}});return this.layers=layers,this.setTriangles(names,parts),
+layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row2,column,size]=this.pyramid?.finerPart(keyOf(finer),
+above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/columns);j+=1)levels.fill(-1,j*columns+column,j*columns+
+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[names[n],levels]));if(drawn===
+this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.
+header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.triangles?[]:join(parts,blocks,
+geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){
+let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
+pyramid,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),planes:camera.
+planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.tiles.
+get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,
+header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(),this.trim(steps);for(let name of wanted)
+this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,
+steps,until));return this.wanted=wanted.length,this.pending=wanted.filter(name=>!this.isHere(name,steps)||!this.isLoaded(
+name,steps)).length,this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,steps,depth){let needs=[
+steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.failed.has(this.need(name,some))),found=names.map(
+name=>{let[level,row2,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([level,row2,column]));)[level,row2,column]=[
+level+1,row2>>1,column>>1];return level<depth?nameOf([level,row2,column]):ROOT});return[...new Set(found)].filter(name=>name!==
+ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.
+length-1]).length===0}isLoaded(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||(scene?.isLoaded(steps)??
+!1)}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||this.isLoaded(name,steps)?!0:performance.
+now()>until||!scene.make(steps,until)?(this.host.refine(),!1):(scene.load(steps),!0)}ask(){let{requests,lifetime}=this.host;
+!requests||this.isWaiting||!(this.missing.length||this.hasAsked)||(this.isWaiting=!0,lifetime.later(()=>{if(this.isWaiting=
+!1,this.isOver)return;this.hasAsked=this.missing.length>0;let lacking=(name,step)=>this.tiles.get(name)?.scene?.lacking(
+step)??flowsOf(this.root.header,step),needed=this.missing.flatMap(name=>this.chosen.steps.flatMap(step=>lacking(name,step))),
+steps=[...new Set(needed)].sort((a,b)=>a-b);requests.wantTiles(this.missing.map(keyOf),steps)},REQUEST_MS))}trim(steps){
+let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,scene,used}=tile,kind=scene?.
+header.slices.trace?"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}/`)),needed=scene?steps.
+flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-STEPS_HELD2[kind],0))){
+let step=stepOf(part);if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(tile,`${each}/${step}`);
+let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)this.release(tile,
+each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>(this.host.options.
+source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();
+for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cm\
+ap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};function viewState({header,camera,anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,
 local=toFrame(geometry.frame,subtract2(focus,geometry.center)),range=constants.anchorRange*2*camera.height,isFar=v2=>v2.
 some(c=>Math.abs(c)>range);return{focus,anchor:isFar(subtract2(local,anchor))?isFar(local)?local:[0,0,0]:anchor,eye:camera.
 eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(rows*density,1)}}var STILL_MS=160,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
@@ -1568,39 +1577,39 @@ this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.opt
 options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isHeld(){
 return performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.panel.
 showAxes(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){
-let scenes=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.pending??0),scenes}draw(){this.
-frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.
-sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&
-this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,
-[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));width===this.canvas.width&&height===this.
-canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.state,
-this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||!header?
-this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(this.stage.
-clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){let[
-before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){let{header,scene,player,shown,
-lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.
-slices.steps):[],steps=this.missing([moment[0],moment[1],...this.next,...ahead]),{source,isComing}=this.options;steps.length&&
-source?.hasSteps&&!isComing?.()&&this.requests?.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),
-until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,isMade,this.renderer.leavesOut),
-isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.shown=moment:(lacking.
-length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){tile!==void 0&&this.
-tiles?.fail(tile,steps),this.panel.tell(reason)}missing(steps){return[...new Set(steps.flatMap(step=>this.scene?.lacking(
-step)??[]))]}frame(now,until){if(this.options.streamed)return this.wait(now);if(!(this.lifetime.isOver||this.graphics.isLost||
-!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(now),this.drawPicture(
-this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}wait(now){
-this.camera||this.place(),this.playing&&this.isPainted&&this.advance(now)}paint(picture,left,width,isSharp){this.renderer.
-show(picture,left,width,isSharp),this.isPainted=!0,this.root.dataset.drawn="true",this.root.dataset.frames=String(this.renderer.
-frames),this.panel.wait([],!0,!isSharp),isSharp&&this.panel.clear(),this.setSharp(isSharp&&!this.playing),this.playing&&
-this.request()}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(header,
-this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){if(!this.camera)return!1;
-let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.length?
-tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);this.
-camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)return;if(program.error){
-this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||!this.
-scene?.earth.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,shown,until);this.root.
-dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.scene.pickers,
-header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){let{
-player,options}=this,isMade=steps=>(this.next=steps,options.streamed?!0:!this.missing(steps).length&&!!this.scene?.make(
+let scenes2=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.pending??0),scenes2}draw(){
+this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.
+dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.
+isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.
+stage,[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));width===this.canvas.width&&height===
+this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.
+state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||
+!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(
+this.stage.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){
+let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){let{header,scene,player,
+shown,lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+
+n)%header.slices.steps):[],steps=this.missing([moment[0],moment[1],...this.next,...ahead]),{source,isComing}=this.options;
+steps.length&&source?.hasSteps&&!isComing?.()&&this.requests?.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.
+slice(0,2),until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,isMade,this.
+renderer.leavesOut),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.
+shown=moment:(lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){
+tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}missing(steps){return[...new Set(steps.flatMap(step=>this.
+scene?.lacking(step)??[]))]}frame(now,until){if(this.options.streamed)return this.wait(now);if(!(this.lifetime.isOver||this.
+graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(
+now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(
+error))}}wait(now){this.camera||this.place(),this.playing&&this.isPainted&&this.advance(now)}paint(picture,left,width,isSharp){
+this.renderer.show(picture,left,width,isSharp),this.isPainted=!0,this.root.dataset.drawn="true",this.root.dataset.frames=
+String(this.renderer.frames),this.panel.wait([],!0,!isSharp),isSharp&&this.panel.clear(),this.setSharp(isSharp&&!this.playing),
+this.playing&&this.request()}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(
+header,this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){if(!this.camera)
+return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.
+length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);
+this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)return;if(program.
+error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||
+!this.scene?.earth.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,shown,until);this.
+root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.scene.
+pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){
+let{player,options}=this,isMade=steps=>(this.next=steps,options.streamed?!0:!this.missing(steps).length&&!!this.scene?.make(
 steps,now));this.next=[],this.isPainted=!1,!(!player.playing||!player.advance(now,isMade))&&(player.varies?options.onTime?.(
 player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
 let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let anchor=scene?.
@@ -1611,10 +1620,10 @@ let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!
 view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
 controls",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
-height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes){let sources=scenes.
-map(({source})=>source),isSame=this.shown.length===scenes.length&&this.shown.every(({source},n)=>source===sources[n]);if(this.
-shown=scenes,isSame||this.open(scenes.length,n=>({source:sources[n]})),scenes.forEach(({header},n)=>this.viewers[n].setHeader(
-header)),scenes.forEach(({parts},n)=>parts.forEach(part=>this.viewers[n].setPart(part))),!isSame)for(let{requests}of this.
+height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.
+map(({source})=>source),isSame=this.shown.length===scenes2.length&&this.shown.every(({source},n)=>source===sources[n]);if(this.
+shown=scenes2,isSame||this.open(scenes2.length,n=>({source:sources[n]})),scenes2.forEach(({header},n)=>this.viewers[n].setHeader(
+header)),scenes2.forEach(({parts},n)=>parts.forEach(part=>this.viewers[n].setPart(part))),!isSame)for(let{requests}of this.
 viewers)requests?.open()}open(count2,own=()=>({})){this.dispose();for(let n=0;n<count2;n+=1){let follower=n?{controls:!1,
 follows:this.first}:{},viewer=new Viewer(this,{...this.options,...this.reports(n),...own(n),...follower});Object.assign(
 viewer.root.style,{flex:"1 1 0",minWidth:"0"}),this.viewers.push(viewer)}for(let viewer of this.viewers)viewer.together=
@@ -1627,12 +1636,151 @@ m!==n&&call(other)};return{...told,onCamera:camera=>{follow(other=>other.setCame
 follow(other=>other.followTime(time)),tell("onTime",time)},onClock:clock=>{follow(other=>other.setClock(clock)),tell("on\
 Clock",clock)},onSetting:(name,value)=>{follow(other=>other.followSetting(name,value)),tell("onSetting",name,value)}}}};
 function define(){let name="flowtex-view";for(let n=2;customElements.get(name);n+=1)name=`flowtex-view-${n}`;customElements.
-define(name,FlowtexView)}define();function mountPage(element,scenes,options={}){let view=new FlowtexView;return view.options=
-options,element.append(view),view.scenes=scenes,view.first}var Messages=class{hasSteps=!0;send;requests=new Map;constructor(send){this.send=send}load=(key,steps,signal)=>{let request=String(
+define(name,FlowtexView)}define();function mountPage(element,scenes2,options={}){let view=new FlowtexView;return view.options=
+options,element.append(view),view.scenes=scenes2,view.first}function constantsOf(shader){let lines=shader.matchAll(/^const \w+ FLOWTEX_(\w+) =\s*(?:\w+\()?([^;]*?)\)?;/gm);return Object.
+fromEntries(Array.from(lines,([,name,values])=>[name,values.split(",").map(value=>Number(value.trim().replace(/u$/,"")))]))}
+function latticeOf(point,octave,u,c){let isOdd=(octave&1)===1,cells=2**(octave>>1),inverse2=(isOdd?Math.SQRT1_2:1)/cells/
+Number(u.u_noiseFinest),finest=isOdd?u.u_noiseOriginOdd:u.u_noiseOriginEven,past=isOdd?u.u_noiseRestOdd:[0,0,0],origin=finest.
+map(n=>Math.floor(n/cells)),rest=finest.map((n,axis)=>(n-origin[axis]*cells+past[axis])/cells),key=origin.map((n,axis)=>Math.
+imul(n,c.AXIS_PRIMES[axis]));return key[0]+=Math.imul(octave,c.OCTAVE_PRIME[0])+Math.imul(Number(u.u_seed),c.SEED_PRIME[0]),
+{here:add(rest,point,inverse2),inverse:inverse2,key}}function sparse(even,c){let bright=even>=(1-2*c.SPARSE_SHARE[0])*c.
+MOST_GRAIN[0];return c.MOST_GRAIN[0]*(bright?c.SPARSE_HIGH[0]:-c.SPARSE_LOW[0])}function octaveAt({here,inverse:inverse2,
+key},displacement,c,axes,isSparse2){let[toKey,toGrain]=c.HASH_FACTORS,sides=add(here,displacement,inverse2).slice(0,axes).
+map((x,axis)=>{let low=Math.floor(x),hash=n=>{let k=key[axis]+Math.imul(n,c.AXIS_PRIMES[axis])>>>0;return Math.imul(k^k>>>
+c.HASH_SHIFT[0],toKey)};return{hashes:[hash(low),hash(low+1)],shares:[1-x+low,x-low]}}),sum=0;for(let corner=0;corner<2**
+axes;corner+=1){let side=axis=>corner>>axis&1,hash=sides.reduce((all,{hashes},axis)=>all^hashes[side(axis)],0),share=sides.
+reduce((all,{shares:shares2},axis)=>all*shares2[side(axis)],1),grain=Math.imul(hash,toGrain);sum+=share*(isSparse2?sparse(
+grain,c):grain)}let spread=(all,{shares:[a,b]})=>all*(1-2*a*b);return sum/Math.sqrt(sides.reduce(spread,1)*c.GRAIN_VARIANCE[0])}
+function noiseAround(local,octave,isPlanar,isSparse2,u,c){let point=add(local,scale2(u.u_noiseOrigin,-1)),[fine,coarse]=[
+0,1].map(n=>latticeOf(point,octave+n,u,c)),axes=isPlanar?2:3;return displacement=>[octaveAt(fine,displacement,c,axes,isSparse2),
+octaveAt(coarse,displacement,c,axes,isSparse2)]}function kernelAt(x,u,c){return u.u_kernel===c.KERNEL_BOX[0]?1:u.u_kernel===c.KERNEL_RAMP[0]?u.u_sides===2?.5*(1-x):1-Math.
+abs(x):.5+.5*Math.cos(Math.PI*x)}function sideSteps(layers,side,spacing,u,c){let lags=u.u_lags,slope=layer=>layers(layer).
+slice(0,3),by=layers(0)[3]*Number(u.u_unit),first=side*lags.length,end=Math.min(layers(first+1)[3],lags[lags.length-1]),
+sign=side?1:-1,set=Number(u.u_samples),count2=u.u_sides===2?Math.floor(set/2):set-1,stepAt=along=>spacing/by/Math.max(length2(
+along),c.LEAST_SPEED[0]),[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],[lag,step]=[0,stepAt(before)],result2=[];
+for(let k=1;k<=count2;k+=1){lag+=step;let alive=clamp((end-lag)/step+1,0,1);if(!alive)break;for(;lag>lags[m]&&m<lags.length-
+1;m+=1)[before,from]=[after,lags[m]],after=slope(first+m+2);let bend=scale2(subtract2(after,before),1/(lags[m]-from)),at=lateness=>before.
+map((x,n)=>x+bend[n]*lateness),weight=alive*kernelAt(sign*k/(count2+1),u,c);result2.push({displacement:scale2(at(lag-from),
+lag*sign*by),weight}),step=stepAt(at(2*lag-from))}return result2}function shared(apart,near,c){let total2=1;for(let m=1;m<=
+c.SHARED_TERMS[0];m+=1){let d=m*m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*(c.BELL[0]+c.BELL_BEND[0]*
+d))}return total2}var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+
+Math.exp(-c.TONE_SLOPE[0]*contrast*value))}function pixelSum({at,settings,camera,rows}){let{header}=at.scene,{geometry,slices,
+shaders}=header;if(header.paper||isMoving(header,settings))return null;let c=constantsOf(shaders.fragment),focus=camera.
+state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0},focus,anchor:[0,0,0],density:1,
+pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*grain,layers=layersAt(
+at),sides=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0]?[...Array(Number(u.u_sides)).keys()]:[],[back=[],ahead=[]]=sides.
+map(side=>sideSteps(layers,side,spacing,u,c)),own=Math.max(kernelAt(0,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{
+displacement:[0,0,0],weight:own},...ahead],octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),
+octave=Math.floor(octaves),late=octaves-octave,local=toFrame(geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(
+local,octave,geometry.planar,isSparse(header,settings),u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.
+map(weight=>weight**2)),pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(
+u.u_spacing)*2**(late/2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*
+Math.SQRT1_2**n,near,c)),gain=alone*total(weights2)/Math.sqrt(squares*total(variance)),moved=mover(at),samples=steps.map(
+({displacement,weight})=>{let[fine,coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(
+displacement)??at.position,weight:weight/total(weights2),noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.
+weight*sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*
+mean,Number(settings.contrast),c)}}var SVG4="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacin\
+g","Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Another noise",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
+hann:"smooth",box:"even",ramp:"falling"},ROW=40;function row(name,count2,marks){let svg=document.createElementNS(SVG4,"s\
+vg");svg.setAttribute("viewBox",`0 0 ${count2} ${ROW}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute(
+"aria-hidden","true");for(let{at,y,height,fill,title}of marks){let rect=document.createElementNS(SVG4,"rect"),shape2={x:at+
+.04,y,width:.92,height:Math.max(height,.4),fill};for(let[key,value]of Object.entries(shape2))rect.setAttribute(key,`${value}`);
+let words=document.createElementNS(SVG4,"title");words.textContent=title,rect.append(words),svg.append(rect)}return dom(
+"div",{class:"explained-row"},[dom("span",{},[name]),svg])}var greyText=grey=>`rgb(${Array(3).fill(Math.round(255*grey)).
+join()})`,signed=value=>`${value<0?"−":"+"}${Math.abs(value).toFixed(2)}`,Explanation=class{options;controls=dom("div",
+{class:"explained-controls"});strip=dom("div",{class:"explained-strip"});words=dom("p",{class:"explained-sum",role:"stat\
+us"});chosen=new Map;shows=new Map;viewer=null;sum=null;isBegun=!1;constructor(element){this.options={controls:!1,explainer:{
+explain:pixel=>this.tell(pixelSum(pixel)),clear:()=>{this.tell(null)}}};for(let slider of SLIDERS)this.controls.append(this.
+slider(slider));this.controls.append(this.menu(),this.box());let panel=dom("div",{class:"explained"},[this.controls,this.
+strip,this.words]);element.after(panel),this.tell(null)}attach(view){let viewer=this.viewer=view.first;view.addEventListener(
+"frame",()=>this.begin()),view.addEventListener("camera",()=>this.follow()),this.isBegun=!1,viewer.setSettings(Object.fromEntries(
+this.chosen));for(let[name,show]of this.shows)name in viewer.settings&&show(viewer.settings[name]);this.shows.get(ZOOM)?.(
+0)}begin(){this.isBegun||(this.isBegun=!0,this.viewer?.card.choose(...FIRST_POINT))}follow(){let{viewer}=this;viewer?.camera&&
+this.shows.get(ZOOM)?.(Math.log2(viewer.camera.zoom)),viewer?.card.update()}change(name,value){let{viewer,sum}=this;if(name!==
+ZOOM&&this.chosen.set(name,value),!!viewer?.camera){if(name===ZOOM){let{camera}=viewer,point=sum?.samples[sum.middle].position,
+place=(point&&camera.project(point))??[0,0];camera.zoomBy(2**Number(value)/camera.zoom,...place),viewer.reportCamera()}else
+viewer.choose(name,value);viewer.card.update()}}slider([name,label,low,high,step]){let range={min:`${low}`,max:`${high}`,
+step:`${step}`},input=dom("input",{type:"range","data-setting":name,...range}),output=dom("output"),write=value=>{output.
+textContent=name===ZOOM?`×${numberText(2**value,2)}`:numberText(value,2)};return input.addEventListener("input",()=>{write(
+input.valueAsNumber),this.change(name,input.valueAsNumber)}),this.shows.set(name,value=>{input.value=String(value),write(
+Number(value))}),dom("label",{},[dom("span",{},[label]),output,input])}menu(){let options=Object.entries(KERNELS).map(([
+value,name])=>dom("option",{value},[name])),input=dom("select",{"data-setting":"kernel"},options);return input.addEventListener(
+"change",()=>this.change("kernel",input.value)),this.shows.set("kernel",value=>{input.value=String(value)}),dom("label",
+{},[dom("span",{},["Kernel"]),input])}box(){let input=dom("input",{type:"checkbox","data-setting":"lod"});return input.addEventListener(
+"change",()=>this.change("lod",input.checked)),this.shows.set("lod",value=>{input.checked=!!value}),dom("label",{class:"\
+explained-box"},[input,dom("span",{},["Level of detail"])])}tell(sum){if(this.sum=sum,!sum)return this.words.replaceChildren(
+"Click a point of the picture."),this.strip.replaceChildren(),[];let{samples,mean,gain,grey,level}=sum,most=Math.max(...samples.
+map(({weight})=>weight)),products=samples.map(({weight,noise})=>weight*noise),largest=Math.max(...products.map(Math.abs),
+1e-9),marks=mark=>samples.map(({weight,noise},at)=>{let title=`sample ${at-sum.middle}: weight ${weight.toFixed(3)}, noi\
+se ${signed(noise)}`;return{at,title,...mark(at)}}),noises=marks(n=>({y:0,height:ROW,fill:greyText(samples[n].grey)})),weights2=marks(
+n=>{let height=samples[n].weight/most*ROW;return{y:ROW-height,height,fill:"currentColor"}}),both=marks(n=>{let height=Math.
+abs(products[n])/largest*ROW/2;return{y:products[n]>0?ROW/2-height:ROW/2,height,fill:"currentColor"}}),ends=dom("div",{class:"\
+explained-ends"},[dom("span",{},["← where the particle was"]),dom("span",{},["where it will be →"])]);this.strip.replaceChildren(
+row("noise",samples.length,noises),row("weight",samples.length,weights2),row("product",samples.length,both),ends);let swatch=dom(
+"span",{class:"explained-pixel"});return swatch.style.background=greyText(grey),this.words.replaceChildren(`${samples.length}\
+ samples at level ${level.toFixed(1)}. Sum of the products: ${signed(mean)}; `,`times ${gain.toFixed(2)}, so that the co\
+ntrast is the same for every K: `,dom("strong",{},[signed(gain*mean)]),", this grey: ",swatch),samples}};var LOADED_HEIGHTS=.5,KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained",scenes=new Map,texts=new Map,underway=new Map;function handedOver(address,takers){
+let name=address.replace(/^.*\//,"").replace(/\.js$/,""),begun=underway.get(address);if(begun)return begun;let result2=new Promise(
+(resolve,reject)=>{let script=document.createElement("script");takers.set(name,resolve),script.src=address,script.onload=
+()=>script.remove(),script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.head.append(script)}).finally(
+()=>underway.delete(address));return underway.set(address,result2),result2}async function fetchScene({dataset:{scene=""}}){
+let{headers,parts}=await handedOver(scene,scenes),apart=digest=>handedOver(scene.replace(/[^/]*$/,`${digest}.js`),texts),
+known=new Map,result2=headers.map(header=>({header:{...headers[0],...header},parts:[]})),read=async(info,text)=>partOfText(
+info,text??await apart(info.digest));return await Promise.all(parts.map(async([view,info,text])=>{let part=known.get(info.
+digest)??read(info,text);known.set(info.digest,part),result2[view].parts.push({...await part,name:info.name})})),result2}
+function groundAround(element){for(let at=element.parentElement;at;at=at.parentElement){let[r,g,b,a=1]=(getComputedStyle(
+at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);if(a>0)return[r/255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;view=null;isWanted=!1;isLoading=!1;constructor(element){
+this.element=element,this.explanation=element.closest(EXPLAINED)&&new Explanation(element);let within=heights=>({rootMargin:`${100*
+heights}% 0%`}),observe=(heights,call)=>new IntersectionObserver(([entry])=>call(entry.isIntersecting),within(heights)).
+observe(element);observe(LOADED_HEIGHTS,isNear2=>isNear2&&void this.show()),observe(KEPT_HEIGHTS,isNear2=>isNear2||this.
+leave())}async show(){if(this.isWanted=!0,this.view||this.isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await fetchScene(
+element);if(!this.isWanted)return;let ground=groundAround(element);for(let{header}of data)header.background=ground;let{explanation}=this,
+view=this.view=new FlowtexView;view.options={guarded:!0,label:element.dataset.label,...explanation?.options},element.append(
+view),view.scenes=data,explanation?.attach(view),this.watch()}catch(error){element.title=`This view is a picture only: ${error instanceof
+Error?error.message:error}`}finally{this.isLoading=!1}}watch(){let{element}=this,look=()=>{if(element.querySelector('[da\
+ta-sharp="false"]'))return;seen.disconnect(),element.dataset.live="true";let isCalm=matchMedia("(prefers-reduced-motion:\
+ reduce)").matches;"plays"in element.dataset&&!isCalm&&this.view?.first.play()},seen=new MutationObserver(look);seen.observe(
+element,{subtree:!0,attributeFilter:["data-sharp"]})}leave(){this.isWanted=!1,this.view&&(this.view.dispose(),this.view.
+remove(),this.view=null,delete this.element.dataset.live)}recolour(){let background=groundAround(this.element);for(let viewer of this.
+view?.viewers??[])viewer.recolour({background})}};function showLiveViews(){let elements=document.querySelectorAll(".flow\
+tex-live");if(!elements.length)return;window.flowtexScene=(name,scene)=>scenes.get(name)?.(scene),window.flowtexPart=(digest,text)=>texts.
+get(digest)?.(text);let views=Array.from(elements,element=>new LiveView(element)),recolour=()=>views.forEach(view=>view.
+recolour()),attributeFilter=["data-theme","class"];new MutationObserver(recolour).observe(document.documentElement,{attributeFilter}),
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change",recolour)}var Embedded=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(header,packed,known,texts2){this.header=
+header,this.known=known,this.texts=texts2;for(let part of packed){let[{name,digest},text]=part,tile=tilePart(name)?.[0];
+tile?this.tiles.set(tile,[...this.tiles.get(tile)??[],part]):this.parts.push(part),tile&&text&&texts2.set(digest,text)}}load=(key,steps)=>{
+let needed=((key&&this.tiles.get(nameOf(key)))??[]).filter(([{name}])=>{let part=tilePart(name)?.[1]??"",step=stepOf(part),
+isOfAll=part.startsWith("scalars/")&&!isOfStep(part,step,this.header);return Number.isNaN(step)||steps.includes(step)||isOfAll});
+return Promise.all(needed.map(packed=>this.unpacked(packed)))};async unpacked([info,text]){let{digest,name}=info,part=this.
+known.get(digest);return part?{...part,name}:partOfText(info,text||(this.texts.get(digest)??""))}async kept(packed){let part=await this.
+unpacked(packed);return this.known.set(part.digest,part),part}};var HEIGHT_PX=480;function showPacked(element,{headers,parts},openStore,report){let known=new Map,texts2=new Map,embedded=headers.
+map((header,n)=>{let own=parts.flatMap(([view2,info,text])=>view2===n?[[info,text]]:[]);return new Embedded({...headers[0],
+...header},own,known,texts2)}),isComing=!0,view=new FlowtexView;return view.options={isComing:()=>isComing},element.append(
+view),view.scenes=embedded.map(source=>{let{header}=source;return{header,parts:[],source:openStore?openStore(header):source}}),
+{view,filled:(async()=>{let{viewers}=view;for(let[n,source]of embedded.entries())for(let[m,part]of source.parts.entries()){
+report?.(n,m,source.parts.length);let unpacked=await source.kept(part);if(view.viewers!==viewers)return;viewers[n].setPart(
+unpacked)}isComing=!1;for(let viewer of viewers)viewer.change()})()}}function packedModule(scene,openStore){let mount=(element,settings={},height=HEIGHT_PX)=>{
+let{view,filled}=showPacked(element,scene,openStore);view.style.height=`${height}px`;for(let[name,value]of Object.entries(
+settings))for(let viewer of view.viewers)viewer.followSetting(name,value);return filled.catch(error=>view.first?.panel.fail(
+"The flow cannot be drawn.",error.message)),view};return{mount,render:({model,el})=>{let named=scene.headers[0].table.map(
+({name})=>[name,model.get(name)]),settings=Object.fromEntries(named.filter(([,value])=>value!=null)),view=mount(el,settings,
+Number(model.get("height"))||HEIGHT_PX);return()=>{view.dispose(),view.remove()}}}}function partsOfPage(){return Array.from(document.querySelectorAll("script[data-part]"),element=>{element.remove();let{view,
+part=""}=element.dataset;return[Number(view),JSON.parse(part),element.textContent??""]})}async function openPage(openStore){
+let place=document.getElementById("flowtex"),status=document.getElementById("status"),loading=document.getElementById("l\
+oading");try{let headers=JSON.parse(document.getElementById("headers")?.textContent??""),look=()=>{status.hidden=!place.
+querySelector('[data-failed="true"]'),loading.hidden=!status.hidden,status.textContent="This browser cannot draw the flo\
+w, for want of WebGL2; here is a picture of it.",!place.querySelector('.flowtex:not([data-drawn="true"])')&&(watch.disconnect(),
+document.getElementById("preview")?.remove(),loading.remove())},watch=new MutationObserver(look),attributeFilter=["data-\
+drawn","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let scene={headers,parts:partsOfPage()},
+{view,filled}=showPacked(place,scene,openStore,(n,part,parts)=>{let which=headers.length>1?` of view ${n+1}`:"";loading.
+lastElementChild.textContent=`${which}, ${part} of ${parts} parts`}),{root}=view.first;document.addEventListener("keydow\
+n",event=>forwardKeys(root,event)),await filled,loading.textContent="Drawing the first picture"}catch(error){loading.remove(),
+status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The flow cannot\
+ be drawn here: ${reason}`,error}}var Messages=class{hasSteps=!0;send;requests=new Map;constructor(send){this.send=send}load=(key,steps,signal)=>{let request=String(
 Math.random());return this.send({kind:"load",request,key,steps}),signal.addEventListener("abort",()=>{this.requests.delete(
 request),this.send({kind:"drop",request})}),new Promise((resolve,reject)=>{this.requests.set(request,error=>error?reject(
 new Error(error)):resolve([]))})};end({request,error}){this.requests.get(request)?.(error),this.requests.delete(request)}};var CAMERA_MS=100,TIME_MS=250,STILL_MS2=1500,STILL_FORMAT={type:"image/jpeg",quality:.9},HEADERS=["_header","_header_bes\
-ide"],ROOM=".flowtex-room { width: 100%; min-width: 160px; flex: 0 9999 auto }",HEIGHT_PX=480;function opened(message,buffers){
+ide"],ROOM=".flowtex-room { width: 100%; min-width: 160px; flex: 0 9999 auto }",HEIGHT_PX2=480;function opened(message,buffers){
 let graphics=sharedGraphics(),{view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[],lacking:[]};
 return infos.forEach((info,n)=>{let stock=graphics.stock.get(info.digest)?.part;if(stock||message.kind!=="offer"){let part=graphics.
 hold(stock??decoded(info,buffers[n]));delivery.parts.push({...part,name:info.name})}else delivery.lacking.push(info.name)}),
@@ -1670,14 +1818,14 @@ this.follow("camera",value=>{let camera=cameraOf(value);camera&&viewers.forEach(
 follow("time",time=>viewers.forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.
 setClock(Number(clock)))),this.follow("playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.
 panel.toggle(!!shown))}resize(){let[width,height]=this.model.get("size")??[0,0],{style,parentElement}=this.view;style.width=
-width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX}px`,parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){
-let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row=>[row.
-name,model.get(row.name)??row.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),camera:cameraOf(
-model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.early.splice(0))this.
-take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,value)})}take(delivery){
-let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.header.generation??0:-1;if(delivery.
-generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.generation!==generation&&name.includes(
-"/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.lacking.filter(name=>!isOld(
-name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){
-for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.adoptedStyleSheets=document.
-adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};var client_default={initialize,render};export{FlowtexView,Viewer,decoded,client_default as default,mountPage,partsOfFile};
+width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX2}px`,parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){
+let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row2=>[
+row2.name,model.get(row2.name)??row2.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),
+camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.early.
+splice(0))this.take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(
+name,value)})}take(delivery){let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.
+header.generation??0:-1;if(delivery.generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.
+generation!==generation&&name.includes("/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.
+lacking.filter(name=>!isOld(name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,
+view:delivery.view})}dispose(){for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.
+adoptedStyleSheets=document.adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};document.readyState==="loading"?document.addEventListener("DOMContentLoaded",showLiveViews):showLiveViews();return __toCommonJS(core_exports);})();

@@ -1,0 +1,3 @@
+
+export const { FlowtexView, Viewer, decoded, initialize, mountPage, partsOfFile, render } = flowtex;
+export default { initialize, render };
