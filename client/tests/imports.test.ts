@@ -25,9 +25,9 @@ const LAYERS = [
   "panel pointers",
   "viewer",
   "element",
-  "explanation widget",
-  "client openpage",
-  "page storepage live",
+  "packed explanation widget",
+  "openpage live",
+  "core store",
   "app/browser app/hints app/keys app/upload",
   "app/app",
 ].map((names) => names.split(" "));

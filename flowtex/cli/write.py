@@ -129,7 +129,7 @@ def movie(
 def export(
     *files: FILE,
     output: Annotated[
-        Path, Parameter(name=["--output", "-o"], help="Page to write, such as page.html.")
+        Path, Parameter(name=["--output", "-o"], help="Page (page.html) or module (flow.mjs) to write.")
     ],
     steps: Annotated[
         int | None,

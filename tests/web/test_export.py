@@ -201,7 +201,8 @@ def test_a_module_shows_its_flow_in_any_page(page: Page, tmp_path: Path) -> None
         box = view.bounding_box()
         assert box is not None
         assert box["height"] == height
-        assert view.locator("[data-name=samples] input").first.input_value() == samples
+        view.locator("[data-name=settings]").click()
+        assert view.locator("[data-setting=samples] output").inner_text() == samples
     page.evaluate("() => end()")
     assert page.locator(".flowtex-views").count() == 1
     assert asked == ["/", "/flow.mjs"]
