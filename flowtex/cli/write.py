@@ -129,7 +129,7 @@ def movie(
 def export(
     *files: FILE,
     output: Annotated[
-        Path, Parameter(name=["--output", "-o"], help="Page (page.html) or module (flow.mjs) to write.")
+        Path, Parameter(name=["--output", "-o"], help="File to write: page.html or flow.mjs.")
     ],
     steps: Annotated[
         int | None,
