@@ -1,10 +1,10 @@
 """How smooth the page is: ``python benchmarks/app.py``.
 
 A browser drags the view for some seconds, and counts the pictures; then it lets go, and the time
-until the full picture is there is taken. The browser draws, and after that the server. The same is
-done with PyVista's own trame
-viewer and a plain sphere, where that is installed (``pip install trame-pyvista``). Server,
-browser and this program share the processors, as they do on a small machine.
+until the full picture is there is taken. The browser draws, then the server, and then whom the
+page chooses by itself. The same is done with PyVista's own trame viewer and a plain sphere, where
+that is installed (``pip install trame-pyvista``). Server, browser and this program share the
+processors, as they do on a small machine.
 """
 
 from __future__ import annotations
@@ -50,12 +50,14 @@ server.start(port=0, host="127.0.0.1", open_browser=False, show_connection_info=
 """
 #: A page of ours, and the full picture of it.
 VIEW, SHARP = ".flowtex-views", '.flowtex[data-sharp="true"]'
-#: Has the server draw: without WebGL2 a page asks for its pictures.
-NO_WEBGL2 = """
-const getContext = HTMLCanvasElement.prototype.getContext;
-HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
-  return kind === "webgl2" ? null : getContext.call(this, kind, ...more);
-};"""
+#: Chooses who draws, as *Drawn by* does.
+CHOOSE = """
+try { sessionStorage["flowtex painter"] = "%s"; } catch { /* a page of no origin */ }"""
+PAINTERS = {
+    "browser": "by the browser",
+    "server": "by the server",
+    "": "by whom the page chooses",
+}
 #: Counts the pictures that a view of ours draws or an <img> shows, with the time of each.
 COUNT = """selector => {
   window.seen = [];
@@ -101,9 +103,9 @@ def drag(page: Any, seconds: float) -> tuple[float, float]:
 
 
 def measure(
-    browser: Any, script: str, words: list[str], image: str, seconds: float, *, served: bool
+    browser: Any, script: str, words: list[str], image: str, seconds: float, painter: str
 ) -> Smoothness:
-    """Start a page, drag it, and end it; tells what it was like where the server draws, or not."""
+    """Start a page, drag it, and end it; tells what it was like, drawn by the one that is named."""
     process = subprocess.Popen(
         [sys.executable, "-c", script, *words], stdout=subprocess.PIPE, text=True
     )
@@ -112,8 +114,8 @@ def measure(
             found.group() for line in process.stdout if (found := re.search(r"http://\S+", line))
         )
         page = browser.new_page(viewport=SIZE)
-        if served:
-            page.add_init_script(NO_WEBGL2)
+        if painter:
+            page.add_init_script(CHOOSE % painter)
         page.goto(address)
         page.wait_for_selector(image, timeout=60_000)
         ours = script is OURS
@@ -146,14 +148,14 @@ def main() -> None:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"))
         cases = [
-            (OURS, [flow], VIEW, f"flowtex, {flow}, drawn by the {painter}", painter == "server")
-            for painter in ("browser", "server")
+            (OURS, [flow], VIEW, f"flowtex, {flow}, drawn {by}", painter)
+            for painter, by in PAINTERS.items()
             for flow in given.flows
         ]
-        cases.append((BARE, [], "img", "PyVista, a sphere", False))
-        for script, words, image, name, served in cases:
+        cases.append((BARE, [], "img", "PyVista, a sphere", ""))
+        for script, words, image, name, painter in cases:
             try:
-                found = measure(browser, script, words, image, given.seconds, served=served)
+                found = measure(browser, script, words, image, given.seconds, painter)
             except (StopIteration, TimeoutError) as error:
                 table.add_row(name, f"not to be had: {error}"[:60], "", "")
                 continue

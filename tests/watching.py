@@ -34,11 +34,19 @@ const getContext = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
   return kind === "webgl2" ? null : getContext.call(this, kind, ...more);
 };"""
+#: Has the browser draw, also on a processor, as after a choice of *Drawn by*.
+CHOSEN = """
+try { sessionStorage["flowtex painter"] ??= "browser"; } catch { /* a page of no origin */ }"""
 
 
 def server_draws(page: Any) -> None:
-    """Have the server draw what a page, or those of a context, will show."""
+    """Have the server draw what a page, or those of a context, will show, without WebGL2."""
     page.add_init_script(NO_WEBGL2)
+
+
+def browser_draws(page: Any) -> None:
+    """Have the browser draw what a page, or those of a context, will show."""
+    page.add_init_script(CHOSEN)
 
 
 def count(page: Page) -> int:

@@ -185,6 +185,7 @@ interface FakeView extends EventTarget {
 const views: FakeView[] = [];
 Object.assign(globalThis, { views });
 
+const CARD = "ANGLE (NVIDIA)";
 let generation = 0;
 const scene = (name: string) => ({ header: { name, generation: (generation += 1) }, parts: `/${name}.` });
 const one = scene("one");
@@ -196,17 +197,17 @@ async function rested(): Promise<void> {
   for (let n = 0; n < 20; n += 1) await settled();
 }
 
-function serve(webgl: boolean): void {
+function serve(card: string): void {
   server.answer = { ...start, timeBeside: null, clock: 0, playing: false };
-  server.webgl = webgl;
+  server.card = card;
   asked.length = 0;
   mock.method(globalThis, "fetch", (address: string) =>
     Promise.resolve({ ok: true, arrayBuffer: () => Promise.resolve(address) }),
   );
 }
 
-async function begun(webgl = true) {
-  serve(webgl);
+async function begun(card = CARD) {
+  serve(card);
   const component = shown(browser, place(), { begin: "begin", read: "read" });
   await rested();
   const view = views[views.length - 1];
@@ -247,7 +248,7 @@ test("the view shows what the server hands over, and follows it", async () => {
 });
 
 test("what changes while the client is loaded is taken over after that", async () => {
-  serve(true);
+  serve(CARD);
   const { exposed, leave } = shown(browser, place(), { begin: "begin", read: "read" });
   await Promise.resolve();
   await Promise.resolve();
@@ -289,7 +290,7 @@ test("what a person does is told to the server", async (context) => {
 });
 
 test("without WebGL2 the server draws, and a person may choose", async () => {
-  const { view, paint, taken } = await begun(false);
+  const { view, paint, taken } = await begun("");
   assert.deepEqual(asked[0], ["begin", "server"]);
   assert.ok(view.options.streamed && !view.viewers[0].own.source);
   assert.ok(taken().some(([name, part]) => name === "setPart" && part === "/one.controls"));
@@ -308,6 +309,27 @@ test("without WebGL2 the server draws, and a person may choose", async () => {
   await rested();
   assert.ok(!views[views.length - 1].log.some(([name]) => name === "paint"));
   assert.deepEqual(asked.at(-1), ["begin", "browser"]);
+});
+
+test("the browser draws first where it has a graphics card, or where a person has chosen it", async (context) => {
+  const kept = new Map<string, string>();
+  const sessionStorage = {
+    getItem: (key: string) => kept.get(key) ?? null,
+    setItem: (key: string, value: string) => kept.set(key, value),
+  };
+  const first = async (card: string) => {
+    const { leave } = await begun(card);
+    leave();
+    return asked[0][1];
+  };
+  const cards = ["", CARD, "ANGLE (Google, Vulkan (SwiftShader Device))", "llvmpipe, or similar", "Microsoft Basic Render"];
+  const painters = [];
+  for (const card of cards) painters.push(await first(card));
+  assert.deepEqual(painters, ["server", "browser", "server", "server", "server"]);
+  Object.assign(globalThis, { sessionStorage });
+  context.after(() => Reflect.deleteProperty(globalThis, "sessionStorage"));
+  (await begun(cards[2])).paint("browser");
+  assert.equal(await first(cards[2]), "browser");
 });
 
 test("a view that goes while it is loaded is not made", async () => {

@@ -61,7 +61,8 @@ export class FakeElement extends EventTarget {
 export const asked: unknown[][] = [];
 export const server = {
   answer: {} as object,
-  webgl: true,
+  /** What WebGL2 draws with; empty where there is none. */
+  card: "",
   called: [] as unknown[],
   push: (frame: object): void => void frame,
 };
@@ -98,6 +99,7 @@ export const page = Object.assign(new EventTarget(), {
   },
 });
 export const root = new FakeElement();
+const context = { RENDERER: 1, getExtension: () => null, getParameter: () => server.card };
 const session = {
   call: (...values: unknown[]) => {
     server.called = values;
@@ -126,7 +128,7 @@ Object.assign(globalThis, {
   document: Object.assign(new EventTarget(), {
     documentElement: root,
     baseURI: "http://page.test/",
-    createElement: () => ({ getContext: () => (server.webgl ? {} : null) }),
+    createElement: () => ({ getContext: () => (server.card ? context : null) }),
   }),
   Element: FakeElement,
   ResizeObserver: FakeObserver,

@@ -2,7 +2,7 @@
 
 ::
 
-    browser    <flowtex-view>: drags, wheel, controls       pictures (JPEG), without WebGL2
+    browser    <flowtex-view>: drags, wheel, controls       pictures (JPEG), without a card
                   |                ^                            ^
     trame      triggers         scenes, changes        remote controlled area
                   v                |                            |

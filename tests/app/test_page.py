@@ -18,7 +18,7 @@ from pages import new_context, painted
 from PIL import Image
 from served import start
 from waiting import wait_until
-from watching import Watch, count, difference, zoom_of
+from watching import Watch, browser_draws, count, difference, zoom_of
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page
@@ -73,6 +73,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def page(browser: Browser, folder: Path) -> Iterator[Page]:
     served = start("show", str(folder), "--samples", "5")
     context = new_context(browser, viewport=SIZE)
+    browser_draws(context)
     opened = context.new_page()
     wrong: list[str] = []
     opened.on("pageerror", lambda error: wrong.append(str(error)))

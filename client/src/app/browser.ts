@@ -1,7 +1,7 @@
 // The view of the page that trame serves: a Vue component around <flowtex-view>, whose module is loaded
 // beside the page. flowtex/app/streaming/element.py is the other side.
 //
-// Where there is no WebGL2, or a person wishes so, the server draws: its pictures come by the stream of
+// Where there is no graphics card, or a person wishes so, the server draws: its pictures come by the stream of
 // trame-rca, whose events the view does not need, as it moves the camera by itself.
 
 import type { CameraState } from "../camera.ts";
@@ -65,8 +65,27 @@ interface Props {
 
 const session = () => trame().client.getConnection().getSession();
 
-export function hasWebGL2(): boolean {
-  return document.createElement("canvas").getContext("webgl2") !== null;
+/** Names of what draws on the processor; VTK beside the server's data does so several times as fast. */
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+/** Under which a page keeps whom a person lets draw. */
+const CHOICE = "flowtex painter";
+
+/** Who draws best: the browser, where it has WebGL2 and a graphics card. */
+export function bestPainter(): Painter {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return "server";
+  const name = gl.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER;
+  return SOFTWARE.test(String(gl.getParameter(name))) ? "server" : "browser";
+}
+
+/** Whom a person lets draw, also after the page is loaded again. */
+function chosen(painter?: Painter): Painter | null {
+  try {
+    if (painter) sessionStorage.setItem(CHOICE, painter);
+    return sessionStorage.getItem(CHOICE) as Painter | null;
+  } catch {
+    return painter ?? null; // a frame may be refused a storage
+  }
 }
 
 class TrameView {
@@ -77,7 +96,7 @@ class TrameView {
   private readonly ended = new AbortController();
   private client: typeof Client | null = null;
   private view: FlowtexView | null = null;
-  private painter: Painter;
+  private painter: Painter = "browser";
   private scenes: Handed[] = [];
   /** Numbers of the scenes whose parts each view has. */
   private loaded: (number | undefined)[] = [];
@@ -93,15 +112,14 @@ class TrameView {
     this.props = props;
     this.emit = emit;
     this.element = element;
-    this.painter = hasWebGL2() ? "browser" : "server";
     const listener = (event: KeyboardEvent) => this.view && forwardKeys(this.view.first.root, event);
     document.addEventListener("keydown", listener, { signal: this.ended.signal });
   }
 
-  /** Begin, or go on with another painter. */
-  async paint(painter: Painter = this.painter): Promise<void> {
-    this.painter = painter;
-    const start = (await trame().trigger(this.props.begin, [painter])) as Beginning;
+  /** Begin, or go on with a painter that a person chooses. */
+  async paint(painter?: Painter): Promise<void> {
+    this.painter = chosen(painter) ?? bestPainter();
+    const start = (await trame().trigger(this.props.begin, [this.painter])) as Beginning;
     // What changes from here on, before there is a view, is taken over then.
     const early = (this.early = []);
     const address = new URL(start.client, document.baseURI).href;

@@ -9,9 +9,9 @@
         area.ui(style="height: 100%")
     area.settings.lod = False
 
-It is ``<flowtex-view>``, with its controls: drawn by the browser where that has WebGL2, and else
-here, as pictures. Whatever is changed through :attr:`FlowArea.settings`, or of the appearance, such
-as ``area.cmap = "magma"``, is drawn at once.
+It is ``<flowtex-view>``, with its controls: drawn by the browser where that has WebGL2 and a
+graphics card, and else here, as pictures. Whatever is changed through :attr:`FlowArea.settings`,
+or of the appearance, such as ``area.cmap = "magma"``, is drawn at once.
 """
 
 from __future__ import annotations
