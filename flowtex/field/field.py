@@ -29,7 +29,8 @@ from flowtex.field.derived import (
     followed_steps,
     speed_unit,
 )
-from flowtex.field.grids import grid_nodes
+from flowtex.field.grids.arrays import grid_nodes
+from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
 from flowtex.field.io.arrays import FieldArrays, TriangleArrays
 from flowtex.field.io.constructors import FieldConstructors
@@ -393,7 +394,7 @@ class FlowField(FieldConstructors):
         on_globe = self.projection is not None and self.projection.is_globe
         if self.triangles is not None:
             return TriangleSurface(self.points, self.triangles, self.valid, on_globe=on_globe)
-        return Surface(points, self.valid, self.periodic, on_globe=on_globe)
+        return GridSurface(points, self.valid, self.periodic, on_globe=on_globe)
 
     @cached_property
     def index_velocity(self) -> IndexVelocity:

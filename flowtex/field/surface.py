@@ -1,69 +1,55 @@
-"""A structured surface in space: nodes, tangents, and positions between the nodes.
+"""What every surface answers: where its nodes and cells are, and how large and how flat it is.
 
-The surface is a map from index space, (i, j) in cells, to space. Its tangents at the nodes are
-central differences, and :meth:`Surface.at` interpolates with Catmull-Rom cubics whose slopes at
-the nodes are those same tangents, so a displacement in index space and the displacement in space
-that it stands for agree to second order however much the cells are stretched. Both work on a
-copy of the nodes with one ghost line on each side: the periodic image where the axis closes on
-itself, the far side of a pole, a quadratic extrapolation where the axis ends.
+A position on a surface is two numbers, (i, j) in index space; what they mean is up to the surface.
+The kinds are :class:`~flowtex.field.grids.surface.GridSurface` and
+:class:`~flowtex.field.triangles.surface.TriangleSurface`.
 """
 
 from __future__ import annotations
 
-import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from functools import cached_property
-from itertools import product
 from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.blocks import bounds, row_blocks
-from flowtex.errors import FieldError
-from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
 from flowtex.field.metric import IndexVelocity, to_index_space
-from flowtex.field.poles import Pole, Poles, find_poles
-from flowtex.field.validation import finite_nodes
-
-#: Nodes closer than this share of the surface's extent lie at one point.
-SAME_POINT_SHARE = 1e-12
-#: Corners of the two triangles of a cell, as (j, i) from its first corner, and steps (j, i) to the
-#: cells across the edges opposite to them.
-CORNERS = np.array((((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0))))
-ACROSS = np.array((((0, 1), (0, 0), (-1, 0)), ((1, 0), (0, -1), (0, 0))))
-#: Lines from a pole over which the size of the cells comes to be their length alone.
-POLE_LINES = 8
+from flowtex.field.poles import Poles
 
 
-class Surface:
-    """Nodes of a structured surface, (J, I, 3), in the mesh's own units.
+class Surface(ABC):
+    """A surface in space with data at its nodes, in the mesh's own units.
 
-    ``valid`` (J, I) marks nodes that carry data. Where the (j, i) axis is ``periodic``, its last
-    line of nodes is the first one again, displaced by ``offset`` on a flat map. ``on_globe`` tells
-    that it lies on a globe around the origin, with north at +z.
+    Attributes
+    ----------
+    points
+        Positions of the nodes, (J, I, 3); a surface of triangles has one row.
+    valid
+        Nodes that carry data, (J, I).
+    has_position
+        Nodes with a position of their own, (J, I).
+    periodic
+        Whether the (j, i) axis closes on itself.
+    offset
+        What to add to a position when index j, or i, grows by one period, (2, 3).
+    on_globe
+        Whether it lies on a globe around the origin, with north at +z.
     """
 
-    def __init__(
-        self, points: Floats, valid: Bools, periodic: tuple[bool, bool], *, on_globe: bool = False
-    ) -> None:
-        self.valid = valid
-        self.periodic = periodic
-        self.on_globe = on_globe
-        #: Nodes with a position of their own, (J, I); the others have that of the nearest one.
-        self.has_position = known_positions(points, valid)
-        self.points = fill_blanked(points, self.has_position)
-        #: What to add to a position when index j, or i, grows by one period, (2, 3).
-        self.offset = np.stack(
-            [
-                np.mean(self.points[-1] - self.points[0], axis=0) * periodic[0],
-                np.mean(self.points[:, -1] - self.points[:, 0], axis=0) * periodic[1],
-            ]
-        )
+    points: Floats
+    valid: Bools
+    has_position: Bools
+    periodic: tuple[bool, bool]
+    offset: Floats
+    on_globe: bool
 
-    @cached_property
+    @property
     def poles(self) -> Poles | None:
         """The lines that have collapsed to a point with the surface closed around it, if any."""
-        return find_poles(self.points, self.has_position, self.valid, self.periodic)
+        return None
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -71,9 +57,100 @@ class Surface:
         return self.valid.shape[0], self.valid.shape[1]
 
     @property
+    @abstractmethod
     def last_index(self) -> tuple[float, float]:
-        """Greatest position (j, i) in index space."""
-        return self.shape[0] - 1, self.shape[1] - 1
+        """Greatest position (j, i)."""
+
+    @cached_property
+    @abstractmethod
+    def cells(self) -> Bools:
+        """Cells whose nodes are all valid, one number for each cell."""
+
+    @property
+    @abstractmethod
+    def placed_cells(self) -> Bools:
+        """Cells whose nodes have positions of their own, in the shape of :attr:`cells`."""
+
+    @abstractmethod
+    def nodes_of(self, cells: Bools) -> Indices:
+        """Return the nodes around some cells, (M, 4) or (M, 3), counted row by row."""
+
+    @cached_property
+    @abstractmethod
+    def cell_corners(self) -> list[Any]:
+        """For each corner of the cells, the index that takes an array over nodes to it."""
+
+    @cached_property
+    @abstractmethod
+    def cell_lengths(self) -> Floats:
+        """Length of each cell, in the shape of :attr:`cells`: no path through it is longer."""
+
+    @abstractmethod
+    def in_cells(self, vectors: Floats) -> Floats:
+        """Return the parts of vectors (..., 3), one for each cell, that lie in the cells."""
+
+    @property
+    @abstractmethod
+    def is_closed(self) -> bool:
+        """Whether it has no border at all."""
+
+    @cached_property
+    @abstractmethod
+    def drawn(self) -> Indices:
+        """Numbers of the triangles that are drawn."""
+
+    @abstractmethod
+    def is_drawn(self, number: Indices) -> Bools:
+        """Whether triangles (N,) are drawn."""
+
+    @abstractmethod
+    def corners_of(self, number: Indices) -> Indices:
+        """Nodes (N, 3) at the corners of triangles (N,), counted row by row."""
+
+    @abstractmethod
+    def beside(self, number: Indices, corner: int) -> Indices:
+        """Triangles (N,) across the edges opposite to a corner, -1 at a border."""
+
+    @abstractmethod
+    def index_of(self, number: Indices, weights: Floats) -> Floats:
+        """Positions (N, 2) as (i, j) of shares (N, 3) of the corners of triangles (N,)."""
+
+    @abstractmethod
+    def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
+        """Return a position (j, i) within one period, its triangle, and shares of corners (3,)."""
+
+    @abstractmethod
+    def node_near(self, index: Sequence[float]) -> tuple[int, int]:
+        """Return a node (j, i) of the cell at a position (j, i)."""
+
+    @abstractmethod
+    def wrap(self, index: Floats) -> Floats:
+        """Fold positions in index space back into one period, (..., 2) as (i, j)."""
+
+    @abstractmethod
+    def at(self, index: Floats) -> Floats:
+        """Return positions in space (..., 3) of positions (..., 2) as (i, j) in index space."""
+
+    @cached_property
+    @abstractmethod
+    def apart(self) -> Bools:
+        """Nodes of what is drawn that have a place of their own, (J, I); all where none has."""
+
+    @cached_property
+    @abstractmethod
+    def tangents(self) -> Floats:
+        """Derivatives of position by i and by j at the nodes, (2, J, I, 3)."""
+
+    @cached_property
+    @abstractmethod
+    def cell_size(self) -> Floats:
+        """Smooth measure of the size of the cells around each node, (J, I)."""
+
+    @cached_property
+    def closes(self) -> tuple[bool, bool]:
+        """Whether the (j, i) axis goes around in space, and is not repeated a period farther."""
+        j, i = np.linalg.norm(self.offset, axis=-1) <= 1e-6 * self.extent
+        return self.periodic[0] and bool(j), self.periodic[1] and bool(i)
 
     @cached_property
     def center(self) -> Floats:
@@ -88,152 +165,6 @@ class Surface:
     @cached_property
     def _bounds(self) -> Floats:
         return bounds(self.points if self.valid.all() else self.points[self.valid])
-
-    @cached_property
-    def cells(self) -> Bools:
-        """Cells whose four nodes are valid, (J - 1, I - 1)."""
-        v = self.valid
-        return np.asarray(v[:-1, :-1] & v[1:, :-1] & v[:-1, 1:] & v[1:, 1:])
-
-    @cached_property
-    def drawn(self) -> Indices:
-        """Numbers of the triangles that are drawn: two of each cell, along its first diagonal."""
-        first = 2 * np.flatnonzero(self.cells)
-        return np.stack([first, first + 1], axis=-1).ravel()
-
-    def is_drawn(self, number: Indices) -> Bools:
-        """Whether triangles (N,) are drawn."""
-        return np.asarray(self.cells.ravel()[number >> 1])
-
-    def corners_of(self, number: Indices) -> Indices:
-        """Nodes (N, 3) at the corners of triangles (N,), counted row by row."""
-        row, column = np.divmod(number >> 1, self.shape[1] - 1)
-        j, i = np.moveaxis(CORNERS[number & 1], -1, 0)
-        return np.asarray((row[:, None] + j) * self.shape[1] + column[:, None] + i)
-
-    def beside(self, number: Indices, corner: int) -> Indices:
-        """Triangles (N,) across the edges opposite to a corner, -1 at a border."""
-        lines = self.shape[0] - 1, self.shape[1] - 1
-        cell = [*np.divmod(number >> 1, lines[1])]
-        outside = np.zeros(len(number), dtype=bool)
-        for axis, count in enumerate(lines):
-            there = cell[axis] + ACROSS[number & 1, corner, axis]
-            if not self.closes[axis]:
-                outside |= (there < 0) | (there >= count)
-            cell[axis] = there % count
-        return np.where(outside, -1, 2 * (cell[0] * lines[1] + cell[1]) + 1 - (number & 1))
-
-    def index_of(self, number: Indices, weights: Floats) -> Floats:
-        """Positions (N, 2) as (i, j) of shares (N, 3) of the corners of triangles (N,)."""
-        place = np.einsum("nk,nkc->nc", weights, CORNERS[number & 1])
-        return np.asarray(place + np.stack(np.divmod(number >> 1, self.shape[1] - 1), -1))[:, ::-1]
-
-    def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
-        """Return a position (j, i) within one period, its triangle, and shares of corners (3,)."""
-        j, i = (float(x) for x in self.wrap(index[::-1])[::-1])
-        rows, columns = self.shape
-        if not (0 <= j <= rows - 1 and 0 <= i <= columns - 1):
-            msg = (
-                f"(j, i) is ({j:g}, {i:g}), outside the surface; expected j from 0 to {rows - 1} "
-                f"and i from 0 to {columns - 1}"
-            )
-            raise FieldError(msg)
-        # On a line of nodes a position belongs to two cells.
-        cells = [
-            {min(int(x), n - 2), max(math.ceil(x) - 1, 0)} for x, n in ((j, rows), (i, columns))
-        ]
-        for row, column in product(*(sorted(some, reverse=True) for some in cells)):
-            if self.cells[row, column]:
-                b, a = j - row, i - column
-                number = 2 * (row * (columns - 1) + column) + int(a < b)
-                shares = (1 - a, a - b, b) if a >= b else (1 - b, a, b - a)
-                return np.array([j, i]), number, np.array(shares)
-        msg = (
-            f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a point where the "
-            "surface is drawn"
-        )
-        raise FieldError(msg)
-
-    @cached_property
-    def closes(self) -> tuple[bool, bool]:
-        """Whether the (j, i) axis goes around in space, and is not repeated a period farther."""
-        j, i = np.linalg.norm(self.offset, axis=-1) <= 1e-6 * self.extent
-        return self.periodic[0] and bool(j), self.periodic[1] and bool(i)
-
-    @cached_property
-    def apart(self) -> Bools:
-        """Nodes of what is drawn that have a place of their own, (J, I); all where none has.
-
-        Where many nodes lie at one point, those nearest to a point beside it may be on the far
-        side; the nodes of the next line do better.
-        """
-        drawn, one = np.zeros((2, *self.shape), dtype=bool)
-        drawn.ravel()[self.corners_of(self.drawn)] = True
-        for axis in (0, 1):
-            lines, same = np.swapaxes(self.points, 0, axis), np.swapaxes(one, 0, axis)
-            steps = np.linalg.norm(np.diff(lines, axis=0), axis=-1)
-            together = steps <= SAME_POINT_SHARE * self.extent
-            same[:-1] |= together
-            same[1:] |= together
-        for pole in self.poles or ():
-            pole.lines(one)[pole.line] = True
-        return drawn & ~one if (drawn & ~one).any() else drawn
-
-    @cached_property
-    def padded(self) -> Floats:
-        """Nodes with one ghost line on each side, (J + 2, I + 2, 3)."""
-        good = self.has_position
-        padded = np.empty((self.shape[0] + 2, self.shape[1] + 2, 3))
-        rows, columns = padded[:, 1:-1], np.swapaxes(padded, 0, 1)
-        rows[1:-1] = self.points
-        rows[0], rows[-1] = _ghosts(rows[1:-1], good, self.offset[0], periodic=self.periodic[0])
-        good = np.pad(good, ((1, 1), (0, 0)), mode="edge").T
-        ghosts = _ghosts(columns[1:-1], good, self.offset[1], periodic=self.periodic[1])
-        columns[0], columns[-1] = ghosts
-        for pole in self.poles or ():
-            lines = pole.lines(padded)
-            ghost, ring = (0, 2) if pole.inward > 0 else (-1, -3)
-            lines[ghost] = _over(lines[ring], pole)
-        return padded
-
-    @cached_property
-    def tangents(self) -> Floats:
-        """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell."""
-        good = np.pad(self.has_position, 1, constant_values=True)
-        p = self.padded
-        middle = p[1:-1, 1:-1]
-        result = np.empty((2, *self.points.shape))
-        sides = (
-            (p[1:-1, :-2], p[1:-1, 2:], good[1:-1, :-2], good[1:-1, 2:]),
-            (p[:-2, 1:-1], p[2:, 1:-1], good[:-2, 1:-1], good[2:, 1:-1]),
-        )
-        for b in row_blocks(*self.shape):
-            for out, (before, after, known, further) in zip(result, sides, strict=True):
-                _difference(before[b], middle[b], after[b], known[b], further[b], out[b])
-        return result
-
-    @cached_property
-    def cell_size(self) -> Floats:
-        """Smooth measure of the size of the cells around each node, (J, I).
-
-        The smaller extent counts most. Towards a pole, where cells have no width, it is their
-        length that counts in the end. Other collapsed nodes get a hundredth of the typical
-        size, so that a length measured in cells stays finite there.
-        """
-        inverse = np.zeros(self.shape)
-        lengths = np.sqrt(np.einsum("djic,djic->dji", self.tangents, self.tangents))
-        typical = float(np.median(lengths if self.valid.all() else lengths[:, self.valid])) or 1.0
-        for pole in self.poles or ():
-            near = np.maximum(
-                1 - np.abs(np.arange(self.shape[1 - pole.component]) - pole.line) / POLE_LINES, 0
-            )
-            share = near[:, None] if pole.component else near
-            lengths[1 - pole.component] = np.hypot(
-                lengths[1 - pole.component], share * lengths[pole.component]
-            )
-        for length in lengths:
-            inverse += 1 / np.square(np.maximum(length, 1e-9 * typical))
-        return np.maximum(np.sqrt(2.0 / inverse), 1e-4 * typical)
 
     @cached_property
     def frame(self) -> Floats | None:
@@ -253,27 +184,6 @@ class Surface:
             return np.delete(np.eye(3), int(np.argmax(np.abs(normal))), axis=0)
         return np.asarray(basis[:2])
 
-    def wrap(self, index: Floats) -> Floats:
-        """Fold positions in index space back into one period, (..., 2) as (i, j)."""
-        folded = index.copy()
-        for component, axis in ((0, 1), (1, 0)):
-            if self.periodic[axis]:
-                folded[..., component] = np.mod(index[..., component], self.shape[axis] - 1)
-        return folded
-
-    def at(self, index: Floats) -> Floats:
-        """Return positions in space (..., 3) of positions (..., 2) as (i, j) in index space.
-
-        Beyond a pole the surface goes on on its far side, and straight on beyond the border of
-        another axis that does not close.
-        """
-        i, j = index.reshape(-1, 2).T
-        return self._positions.at(i, j).T.reshape(*index.shape[:-1], 3)
-
-    def express(self, velocity: Floats) -> IndexVelocity:
-        """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space."""
-        return to_index_space(self.tangents, self.valid, self.poles, velocity)
-
     @cached_property
     def plane_size(self) -> Floats:
         """Width and height along the frame of a flat surface, (2,)."""
@@ -282,156 +192,6 @@ class Surface:
         # Column by column, which needs no memory for the differences to the middle.
         return np.array([np.ptp(nodes @ axis) for axis in self.frame])
 
-    @cached_property
-    def _positions(self) -> CubicMap:
-        return CubicMap(self, np.eye(3), np.zeros(3))
-
-
-class CubicMap:
-    """Positions of a surface relative to ``origin`` (3,), along the rows of ``frame`` (C, 3).
-
-    Made for millions of look-ups: each coordinate is an array of its own. Catmull-Rom's cubic
-    between two nodes is the line between them, and -s (1 - s) / 2 times the line between their
-    second differences; of both axes together, these four are bilinear between the nodes. A second
-    difference that is too small to count need not be looked up.
-    """
-
-    def __init__(
-        self, surface: Surface, frame: Floats, origin: Floats, dtype: type = np.float64
-    ) -> None:
-        self._shape, self._periodic, self._poles = surface.shape, surface.periodic, surface.poles
-        local = np.moveaxis(surface.tangents @ frame.T, -1, 0)
-        #: Tangents by component, (C, 2, J * I).
-        self.tangents: AnyArray = np.ascontiguousarray(local, dtype).reshape(len(frame), 2, -1)
-        self._offset: AnyArray = (surface.offset @ frame.T).astype(dtype)
-        nodes = np.moveaxis((surface.padded - origin) @ frame.T, -1, 0)
-        by_i = np.diff(nodes, 2, axis=2)
-        parts = (nodes[:, 1:-1, 1:-1], by_i[:, 1:-1], np.diff(nodes, 2, axis=1)[:, :, 1:-1])
-        #: Nodes, and their second differences by i, by j, and by both, (C, J * I) each.
-        self._parts: list[AnyArray] = [
-            np.ascontiguousarray(part, dtype).reshape(len(frame), -1)
-            for part in (*parts, np.diff(by_i, 2, axis=1))
-        ]
-        #: What the second differences count at most, (C,) each.
-        self._most = [
-            np.abs(part).max(axis=1, initial=0) * most
-            for part, most in zip(self._parts[1:], (1 / 8, 1 / 8, 1 / 64), strict=True)
-        ]
-
-    @property
-    def nodes(self) -> AnyArray:
-        """Positions of the nodes, (C, J * I)."""
-        return self._parts[0]
-
-    def at(
-        self, i: AnyArray, j: AnyArray, start: tuple[Any, Any] = (0, 0), error: float = 0.0
-    ) -> AnyArray:
-        """Positions (C, N) of (N,) each in cells from the nodes ``start``, but for some error."""
-        rows, columns = self._shape
-        closed_j, closed_i = self._periodic
-        if self._poles is not None:
-            position = np.stack([i + start[0], j + start[1]])
-            folded = self._poles.fold(position)
-            if folded is not position:
-                i, j = (folded - np.stack(np.broadcast_arrays(*start, i)[:2])).astype(i.dtype)
-        i0, s, beyond_i, turns_i = cell_of(i, columns, periodic=closed_i, start=start[0])
-        j0, t, beyond_j, turns_j = cell_of(j, rows, periodic=closed_j, start=start[1])
-        result = self._cubic(j0 * columns + i0, s, t, error)
-        outside = np.flatnonzero((beyond_i != 0) | (beyond_j != 0))
-        if len(outside):
-            node_i, node_j = (
-                cell[outside] + np.rint(share[outside]).astype(np.intp)
-                for cell, share in ((i0, s), (j0, t))
-            )
-            by_i, by_j = np.moveaxis(self.tangents[..., node_j * columns + node_i], 1, 0)
-            result[:, outside] += beyond_i[outside] * by_i + beyond_j[outside] * by_j
-        for turns, offset in ((turns_j, self._offset[0]), (turns_i, self._offset[1])):
-            if offset.any():
-                result += turns * offset[:, None]
-        return result
-
-    def _cubic(self, at: Indices, s: AnyArray, t: AnyArray, error: float) -> AnyArray:
-        """Interpolate between 16 nodes each, given the lower corners and fractions of the cells."""
-        a, b = 0.5 * s * (s - 1), 0.5 * t * (t - 1)
-        shares = (a, b, a * b)
-        result = np.empty((len(self.nodes), len(at)), s.dtype)
-        for c, out in enumerate(result):
-            bends = [
-                (part[c], share)
-                for part, share, most in zip(self._parts[1:], shares, self._most, strict=True)
-                if most[c] > error
-            ]
-            corners = []
-            for first in (0, 1, self._shape[1], self._shape[1] + 1):
-                value = self.nodes[c, first:].take(at, mode="clip")
-                for part, share in bends:
-                    value += share * part[first:].take(at, mode="clip")
-                corners.append(value)
-            low, right, high, across = corners
-            low += s * (right - low)
-            high += s * (across - high)
-            np.add(low, t * (high - low), out=out)
-        return result
-
-
-def known_positions(points: Floats, valid: Bools) -> Bools:
-    """Nodes whose coordinates can be trusted: blanked ones often hold a fill value."""
-    finite = finite_nodes(points)
-    # Where all nodes with coordinates are valid, or none, there is nothing to tell apart.
-    if not (valid & finite).any() or not (finite & ~valid).any():
-        return finite
-    low, high = bounds(points[valid & finite])
-    margin = (high - low).max()
-    with np.errstate(invalid="ignore"):
-        near = ((points > low - margin) & (points < high + margin)).all(axis=-1)
-    return np.asarray(finite & (valid | near))
-
-
-def _ghosts(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> tuple[Floats, Floats]:
-    """Return the ghost lines before and after the first axis."""
-    if periodic:
-        return p[-2] - offset, p[1] + offset
-    return _beyond(p[:3], good[:3]), _beyond(p[:-4:-1], good[:-4:-1])
-
-
-def _over(ring: Floats, pole: Pole) -> Floats:
-    """Line beyond a pole, (n + 3, 3), from the first one before it; both with ghost nodes."""
-    at = pole.opposite(np.arange(pole.cells, dtype=float))
-    k, s = np.divmod(at, 1.0)
-    first = k.astype(np.intp)
-    nodes = ring[1:-2]
-    line = sum(
-        w[:, None] * nodes[(first + a - 1) % pole.cells] for a, w in enumerate(cubic_weights(s))
-    )
-    return np.asarray(line)[np.arange(-1, pole.cells + 2) % pole.cells]
-
-
-def _beyond(p: Floats, good: Bools) -> Floats:
-    """Continue the first lines of nodes by one line before the first.
-
-    The continuation is quadratic, which keeps the slope at the border of second order, but
-    bends the slope by half at most: with cells that grow threefold, as where nodes are spaced
-    by a cosine, a parabola through three of them turns back on itself.
-    """
-    step = p[1] - p[0]
-    if len(p) < 3:
-        return np.asarray(p[0] - step)
-    bend = np.where(np.asarray(good[:3].all(axis=0))[:, None], 2 * p[1] - p[0] - p[2], 0.0)
-    length, most = (np.linalg.norm(v, axis=-1, keepdims=True) for v in (bend, step))
-    bend *= most / np.maximum(np.maximum(length, most), np.finfo(float).tiny)
-    return np.asarray(p[0] - step - bend)
-
-
-def _difference(
-    before: Floats, here: Floats, after: Floats, good_before: Bools, good_after: Bools, out: Floats
-) -> None:
-    """Central difference, one-sided beside a node whose coordinates cannot be trusted."""
-    if good_before.all() and good_after.all():
-        np.subtract(here, before, out=out)
-        out += after - here
-        out /= 2
-        return
-    backward = np.where(good_before[..., None], here - before, 0.0)
-    forward = np.where(good_after[..., None], after - here, 0.0)
-    count = np.maximum(good_before.astype(float) + good_after, 1.0)
-    np.divide(backward + forward, count[..., None], out=out)
+    def express(self, velocity: Floats) -> IndexVelocity:
+        """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space."""
+        return to_index_space(self.tangents, self.valid, self.poles, velocity)

@@ -253,13 +253,7 @@ def _line_mesh(lines: MapLines) -> pv.PolyData:
 
 def _cell_mesh(field: FlowField, cells: Bools) -> pv.PolyData:
     """Return some cells of a field's surface."""
-    if field.triangles is None:
-        columns = field.shape[1]
-        j, i = np.nonzero(cells)
-        corner = j * columns + i
-        faces = np.stack([corner, corner + 1, corner + columns + 1, corner + columns], axis=-1)
-    else:
-        faces = field.triangles[cells]
+    faces = field.surface.nodes_of(cells)
     used, numbers = np.unique(faces, return_inverse=True)
     shape: Any = numbers.reshape(faces.shape)
     return pv.PolyData.from_regular_faces(field.surface.points.reshape(-1, 3)[used], shape)

@@ -9,9 +9,9 @@ import scipy
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.blocks import bounds
+from flowtex._util.vectors import norm
 from flowtex.earth import EARTH_RADIUS, MapLines, coastlines, graticule
 from flowtex.field import FlowField
-from flowtex.field.triangles.surface import TriangleSurface
 
 
 class Stroke(NamedTuple):
@@ -75,12 +75,8 @@ def land_cells(field: FlowField, *, tiled: bool = False) -> Bools:
     structured field in tiles all cells may be seen as land, where finer ones have no data.
     """
     surface = field.surface
-    if isinstance(surface, TriangleSurface):
-        return ~surface.cells
-    known = surface.has_position
-    known = known[:-1, :-1] & known[1:, :-1] & known[:-1, 1:] & known[1:, 1:]
-    seen_through = tiled and not surface.on_globe
-    return np.asarray(known if seen_through else known & ~surface.cells)
+    seen_through = tiled and not surface.on_globe and field.triangles is None
+    return surface.placed_cells if seen_through else surface.placed_cells & ~surface.cells
 
 
 def globe_radius(field: FlowField) -> float | None:
@@ -91,30 +87,16 @@ def globe_radius(field: FlowField) -> float | None:
     surface = field.surface
     if not surface.on_globe:
         return None
-    if surface.has_position.all() and len(tuple(surface.poles or ())) == 2:
+    if surface.is_closed:
         return None
-    if isinstance(surface, TriangleSurface) and (surface.neighbours >= 0).all():
-        return None
-    lowest = float(np.linalg.norm(_cells(field)[0], axis=-1).min(initial=EARTH_RADIUS))
-    if isinstance(surface, TriangleSurface):
-        # A triangle with three such sides is the deepest below the sphere through its corners.
-        p = surface.points[0][surface.triangles]
-        longest = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=-1).max()
-        lowest = float(np.sqrt(max(EARTH_RADIUS**2 - longest**2 / 3, 0.0)))
-    return lowest - LOWER * EARTH_RADIUS
+    # A cell is deepest below the sphere through its corners at the middle of those.
+    longest = _cells(field)[1].max(initial=0.0)
+    return float(np.sqrt(max(EARTH_RADIUS**2 - longest**2, 0.0))) - LOWER * EARTH_RADIUS
 
 
 def _cells(field: FlowField) -> tuple[Floats, Floats]:
-    """Middles (N, 3) of the cells that are drawn and of those on land, and half their diagonals.
-
-    Of a triangle that is how far its corners are from its middle.
-    """
-    p = field.surface.points
-    if isinstance(field.surface, TriangleSurface):
-        corners = p[0][field.surface.triangles]
-        middles = corners.mean(axis=1)
-        return middles, np.linalg.norm(corners - middles[:, None], axis=-1).max(axis=1)
-    shown = field.surface.cells | land_cells(field)
-    corners = np.stack([p[:-1, :-1], p[1:, 1:], p[1:, :-1], p[:-1, 1:]])[:, shown]
-    diagonals = np.linalg.norm(corners[::2] - corners[1::2], axis=-1)
-    return corners.mean(axis=0), np.asarray(diagonals.max(axis=0) / 2)
+    """Middles (N, 3) of the cells that are drawn and of those on land, and how far corners are."""
+    surface = field.surface
+    corners = surface.points.reshape(-1, 3)[surface.nodes_of(surface.cells | land_cells(field))]
+    middles = corners.mean(axis=1)
+    return middles, norm(corners - middles[:, None]).max(axis=1)

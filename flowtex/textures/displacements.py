@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Floats32
-from flowtex.field.surface import CubicMap, Surface
+from flowtex.field.grids.surface import CubicMap, GridSurface
 
 #: Nodes looked up together, so few that they stay in a processor's cache.
 BLOCK = 16384
@@ -23,7 +23,7 @@ class NodeDisplacements:
 
     def __init__(
         self,
-        surface: Surface,
+        surface: GridSurface,
         frame: Floats,
         nodes: tuple[slice, slice] = (slice(None), slice(None)),
     ) -> None:

@@ -10,6 +10,7 @@ continued by its own period on both sides, so that no level sees the seam.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,8 +21,10 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
 from flowtex._util.vectors import norm
 from flowtex.field import FlowField
+from flowtex.field.grids.surface import GridSurface, faces_of
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.surface import Surface
+from flowtex.textures.displacements import NodeDisplacements
 
 #: Mip levels of a texture beside its finest one, at most, and of a tile's.
 DEEPEST, TILE_LEVELS = 5, 3
@@ -107,6 +110,11 @@ class DrawnSurface:
     whole: Surface
 
     @property
+    def corners(self) -> Floats32 | None:
+        """Numbers of the nodes around each vertex's triangle, (V, 3), where shaders read those."""
+        return None
+
+    @property
     def points(self) -> Floats:
         """The nodes that are drawn, (J, I, 3), in the mesh's own coordinates."""
         raise NotImplementedError
@@ -118,6 +126,23 @@ class DrawnSurface:
     @property
     def drawn_vertices(self) -> Bools:
         """Which vertices belong to something that is drawn, (V,)."""
+        raise NotImplementedError
+
+    @property
+    def faces(self) -> Indices:
+        """Vertices around each cell that is drawn, (M, 4) or (M, 3)."""
+        raise NotImplementedError
+
+    @property
+    def padding(self) -> tuple[int, int]:
+        """Texels before the nodes, in rows and in columns."""
+        return 0, 0
+
+    def displacements(self, frame: Floats) -> Callable[[AnyArray, float], AnyArray]:
+        """Return what takes displacements of the nodes of textures, (J, I, 2 or 3), to a frame.
+
+        It takes the error that is allowed as well; the result is (C, J, I).
+        """
         raise NotImplementedError
 
     @cached_property
@@ -229,9 +254,29 @@ class SurfaceGeometry(DrawnSurface):
         return self.field.surface.points[self.drawn]
 
     @property
+    def surface(self) -> GridSurface:
+        """The surface of the field."""
+        assert isinstance(self.field.surface, GridSurface)
+        return self.field.surface
+
+    @property
+    def padding(self) -> tuple[int, int]:
+        """Texels before the nodes, in rows and in columns."""
+        return self.rows.before, self.columns.before
+
+    @property
+    def faces(self) -> Indices:
+        """Vertices around each cell that is drawn, (M, 4)."""
+        return faces_of(self.cells)
+
+    def displacements(self, frame: Floats) -> Callable[[AnyArray, float], AnyArray]:
+        """Return what takes displacements (J, I, 2) in cells to a frame, (C, J, I)."""
+        return NodeDisplacements(self.surface, frame, self.texels)
+
+    @property
     def cells(self) -> Bools:
         """The cells that are drawn, (J - 1, I - 1)."""
-        return self.field.surface.cells[self.drawn][: self.rows.nodes - 1, : self.columns.nodes - 1]
+        return self.surface.cells[self.drawn][: self.rows.nodes - 1, : self.columns.nodes - 1]
 
     @property
     def drawn_vertices(self) -> Bools:

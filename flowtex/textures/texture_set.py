@@ -26,19 +26,15 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats, Floats32
+from flowtex._util.array_types import AnyArray, Floats32
 from flowtex._util.vectors import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.surface import Surface
-from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.validation import three_components
 from flowtex.settings import Settings, SettingsError
-from flowtex.textures.displacements import NodeDisplacements
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.paper import PaperTextures
 from flowtex.textures.triangle_geometry import TriangleGeometry
@@ -185,18 +181,14 @@ class TextureSet:
         along = np.einsum("jic,cjik->jik", flow, tangents)
         length = norm(along)[..., None]
         along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
-        corners, longest = _cells(field.surface)
-        mean: Floats = np.sum([along[at] for at in corners], axis=0)
-        if isinstance(field.surface, TriangleSurface):
-            # A flow that leaves the plane of a triangle has another direction in it.
-            normal = field.surface.crosses
-            height = np.einsum("mc,mc->m", mean, normal) / np.einsum("mc,mc->m", normal, normal)
-            mean = mean - height[:, None] * normal
+        corners = field.surface.cell_corners
+        # A flow that leaves the plane of a triangle has another direction in it.
+        mean = field.surface.in_cells(np.sum([along[at] for at in corners], axis=0))
         mean /= np.maximum(norm(mean), np.finfo(float).tiny)[..., None]
         # What stands still says nothing of the direction.
         cosines = [np.where(length[at][..., 0] > 0, dot(along[at], mean), 1) for at in corners]
         parting = (np.min(cosines, axis=0) < AGREED) & field.surface.cells
-        return float(longest[parting].max(initial=0.0))
+        return float(field.surface.cell_lengths[parting].max(initial=0.0))
 
     def forget(self) -> None:
         """Drop what only making the layers needs."""
@@ -287,10 +279,7 @@ class TextureSet:
     def _displacements(self) -> Callable[[AnyArray, float], AnyArray]:
         """Takes displacements to the surface's frame; a flat one has no third component."""
         geometry = self.geometry
-        frame = geometry.frame[:2] if geometry.planar else geometry.frame
-        if isinstance(geometry, SurfaceGeometry):
-            return NodeDisplacements(geometry.field.surface, frame, geometry.texels)
-        return lambda displacement, error: np.moveaxis(displacement @ frame.T, -1, 0)
+        return geometry.displacements(geometry.frame[:2] if geometry.planar else geometry.frame)
 
     @cached_property
     def _length(self) -> Floats32:
@@ -308,17 +297,3 @@ def check_noise(field: FlowField, noise: str) -> None:
             "structured mesh"
         )
         raise SettingsError(msg)
-
-
-def _cells(surface: Surface) -> tuple[list[Any], Floats]:
-    """Return the indices of the corners of cells in arrays over the nodes, and their lengths."""
-    p = surface.points
-    if isinstance(surface, TriangleSurface):
-        corners = p[0][surface.triangles]
-        side = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1).max(axis=1)
-        # No path of a unit of shares is longer.
-        return [(0, nodes) for nodes in surface.triangles.T], side * (2 / np.sqrt(3))
-    parts = (slice(None, -1), slice(1, None))
-    j, i = (np.linalg.norm(np.diff(p, axis=k), axis=-1) for k in (0, 1))
-    longest = np.hypot(np.maximum(j[:, :-1], j[:, 1:]), np.maximum(i[:-1], i[1:]))
-    return [(j, i) for j in parts for i in parts], longest

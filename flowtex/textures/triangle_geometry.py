@@ -7,6 +7,7 @@ three each: each knows the numbers of all three, and its own shares of the secon
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -125,6 +126,15 @@ class TriangleGeometry(DrawnSurface):
         return np.broadcast_to(corners, (len(self.triangles), 3, 2))
 
     @property
+    def faces(self) -> Indices:
+        """Vertices of each triangle, (m, 3)."""
+        return np.arange(self.triangles.size).reshape(-1, 3)
+
+    def displacements(self, frame: Floats) -> Callable[[AnyArray, float], AnyArray]:
+        """Return what takes displacements in space, (1, n, 3), to a frame, (C, 1, n)."""
+        return lambda displacement, error: np.moveaxis(displacement @ frame.T, -1, 0)
+
+    @cached_property
     def corners(self) -> Floats32:
         """Numbers of the three nodes at each vertex, (3 m, 3)."""
         return np.repeat(self.triangles.astype(np.float32), 3, axis=0)

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.field.surface import Surface
+from flowtex.field.grids.surface import GridSurface
 
 Floats = NDArray[np.float64]
 
@@ -35,8 +35,8 @@ def indices(rows: int, columns: int) -> Floats:
     return np.stack([i, j], axis=-1).astype(float)
 
 
-def open_surface(points: Floats) -> Surface:
-    return Surface(points, np.ones(points.shape[:2], bool), (False, False))
+def open_surface(points: Floats) -> GridSurface:
+    return GridSurface(points, np.ones(points.shape[:2], bool), (False, False))
 
 
 def inside(rng: np.random.Generator, rows: int, columns: int, count: int = 200) -> Floats:
@@ -185,11 +185,11 @@ def test_swapping_the_axes_swaps_the_tangents() -> None:
 # --- seams ----------------------------------------------------------------------------------
 
 
-def cylinder(lines: int = 25, columns: int = 6) -> Surface:
+def cylinder(lines: int = 25, columns: int = 6) -> GridSurface:
     angle = np.linspace(0, 2 * np.pi, lines)[:, None]
     height = np.linspace(0.5, 1, columns)[None] ** 2
     points = np.stack(np.broadcast_arrays(np.cos(angle), np.sin(angle), height), axis=-1)
-    return Surface(points, np.ones((lines, columns), bool), (True, False))
+    return GridSurface(points, np.ones((lines, columns), bool), (True, False))
 
 
 def test_positions_run_on_across_a_seam() -> None:
@@ -238,7 +238,7 @@ def test_a_seam_is_nothing_special() -> None:
     surface = cylinder()
     rolled = np.roll(surface.points[:-1], -7, axis=0)
     points = np.concatenate([rolled, rolled[:1]])
-    other = Surface(points, surface.valid, (True, False))
+    other = GridSurface(points, surface.valid, (True, False))
     at = inside(np.random.default_rng(5), 25, 6)
     np.testing.assert_allclose(other.at(at), surface.at(at + np.array([0, 7])), atol=1e-12)
 

@@ -7,8 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
+from flowtex.field.grids.surface import GridSurface
 from flowtex.field.poles import Pole
-from flowtex.field.surface import Surface
 
 Floats = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ def disc(rows: int = 9, columns: int = 32) -> Floats:
     return points
 
 
-def surface(points: Floats, **options: object) -> Surface:
+def surface(points: Floats, **options: object) -> GridSurface:
     return FlowField.from_arrays(points, np.ones_like(points), **options).surface  # type: ignore[arg-type]
 
 

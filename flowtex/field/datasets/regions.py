@@ -25,8 +25,8 @@ from flowtex.field.datasets.maps import (
     shown_rows,
 )
 from flowtex.field.datasets.places import Places
+from flowtex.field.grids.periodic import find_closure
 from flowtex.field.io.inspection.limits import values_in
-from flowtex.field.periodic import find_closure
 from flowtex.field.steps import Nodes
 
 if TYPE_CHECKING:

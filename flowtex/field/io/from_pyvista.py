@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError, raise_faults
+from flowtex.field.grids.periodic import find_closure
 from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.io.meshes import (
     TimeStep,
@@ -40,7 +41,6 @@ from flowtex.field.io.planes import (
 from flowtex.field.io.surfaces.cuts import find_cut
 from flowtex.field.io.surfaces.steps import SheetStep, read_surfaces, stacked
 from flowtex.field.io.vectors import MeshArray, catalogue, choose_vectors, values_of, vector_faults
-from flowtex.field.periodic import find_closure
 from flowtex.field.signs import axes, products
 
 

@@ -10,12 +10,15 @@ of the triangle plus the share of its second corner, i the share of its third.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.vectors import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field.metric import IndexVelocity
 from flowtex.field.surface import Surface
@@ -30,8 +33,6 @@ class TriangleSurface(Surface):
 
     ``triangles`` (M, 3) are numbers of nodes, and ``valid`` (1, N) marks nodes that carry data.
     """
-
-    poles = None
 
     def __init__(
         self, points: Floats, triangles: Indices, valid: Bools, *, on_globe: bool = False
@@ -51,6 +52,39 @@ class TriangleSurface(Surface):
     def cells(self) -> Bools:
         """Triangles whose three nodes are valid, (M,)."""
         return np.asarray(self.valid[0][self.triangles].all(axis=1))
+
+    @property
+    def placed_cells(self) -> Bools:
+        """All triangles, (M,): every node has a position."""
+        return np.ones(len(self.triangles), dtype=bool)
+
+    def nodes_of(self, cells: Bools) -> Indices:
+        """Return the nodes at the corners of some triangles, (M, 3)."""
+        return np.asarray(self.triangles[cells])
+
+    @property
+    def cell_corners(self) -> list[Any]:
+        """For each corner of the triangles, the index that takes an array over nodes to it."""
+        return [(0, nodes) for nodes in self.triangles.T]
+
+    @property
+    def cell_lengths(self) -> Floats:
+        """Length of each triangle, (M,), by its longest side."""
+        corners = self.points[0][self.triangles]
+        side = norm(corners - np.roll(corners, 1, axis=1)).max(axis=1)
+        # No path of a unit of shares is longer.
+        return np.asarray(side * (2 / np.sqrt(3)))
+
+    def in_cells(self, vectors: Floats) -> Floats:
+        """Return the parts of vectors (M, 3) that lie in the planes of the triangles."""
+        normal = self.crosses
+        height = dot(vectors, normal) / dot(normal, normal)
+        return np.asarray(vectors - height[:, None] * normal)
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether every triangle has another one at each side."""
+        return bool((self.neighbours >= 0).all())
 
     @cached_property
     def neighbours(self) -> Indices:
@@ -154,6 +188,10 @@ class TriangleSurface(Surface):
         used = np.zeros(self.shape, dtype=bool)
         used[0, self.triangles[self.cells]] = True
         return used
+
+    def node_near(self, index: Sequence[float]) -> tuple[int, int]:
+        """Return the first node of the triangle at a position (j, i)."""
+        return 0, int(self.triangles[int(index[0])][0])
 
     def wrap(self, index: Floats) -> Floats:
         """Return positions (..., 2) as (i, j) as they are: nothing repeats."""

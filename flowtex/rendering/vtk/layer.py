@@ -217,9 +217,9 @@ class FlowLayer:
             layer.after_frame()
         _last[window] = weakref.ref(self)
         values = uniforms(self._textures, self._settings, self.view)
-        if isinstance(geometry := self._textures.geometry, SurfaceGeometry):
-            values["u_padding"] = float(geometry.columns.before), float(geometry.rows.before)
-            values["u_anchor"] = float(self.view.anchor[0]), float(self.view.anchor[1])
+        above, before = self._textures.geometry.padding
+        values["u_padding"] = float(before), float(above)
+        values["u_anchor"] = float(self.view.anchor[0]), float(self.view.anchor[1])
         values["u_mapped"] = self._colours is not None
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from numpy.typing import NDArray
 from pyvista.plotting.mapper import _BaseDataSetMapper
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.util.vtkConstants import VTK_ID_TYPE
@@ -14,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 from vtkmodules.vtkRenderingCore import vtkPolyDataMapper
 
 from flowtex._util.array_types import Floats32, Indices
-from flowtex.textures import SurfaceGeometry, TextureSet, TriangleGeometry
+from flowtex.textures import TextureSet
 
 #: Extents from the origin from which on VTK draws points relative to another one; nearer by it
 #: takes them to single precision as they are.
@@ -38,23 +37,14 @@ def surface_mesh(textures: TextureSet) -> pv.PolyData:
     geometry = textures.geometry
     points = np.ascontiguousarray(geometry.at_vertices(geometry.points))
     near = np.abs(geometry.center).max() < FAR_EXTENTS * geometry.extent
-    if near and isinstance(geometry, TriangleGeometry):
+    if near and geometry.corners is not None:
         points = points.astype(np.float32)  # there are six times as many vertices as nodes
-    mesh = pv.PolyData.from_regular_faces(points, _faces(geometry))
+    faces: Any = geometry.faces
+    mesh = pv.PolyData.from_regular_faces(points, faces)
     mesh.point_data[NORMAL] = geometry.vertex_normals
     mesh.point_data.active_normals_name = NORMAL
     set_attributes(mesh, textures)
     return mesh
-
-
-def _faces(geometry: SurfaceGeometry | TriangleGeometry) -> NDArray[Any]:
-    """Vertices of each cell, (M, 4) or (M, 3)."""
-    if isinstance(geometry, TriangleGeometry):
-        return np.arange(geometry.triangles.size).reshape(-1, 3)
-    columns = geometry.shape[1]
-    j, i = np.nonzero(geometry.cells)
-    corner = j * columns + i
-    return np.stack([corner, corner + 1, corner + columns + 1, corner + columns], axis=-1)
 
 
 def set_position(mesh: pv.PolyData, position: Floats32) -> None:
@@ -74,8 +64,8 @@ def set_attributes(mesh: pv.PolyData, textures: TextureSet) -> None:
     geometry = textures.geometry
     set_position(mesh, geometry.at_vertices(geometry.position))
     mesh.point_data[COORDINATE] = geometry.coordinate.reshape(-1, 2)
-    if isinstance(geometry, TriangleGeometry):
-        mesh.point_data[CORNERS] = geometry.corners
+    if (corners := geometry.corners) is not None:
+        mesh.point_data[CORNERS] = corners
     if textures.paper is not None:
         mesh.point_data[NOISE] = textures.paper.coordinate.reshape(-1, 2)
 
@@ -85,7 +75,7 @@ def vertex_attributes(textures: TextureSet) -> dict[str, str]:
     needed = {POSITION, COORDINATE}
     if not textures.geometry.planar:
         needed.add(NORMAL)
-    if isinstance(textures.geometry, TriangleGeometry):
+    if textures.geometry.corners is not None:
         needed.add(CORNERS)
     if textures.paper is not None:
         needed.add(NOISE)

@@ -34,7 +34,7 @@ from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts, plain_list
 from flowtex.settings import NEEDS, TABLE, Settings
-from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet, TriangleGeometry
+from flowtex.textures import PaperTextures, TextureSet, TriangleGeometry
 from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
 
 #: Shaders of the client, by the name under which the header has their text.
@@ -389,11 +389,9 @@ class ClientData:
 
     def _geometry(self) -> dict[str, Any]:
         geometry = self.textures.geometry
-        before = (0, 0)
-        if isinstance(geometry, SurfaceGeometry):
-            before = geometry.rows.before, geometry.columns.before
         rows, columns = (
-            {"before": int(b), "size": int(n)} for b, n in zip(before, geometry.size, strict=True)
+            {"before": int(b), "size": int(n)}
+            for b, n in zip(geometry.padding, geometry.size, strict=True)
         )
         return {
             "triangles": isinstance(geometry, TriangleGeometry),

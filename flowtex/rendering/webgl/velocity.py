@@ -134,7 +134,7 @@ def _poles(poles: Poles, frame: Floats) -> Header:
 def surface_parts(textures: TextureSet) -> Parts:
     """Return the arrays of the nodes that are the same at all times."""
     geometry = textures.grid
-    surface = geometry.field.surface
+    surface = geometry.surface
     padded = (surface.padded - surface.center) @ geometry.frame.T
     parts: Parts = {"unit": half(_sizes(textures) / _size(textures))}
     # Multiples of a power of two are packed well, if they are much smaller than a cell.

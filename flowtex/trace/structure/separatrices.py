@@ -160,10 +160,7 @@ def _lines(
 
 def _cell(field: FlowField, point: CriticalPoint) -> float:
     """Return the size of a cell at a point."""
-    if field.triangles is None:
-        j, i = (min(round(x), n - 1) for x, n in zip(point.index, field.shape, strict=True))
-    else:
-        j, i = 0, int(field.triangles[int(point.index[0])][0])
+    j, i = field.surface.node_near(point.index)
     return float(field.surface.cell_size[j, i])
 
 

@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError, raise_faults
-from flowtex.field.periodic import NodalArrays, close_axes
+from flowtex.field.grids.periodic import NodalArrays, close_axes
+from flowtex.field.grids.surface import GridSurface, known_positions
 from flowtex.field.signs import oriented, sign_free_faults, with_equal_ends
 from flowtex.field.steps import LazySteps, Steps, first_step
-from flowtex.field.surface import Surface, known_positions
 from flowtex.field.validation import (
     as_numbers,
     finite_nodes,
@@ -35,7 +35,7 @@ class GridNodes:
     ``moves`` tells whether they do at the first time, or at any where all are in memory.
     """
 
-    surface: Surface
+    surface: GridSurface
     velocity: Steps
     valid: Bools
     periodic: tuple[bool, bool]
@@ -81,7 +81,7 @@ def grid_nodes(
     data = {key: scalar_steps(values, p.shape[:2]) for key, values in given.items()}
     nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
     v, ok = nodal.velocity, nodal.valid
-    surface = Surface(nodal.points, ok, closed, on_globe=on_globe)
+    surface = GridSurface(nodal.points, ok, closed, on_globe=on_globe)
     if sign_free:
         v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
         v = with_equal_ends(v[None], closed, surface.poles)
