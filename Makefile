@@ -43,7 +43,7 @@ coverage: $(VENV)/.ready-test ## what of flowtex/ and client/src the tests run, 
 fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, files and messages
 	FLOWTEX_FUZZ=$(FUZZ) $(BIN)/pytest -n auto --maxprocesses 4 -m hypothesis $(PYTEST_ARGS)
 
-integrations: $(VENV)-integrations/.ready ## show the widget in Panel, Shiny, Solara and Streamlit, in an environment of their own
+integrations: $(VENV)-integrations/.ready ## show the widget in Notebook 7, Panel, Shiny, Solara and Streamlit, in an environment of their own
 	@sh tools/browsers.sh $(VENV)-integrations/bin/python
 	$(VENV)-integrations/bin/python -m pytest tests/integrations $(PYTEST_ARGS)
 

@@ -1,4 +1,4 @@
-"""The widget in applications of Panel, Shiny, Solara and Streamlit: `make integrations`.
+"""The widget in Notebook 7, Panel, Shiny, Solara and Streamlit: `make integrations`.
 
 Each is started with a file of its own kind, shows a flow, and where it carries messages a drag in
 the browser is heard in Python.
@@ -51,8 +51,18 @@ panel.pane.HTML(flow().as_html()).servable()
 STREAMLIT = """import streamlit
 streamlit.components.v1.html(flow().to_html(), width=300, height=160)
 """
+NOTEBOOK = """from IPython.display import display
+display(flow())
+"""
 #: The text of an application, and what starts it.
 HOSTS = {
+    "notebook": (
+        NOTEBOOK,
+        (
+            *("jupyter", "notebook", "--no-browser", "--allow-root", "--port={port}"),
+            *("--ServerApp.port_retries=0", "--IdentityProvider.token="),
+        ),
+    ),
     "shiny": (SHINY, ("shiny", "run", "app.py", "--port={port}")),
     "solara": (SOLARA, ("solara", "run", "app.py", "--port={port}", "--no-open")),
     "panel": (PANEL, ("panel", "serve", "app.py", "--port={port}")),
@@ -61,6 +71,8 @@ HOSTS = {
         ("streamlit", "run", "app.py", "--server.port={port}", "--server.headless=true"),
     ),
 }
+#: Where a host has its page, if that is not the root.
+PAGES = {"notebook": "notebooks/app.ipynb", "panel": "app"}
 #: Hosts that show a frame, from which Python hears nothing.
 FRAMED = ("panel", "streamlit")
 
@@ -70,12 +82,16 @@ def served(host: str, folder: Path) -> Iterator[str]:
     """Give the address of an application of a host."""
     text, words = HOSTS[host]
     (folder / "app.py").write_text(MAKE + text)
+    cell = {"cell_type": "code", "id": "flow", "metadata": {}, "outputs": []}
+    cells = [{**cell, "execution_count": None, "source": MAKE + text}]
+    notebook = {"cells": cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
+    (folder / "app.ipynb").write_text(json.dumps(notebook))
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     program = Path(sys.executable).parent / words[0]
     command = [str(program), *(word.format(port=port) for word in words[1:])]
-    address = f"http://127.0.0.1:{port}/" + ("app" if host == "panel" else "")
+    address = f"http://127.0.0.1:{port}/{PAGES.get(host, '')}"
     log = folder / "log.txt"
     environment = {**os.environ, "HEARD": str(folder / "heard.json")}
     with log.open("w") as said:
@@ -103,6 +119,10 @@ def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: 
         pytest.skip(f"{host} is not installed: make integrations")
     with served(host, tmp_path) as address:
         page.goto(address)
+        if host == "notebook":
+            page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for()
+            page.locator(".jp-CodeCell .cm-content").click()
+            page.keyboard.press("Shift+Enter")
         place = page.frame_locator("iframe") if host in FRAMED else page
         place.locator('.flowtex[data-sharp="true"]').first.wait_for()
         canvas = place.locator(".flowtex canvas").first
