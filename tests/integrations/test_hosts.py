@@ -84,7 +84,8 @@ def served(host: str, folder: Path) -> Iterator[str]:
     (folder / "app.py").write_text(MAKE + text)
     cell = {"cell_type": "code", "id": "flow", "metadata": {}, "outputs": []}
     cells = [{**cell, "execution_count": None, "source": MAKE + text}]
-    notebook = {"cells": cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
+    kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
+    notebook = {"cells": cells, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5}
     (folder / "app.ipynb").write_text(json.dumps(notebook))
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
