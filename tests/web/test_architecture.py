@@ -1,0 +1,54 @@
+"""The examples of docs/architecture.md, as a page runs them."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
+
+import pytest
+
+import flowtex
+from flowtex.rendering.webgl.protocol import parts_file
+from flowtex.scene import Scene
+from flowtex.web.assets import client_module
+from flowtex.web.view import WebView
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page, Route
+
+TEXT = (Path(__file__).parents[2] / "docs" / "architecture.md").read_text("utf-8")
+EXAMPLES = re.findall(r"```js\n(.+?)```", TEXT, re.DOTALL)
+PAGE = """<!doctype html><title>Example</title><div style="height: 300px" id="here"></div>
+<script>const element = document.getElementById("here"), heard = [];</script>
+<script type="module">{}</script>"""
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("example", EXAMPLES, ids=["host", "source"])
+def test_an_example_shows_a_flow(page: Page, example: str) -> None:
+    view = WebView(Scene(flowtex.examples.double_gyre_field(shape=(21, 41))))
+    view.scene.settings.samples = 5
+    data = view.data()
+    files = {
+        "/": PAGE.format(example).encode(),
+        "/flowtex.mjs": client_module().encode(),
+        "/header": json.dumps(data.header(view.scene.settings)).encode(),
+        "/parts/whole/": parts_file(data.surface() | data.step(0)),
+    }
+
+    def answer(route: Route) -> None:
+        path = urlsplit(route.request.url).path
+        kind = "text/javascript" if path.endswith("mjs") else "text/html"
+        route.fulfill(body=files[path], content_type=kind)
+
+    page.route("http://site.test/**", answer)
+    page.goto("http://site.test/")
+    page.locator('.flowtex[data-sharp="true"]').wait_for()
+    page.locator("[data-name=home]").click()
+    if "heard" in example:
+        page.locator(".flowtex canvas").focus()
+        page.keyboard.press("ArrowRight")
+        page.wait_for_function("() => heard.length && heard.at(-1)[0] !== 1")
