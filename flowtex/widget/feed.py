@@ -84,7 +84,7 @@ class Feed:
         self._live = self._closed = self._drawing = False
         #: Requests that a client waits for.
         self._requests: set[str] = set()
-        #: Steps that come with a new header, and until when they are not sent to who asks.
+        #: Steps that are on their way, and until when they are not sent to who asks.
         self._coming: tuple[float, tuple[int, ...]] = (0.0, ())
         self._sent: dict[str, str] = {}
         self.picture: bytes | None = None
@@ -107,7 +107,7 @@ class Feed:
 
         Until the cell that shows a widget has come to its end nobody can ask.
         """
-        self._answers.do(lambda: self._send_parts(self._first_parts), urgency=2)
+        self._send_first(urgency=2)
         self._answers.do(self._refine)
         self._timer.start()
 
@@ -119,7 +119,15 @@ class Feed:
 
     def ready(self) -> None:
         """Answer a client that has nothing yet."""
-        self._answers.do(lambda: self._send_parts(self._first_parts), urgency=1)
+        self._send_first(urgency=1)
+
+    def _send_first(self, urgency: int) -> None:
+        self._expect(self.scene)
+        self._answers.do(lambda: self._send_parts(self._first_parts), urgency=urgency)
+
+    def _expect(self, scene: ClientData) -> None:
+        """Note that the parts of the present moment are on their way."""
+        self._coming = (time.monotonic() + COMING_S, scene.moment(self._moment()))
 
     def load(self, request: str, key: TileKey | None, steps: Sequence[int]) -> None:
         """Answer a client that needs a tile, or the whole, at time steps."""
@@ -266,7 +274,7 @@ class Feed:
             self._generation += 1
             self._announce(self.header)
             if self._live:
-                self._coming = (time.monotonic() + COMING_S, scene.moment(self._moment()))
+                self._expect(scene)
                 self._deliver(parts, again=False)
 
     def _recolour(self) -> None:
