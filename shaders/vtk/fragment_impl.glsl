@@ -1,7 +1,10 @@
 #ifdef FLOWTEX_TRIANGLES
   flowtexSetCorners(flowtexCornersVSOutput);
 #endif
-  flowtexPlaced = flowtexCoordinateVSOutput;
+  vec2 flowtexPlaced = flowtexCoordinateVSOutput;
+#ifdef FLOWTEX_PLACED
+  flowtexPlaced = flowtexPlace(flowtexPlaced, flowtexPositionVSOutput.xy);
+#endif
 #if defined(FLOWTEX_PAPER)
   float flowtexTextured = flowtexValue(flowtexPlaced, flowtexNoiseVSOutput);
 #elif defined(FLOWTEX_PLANAR)

@@ -219,7 +219,7 @@ class FlowLayer:
         values = uniforms(self._textures, self._settings, self.view)
         above, before = self._textures.geometry.padding
         values["u_padding"] = float(before), float(above)
-        values["u_anchor"] = tuple(float(c) for c in self.view.anchor)
+        values["u_anchor"] = float(self.view.anchor[0]), float(self.view.anchor[1])
         values["u_mapped"] = self._colours is not None
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
@@ -249,9 +249,7 @@ class FlowLayer:
             "u_shares": lambda: GPUTexture(colours.shares(geometry) if colours else none, levels=0),
             "u_colours": lambda: GPUTexture(colours.colours() if colours else none, levels=0),
             "u_nodes": lambda: GPUTexture(
-                np.nan_to_num(geometry.position[None, ..., : 2 if geometry.planar else 3]),
-                levels=0,
-                single=True,
+                np.nan_to_num(geometry.position[None, ..., :2]), levels=0, single=True
             ),
         }
         if paper is not None:
@@ -386,7 +384,8 @@ _last: weakref.WeakKeyDictionary[Any, weakref.ref[FlowLayer]] = weakref.WeakKeyD
 
 def corrects_places(textures: TextureSet) -> bool:
     """Whether the shader of a texture set corrects the places of fragments between the nodes."""
-    return isinstance(textures.geometry, SurfaceGeometry) and textures.paper is None
+    geometry = textures.geometry
+    return isinstance(geometry, SurfaceGeometry) and geometry.planar and textures.paper is None
 
 
 def _is_more(needed: int | None, there: int | None) -> bool:
