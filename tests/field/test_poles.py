@@ -35,7 +35,9 @@ def disc(rows: int = 9, columns: int = 32) -> Floats:
 
 
 def surface(points: Floats, **options: object) -> GridSurface:
-    return FlowField.from_arrays(points, np.ones_like(points), **options).surface  # type: ignore[arg-type]
+    field = FlowField.from_arrays(points, np.ones_like(points), **options)  # type: ignore[arg-type]
+    assert isinstance(field.surface, GridSurface)
+    return field.surface
 
 
 def poles(points: Floats, **options: object) -> list[Pole]:

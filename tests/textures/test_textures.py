@@ -8,6 +8,7 @@ import pytest
 from flowtex import FlowField
 from flowtex._util.array_types import Floats32
 from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
+from flowtex.field.grids.surface import GridSurface
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet
 from flowtex.textures.displacements import NodeDisplacements
@@ -219,6 +220,7 @@ def test_moves_are_those_of_the_surface(rng: np.random.Generator) -> None:
         i, j = np.meshgrid(np.arange(columns), np.arange(rows))
         start = np.stack([i, j], axis=-1)
         expected = field.surface.at(start + displacement) - field.points
+        assert isinstance(field.surface, GridSurface)
         found = NodeDisplacements(field.surface, np.eye(3))(displacement)
         np.testing.assert_allclose(
             np.moveaxis(found, 0, -1), expected, rtol=0, atol=1e-6 * field.surface.extent
