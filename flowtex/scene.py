@@ -420,10 +420,26 @@ class Scene:
         )
         return scene
 
+    def showing(self, field: FlowField) -> Scene:
+        """Return a scene of another flow with these settings, also in future, and this appearance.
+
+        It is at the nearest time that the flow has. Raises what making a scene does.
+        """
+        scene = Scene(field, self.settings, self._appearance, image=self.image)
+        scene._time = min(max(self._time, scene._time), float(field.times[-1]))
+        return scene
+
+    def follow(self, before: Scene) -> None:
+        """Take the place of another scene, and tell those who observe that one."""
+        self._notices, before._notices = before._notices, []
+        before.close()
+        self._notify("trace")
+
     def observe(self, notice: Notice) -> Callable[[], None]:
         """Call ``notice(affects)`` after each change; returns what ends it."""
-        self._notices.append(notice)
-        return lambda: self._notices.remove(notice) if notice in self._notices else None
+        notices = self._notices  # which another scene may take over
+        notices.append(notice)
+        return lambda: notices.remove(notice) if notice in notices else None
 
     def close(self) -> None:
         """Follow the settings no longer."""

@@ -69,16 +69,21 @@ export class Controls {
   readonly element = dom("div", { class: "settings glass", hidden: "", "aria-label": "Settings" });
   private readonly viewer: ControlsHost;
   private readonly controls = new Map<string, Control>();
+  private rows: Row[] | null = null;
 
   constructor(viewer: ControlsHost) {
     this.viewer = viewer;
   }
 
-  build(header: Header): void {
+  /** Make the controls that a scene has use for; tells whether they are others than before. */
+  build(header: Header): boolean {
+    const rebuild = this.viewer.options.rebuild ?? false;
+    const rows = header.table.filter((each) => isUseful(each, header, rebuild));
+    if (JSON.stringify(rows) === JSON.stringify(this.rows)) return false;
+    this.rows = rows;
     this.controls.clear();
     this.element.replaceChildren();
-    const rebuild = this.viewer.options.rebuild ?? false;
-    for (const row of header.table.filter((each) => isUseful(each, header, rebuild))) {
+    for (const row of rows) {
       const control = this.control(row);
       const { input, output } = control;
       const name = dom("span", { class: "name" }, [row.label]);
@@ -88,6 +93,7 @@ export class Controls {
       this.controls.set(row.name, { ...control, row, line });
       this.element.append(line);
     }
+    return true;
   }
 
   update(): void {

@@ -171,8 +171,8 @@ export class Panel {
     const { header } = this.viewer;
     if (!header) return;
     this.note.hidden = true;
-    this.controls.build(header);
-    this.controls.element.prepend(...this.colours.rows, this.axesRow, this.paceRow);
+    const isOther = this.controls.build(header);
+    if (isOther) this.controls.element.prepend(...this.colours.rows, this.axesRow, this.paceRow);
     this.showLegend();
     this.update();
     this.arrange();

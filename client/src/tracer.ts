@@ -30,6 +30,8 @@ const FLOWS_HELD = 4;
 /** Cells that the fastest particle goes in a pass, at most: a pass is never long. */
 const PASS_CELLS = 64;
 const MOST_PARTS = 64;
+/** Nodes whose paths are followed until it is waited for them. */
+const PASS_NODES = 20_000;
 /** Length of paths that do not end. */
 const ENDLESS = 1e30;
 /** Share of a lag by which rounding may miss a step. */
@@ -439,6 +441,7 @@ export class Tracing {
     const { follow, compose, slopes, tangents } = programsOf(graphics, header, trace);
     layer(0, tangents, [], { u_inCells: 0 });
     if (count > 1 + sides * lags.length) layer(count - 1, tangents, [], { u_inCells: 1 });
+    let asked = 0;
     for (let side = 0; side < sides; side += 1) {
       const sign = side ? 1 : -1;
       const start = 1 + side * lags.length;
@@ -460,9 +463,11 @@ export class Tracing {
               u_side: sign,
               u_between: stretch.between,
             });
+            at = next;
+            if ((asked += rows * columns) < PASS_NODES) continue;
             // Waits until it is drawn, or a frame would have more passes than there is time for.
             gl.readPixels(0, 0, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, new Uint32Array(4));
-            at = next;
+            asked = 0;
             yield;
           }
         }

@@ -5,7 +5,7 @@
 //                     Camera, Player, Panel (what is seen around the picture), Pointers
 
 import { coloursOf, recoloured, type ColourChoice } from "./colours.ts";
-import { Camera, copyOf, firstLook, isSamePlace, type CameraState } from "./camera.ts";
+import { copyOf, isSamePlace, type Camera, type CameraState } from "./camera.ts";
 import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts";
 import { groundAt } from "./earthlayer.ts";
 import { HeldParts } from "./heldparts.ts";
@@ -33,9 +33,10 @@ import { Tiles } from "./tiles.ts";
 import type { Program } from "./programs.ts";
 import { isNear, variantOf, type Moment, type ViewState } from "./uniforms.ts";
 import type { Vector } from "./vectors.ts";
-import { viewState } from "./viewstate.ts";
+import { placedCamera, viewState } from "./viewstate.ts";
 
-const STILL_MS = 160; // for which a view that was moved counts as being moved
+/** For which a view that was moved, or data that have changed, count as changing. */
+const [STILL_MS, STEADY_MS] = [160, 400];
 
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
 
@@ -69,8 +70,9 @@ export class Viewer implements User {
   private busyUntil = 0;
   /** Whether the host has drawn what it was last asked for. */
   private isPainted = true;
-  /** The camera that the scene came with. */
+  /** The camera that the scene came with, and the one that looks at it where that is another one. */
   private firstCamera: CameraState | null = null;
+  private keptCamera: CameraState | null = null;
   /** Steps that the player goes on to. */
   private next: number[] = [];
 
@@ -135,7 +137,8 @@ export class Viewer implements User {
     this.root.remove();
   }
 
-  setHeader(header: Header): void {
+  /** Draw another scene, from where it says or from the camera that there is. */
+  setHeader(header: Header, keepsCamera = false): void {
     if (header.format !== FORMAT) {
       this.panel.fail(
         `The scene has format ${header.format}, and this client reads format ${FORMAT}.`,
@@ -145,9 +148,9 @@ export class Viewer implements User {
     }
     this.requests?.stop();
     const old = this.header;
-    if (old && old.generation !== undefined && old.generation === header.generation) {
-      return this.recolour(coloursOf(header));
-    }
+    const isSame = old?.generation !== undefined && old.generation === header.generation;
+    if (isSame) return this.recolour(coloursOf(header));
+    if (old) this.holdDraft(STEADY_MS);
     this.header = header;
     this.settings = { ...header.settings, ...header.own };
     this.player.setHeader(header);
@@ -155,7 +158,10 @@ export class Viewer implements User {
     this.scene?.dispose();
     this.makeScene(header);
     const isElsewhere = !old || !isSamePlace(old.geometry, header.geometry);
-    if (isElsewhere) [this.firstCamera, this.camera] = [header.camera, null];
+    if (isElsewhere) {
+      this.keptCamera = old && keepsCamera ? this.cameraState : null;
+      [this.firstCamera, this.camera] = [this.keptCamera ? null : header.camera, null];
+    }
     if (old && old.generation !== header.generation) {
       // What is the same at all times is sent again only where it differs.
       this.held.clear((name) => isElsewhere || name.includes("/"));
@@ -204,7 +210,6 @@ export class Viewer implements User {
     this.change();
   }
 
-  /** Hold a few time steps where there are others to come. */
   private trim(): void {
     this.held.trim(this.header, this.options.source, this.player.moment.slice(0, 2));
   }
@@ -229,18 +234,16 @@ export class Viewer implements User {
   }
 
   get cameraState(): CameraState | null {
-    const state = this.camera?.state ?? this.firstCamera;
+    const state = this.camera?.state ?? this.keptCamera ?? this.firstCamera;
     return state ? copyOf(state) : null;
   }
 
   /** Look from a camera, or so that the whole surface is seen. */
   setCamera(state: CameraState | null): void {
     if (!state) {
-      this.firstCamera = null;
+      this.firstCamera = this.keptCamera = null;
       this.place();
-      return this.change(true);
-    }
-    if (!this.camera) this.firstCamera = copyOf(state);
+    } else if (!this.camera) [this.firstCamera, this.keptCamera] = [copyOf(state), null];
     else if (isEqual(this.camera.state, state)) return;
     else this.camera.state = copyOf(state);
     this.change(true);
@@ -261,18 +264,16 @@ export class Viewer implements User {
 
   /** Look from where the scene says, or so that the whole surface is seen. */
   private place(): void {
-    const { header, firstCamera: first, aspect } = this;
+    const { header, firstCamera: first, keptCamera: kept, aspect } = this;
     const nodes = this.parts.get("position")?.data;
     if (!header || !nodes) return;
-    const { geometry, limits } = header;
-    const state = firstLook(geometry, limits, first, nodes, aspect);
-    const globe = header.earth && !header.earth.map ? header.earth.radius : 0;
-    this.camera = new Camera(state, limits, geometry.planar, aspect, globe);
-    this.camera.pick = (x, y) =>
-      (this.point(x, y)?.position as Vector | undefined) ?? this.ground(x, y);
+    const camera = (this.camera = placedCamera(header, first, nodes, aspect));
+    camera.pick = (x, y) => (this.point(x, y)?.position as Vector | undefined) ?? this.ground(x, y);
+    camera.state = kept ?? camera.state;
+    this.keptCamera = null;
     this.panel.showAxes();
     // A host holds the camera that is shown.
-    if (!first || !isEqual(first, state)) this.options.onCamera?.(copyOf(state));
+    if (!first || !isEqual(first, camera.start)) this.options.onCamera?.(copyOf(camera.state));
   }
 
   private get aspect(): number {
@@ -323,9 +324,8 @@ export class Viewer implements User {
     }
   }
 
-  /** Set the clock, in seconds. */
-  setClock(clock: number): void {
-    this.player.clock = clock;
+  setClock(seconds: number): void {
+    this.player.clock = seconds;
     this.panel.tick();
     this.change();
   }
@@ -357,8 +357,8 @@ export class Viewer implements User {
   }
 
   /** Draw drafts alone for a while, as the view or a control is being moved. */
-  private holdDraft(): void {
-    this.busyUntil = performance.now() + STILL_MS;
+  private holdDraft(duration = STILL_MS): void {
+    this.busyUntil = performance.now() + duration;
   }
 
   get isHeld(): boolean {

@@ -1,10 +1,21 @@
 // Where from and when a moment is seen, as the shaders' uniforms have it.
 
-import type { Camera } from "./camera.ts";
+import { Camera, firstLook, type CameraState } from "./camera.ts";
 import type { Player } from "./player.ts";
 import type { Header } from "./protocol.ts";
 import type { Moment, ViewState } from "./uniforms.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
+
+/** The camera that a scene comes with, or one that sees all of its nodes. */
+export function placedCamera(
+  { geometry, limits, earth }: Header,
+  first: CameraState | null,
+  nodes: ArrayLike<number>,
+  aspect: number,
+): Camera {
+  const state = firstLook(geometry, limits, first, nodes, aspect);
+  return new Camera(state, limits, geometry.planar, aspect, earth && !earth.map ? earth.radius : 0);
+}
 
 interface Look {
   header: Header;

@@ -264,13 +264,14 @@ class WidgetView {
     if (!header?.format) return;
     const rows = header.table ?? [];
     const values = rows.map((row) => [row.name, model.get(row.name) ?? row.default]);
-    this.viewers[n].setHeader({
-      ...header,
+    const now = {
+      shaders: (model.get("_shaders") as Header["shaders"][])[n],
       settings: Object.fromEntries(values),
       camera: cameraOf(model.get("camera")),
       time: (model.get("time") as number | undefined) ?? 0,
       clock: (model.get("clock") as number | undefined) ?? 0,
-    });
+    };
+    this.viewers[n].setHeader({ ...header, ...now }, true);
     for (const delivery of this.early.splice(0)) this.take(delivery);
     for (const { name } of rows) {
       this.follow(name, (value) => {

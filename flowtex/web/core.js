@@ -339,7 +339,7 @@ turn);result2.set([angle,Math.hypot(...this.ray(n,k)),line],4*(n*width+k))})}),r
 flatMap(({line,inward,near},n)=>[line,inward,near,this.shift(n)]),planes=this.poles.flatMap(({plane})=>plane);for(;numbers.
 length<8;)numbers.push(0);for(;planes.length<12;)planes.push(0);return{u_poles:numbers,u_planes:planes,u_polar:Number(this.
 isAlongJ)}}};var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=8,
-DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,ENDLESS=1e30,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape2){
+DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,PASS_NODES=2e4,ENDLESS=1e30,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape2){
 let[rows,columns]=shape2,width=padded.shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,
 n=0;j<rows;j+=1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.
 middle[k%3]}return{data,shape:[rows,columns,3]}}function normalOf(padded,trace,shape2){let[rows,columns]=shape2,width=3*
@@ -416,14 +416,15 @@ gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);texture
 gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(null),graphics.programs.use(pass,{...uniforms2,
 ...values}),gl.drawArrays(gl.TRIANGLES,0,3)},layers=this.layerTarget(result2,size),layer=(n,pass,textures,values)=>{draw(
 layers.begin(n),[own,...constant,...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=programsOf(graphics,
-header,trace);layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});for(let side=0;side<
-sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];for(let[m,lag]of lags.
-entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:null,at=now;for(let stretch of stretches(
-header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(n)),parts=composer?[[from,lag]]:this.partsOf(
-stretch);for(let[begin,end]of parts){let next=pool.find(each=>![first,before,now,at].includes(each))??pool[0];gl.bindFramebuffer(
-gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],before[0],far,rays],composer??follow,{u_lagEarlier:earlier,
-u_from:begin,u_to:end,u_side:sign,u_between:stretch.between}),gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(
-4)),at=next,yield}}[before,now]=[now,at],m||(first=now);let fourth=m===1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],
+header,trace);layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});let asked=0;
+for(let side=0;side<sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];
+for(let[m,lag]of lags.entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:
+null,at=now;for(let stretch of stretches(header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(
+n)),parts=composer?[[from,lag]]:this.partsOf(stretch);for(let[begin,end]of parts){let next=pool.find(each=>![first,before,
+now,at].includes(each))??pool[0];gl.bindFramebuffer(gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],
+before[0],far,rays],composer??follow,{u_lagEarlier:earlier,u_from:begin,u_to:end,u_side:sign,u_between:stretch.between}),
+at=next,!((asked+=rows*columns)<PASS_NODES)&&(gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(4)),
+asked=0,yield)}}[before,now]=[now,at],m||(first=now);let fourth=m===1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],
 now[0]],{u_fourth:fourth,u_lag:sign*lag})}layer(start,slopes,[first[0],now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.
 finish(),result2}};var STEPS_HELD={slices:[12,4],flow:[100,24]},HeldParts=class{all=new Map;graphics;constructor(graphics){this.graphics=graphics}set(part){
 let{name,digest}=part;if(digest&&this.all.get(name)?.digest===digest)return!1;let held=this.graphics.hold(part);return this.
@@ -576,20 +577,21 @@ noise_correction:({paper},rebuild)=>!!paper&&rebuild,lines:({slices},rebuild)=>s
 settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),lod:()=>!1,show_level:()=>!1};function isUseful({
 name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}function isInUse({needs=[]},settings){
 let holds=needs.map(([name,sign,value])=>settings[name]===value==(sign==="=="));return!needs.length||holds.includes(!0)}
-var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;constructor(viewer){
-this.viewer=viewer}build(header){this.controls.clear(),this.element.replaceChildren();let rebuild=this.viewer.options.rebuild??
-!1;for(let row2 of header.table.filter(each=>isUseful(each,header,rebuild))){let control=this.control(row2),{input,output}=control,
-name=dom("span",{class:"name"},[row2.label]),attributes={class:"row","data-setting":row2.name},line=dom("label",attributes,
-[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row2.name,{...control,
-row:row2,line}),this.element.append(line)}}update(){let{settings}=this.viewer;for(let[name,{row:row2,line,show}]of this.
-controls){name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.toggle("idle",isIdle),
-line.title=isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control==="checkbox"?this.switch(
-row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.slider(row2)}switch({name}){
-let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.
-choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom(
-"option",{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.
-viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[
-min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.
+var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;rows=null;constructor(viewer){
+this.viewer=viewer}build(header){let rebuild=this.viewer.options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,
+header,rebuild));if(JSON.stringify(rows)===JSON.stringify(this.rows))return!1;this.rows=rows,this.controls.clear(),this.
+element.replaceChildren();for(let row2 of rows){let control=this.control(row2),{input,output}=control,name=dom("span",{class:"\
+name"},[row2.label]),attributes={class:"row","data-setting":row2.name},line=dom("label",attributes,[name,...output?[output]:
+[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row2.name,{...control,row:row2,line}),this.
+element.append(line)}return!0}update(){let{settings}=this.viewer;for(let[name,{row:row2,line,show}]of this.controls){name in
+settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.toggle("idle",isIdle),line.title=isIdle?
+`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control==="checkbox"?this.switch(row2):row2.control===
+"choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.slider(row2)}switch({name}){let input=dom("\
+input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.
+checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom("option",
+{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.viewer.
+choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[min,max]=[
+low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.
 viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.viewer.choose(name,
 clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,fromSlider,min,max,step}=scaleOf2(
 row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("o\
@@ -1109,35 +1111,35 @@ listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",
 label":"Controls"},[this.stepButtons[0],this.playButton,this.stepButtons[1],this.track,this.button("home","Show everythi\
 ng (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{
 this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.
-toggle())])}build(){let{header}=this.viewer;header&&(this.note.hidden=!0,this.controls.build(header),this.controls.element.
-prepend(...this.colours.rows,this.axesRow,this.paceRow),this.showLegend(),this.update(),this.arrange())}update(){let{header,
-settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==this.lookOf(
-settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(
-!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":
-"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(
-header);this.playButton.hidden=this.track.hidden=this.paceRow.hidden=!varies&&!streams;for(let button of this.stepButtons)
-button.hidden=!varies;this.paceMenu.value=String(this.viewer.player.pace),this.slider.disabled=!varies&&settings.motion===
-"off";let width=header&&this.date(header)?.length||8+withUnit("",header?.slices.timeUnit??"").length;this.timeText.style.
-minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,differences=(header?.differs??
-[]).filter(name2=>name2 in settings).map(name2=>{let label2=header?.table.find(row2=>row2.name===name2)?.label??name2,value=settings[name2];
-return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}),name=header?.name??"",title=differences.join(", ")||
-(options.named&&this.viewer.together.length<2?"":name),{first}=this,isApart=first!==this.viewer.player&&this.viewer.player.
-time!==first.time,moment=header&&isApart&&this.viewer.player.varies?this.moment(header):"";this.title.textContent=[title,
-moment].filter(Boolean).join(" · "),this.title.hidden=!this.title.textContent;let label=options.label??(title||name);root.
-setAttribute("aria-label",label?`Flow texture: ${label}`:"Flow texture")}get first(){return this.viewer.together[0]?.player??
-this.viewer.player}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)return;this.first!==player&&
-this.name();let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/(last-first||1));let text=player.
-varies?this.moment(header):`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=text)}moment(header){
-let{player}=this.viewer;return this.date(header)??withUnit(numberText(player.time),header.slices.timeUnit)}date({slices}){
-return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level}\
- ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.
-colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point,ground=null){let{header}=this.
-viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||!header)
-return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),!point)
-return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(dom("\
-b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=open,
-this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=shown;for(let{panel}of this.viewer.together)
-panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{header,options,root}=this.viewer;return(options.
+toggle())])}build(){let{header}=this.viewer;if(!header)return;this.note.hidden=!0,this.controls.build(header)&&this.controls.
+element.prepend(...this.colours.rows,this.axesRow,this.paceRow),this.showLegend(),this.update(),this.arrange()}update(){
+let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==
+this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
+ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
+playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
+null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=this.paceRow.hidden=!varies&&!streams;for(let button of this.
+stepButtons)button.hidden=!varies;this.paceMenu.value=String(this.viewer.player.pace),this.slider.disabled=!varies&&settings.
+motion==="off";let width=header&&this.date(header)?.length||8+withUnit("",header?.slices.timeUnit??"").length;this.timeText.
+style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,differences=(header?.
+differs??[]).filter(name2=>name2 in settings).map(name2=>{let label2=header?.table.find(row2=>row2.name===name2)?.label??
+name2,value=settings[name2];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}),name=header?.name??"",
+title=differences.join(", ")||(options.named&&this.viewer.together.length<2?"":name),{first}=this,isApart=first!==this.viewer.
+player&&this.viewer.player.time!==first.time,moment=header&&isApart&&this.viewer.player.varies?this.moment(header):"";this.
+title.textContent=[title,moment].filter(Boolean).join(" · "),this.title.hidden=!this.title.textContent;let label=options.
+label??(title||name);root.setAttribute("aria-label",label?`Flow texture: ${label}`:"Flow texture")}get first(){return this.
+viewer.together[0]?.player??this.viewer.player}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)
+return;this.first!==player&&this.name();let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/
+(last-first||1));let text=player.varies?this.moment(header):`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.
+timeText.textContent=text)}moment(header){let{player}=this.viewer;return this.date(header)??withUnit(numberText(player.time),
+header.slices.timeUnit)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({show_level,
+strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.
+legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point,ground=null){
+let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||
+!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),
+!point)return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(
+dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=
+open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=shown;for(let{panel}of this.viewer.
+together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{header,options,root}=this.viewer;return(options.
 follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&root.clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){
 this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&hasTicks(header)?"ticks":"none",kind=this.
 axesKind??usual,shown=this.isFramed?kind:"none";this.axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(
@@ -1519,31 +1521,34 @@ let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));
 each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>(this.host.options.
 source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();
 for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cm\
-ap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};function viewState({header,camera,anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,
-local=toFrame(geometry.frame,subtract2(focus,geometry.center)),range=constants.anchorRange*2*camera.height,isFar=v2=>v2.
-some(c=>Math.abs(c)>range);return{focus,anchor:isFar(subtract2(local,anchor))?isFar(local)?local:[0,0,0]:anchor,eye:camera.
-eye,between:shown[2],time:player.timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(rows*density,1)}}var STILL_MS=160,isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+ap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};function placedCamera({geometry,limits,earth},first,nodes,aspect){let state=firstLook(geometry,limits,first,nodes,aspect);
+return new Camera(state,limits,geometry.planar,aspect,earth&&!earth.map?earth.radius:0)}function viewState({header,camera,
+anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.
+frame,subtract2(focus,geometry.center)),range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);
+return{focus,anchor:isFar(subtract2(local,anchor))?isFar(local)?local:[0,0,0]:anchor,eye:camera.eye,between:shown[2],time:player.
+timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(rows*density,1)}}var[STILL_MS,STEADY_MS]=[160,400],isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;held=new HeldParts(
 this.graphics);parts=this.held.all;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
-this];renderer;busyUntil=0;isPainted=!0;firstCamera=null;next=[];constructor(element,options={}){this.options=options,this.
-requests=options.source?new Requests(options.source,this):null;let{root}=this;root.className="flowtex",root.tabIndex=0,Object.
-assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.setAttribute("data-lm-suppress-shortcuts","tr\
-ue"),root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.
-append(root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.observe(),!this.graphics.gl&&!options.streamed&&
-this.panel.fail("This browser has no WebGL2, which the picture is drawn with.","Turn on hardware acceleration in its set\
-tings, or use a recent Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(
-()=>this.panel.arrange()),root),lifetime.observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(
+this];renderer;busyUntil=0;isPainted=!0;firstCamera=null;keptCamera=null;next=[];constructor(element,options={}){this.options=
+options,this.requests=options.source?new Requests(options.source,this):null;let{root}=this;root.className="flowtex",root.
+tabIndex=0,Object.assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.setAttribute("data-lm-suppr\
+ess-shortcuts","true"),root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(
+this),element.append(root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.observe(),!this.graphics.
+gl&&!options.streamed&&this.panel.fail("This browser has no WebGL2, which the picture is drawn with.","Turn on hardware \
+acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(
+new ResizeObserver(()=>this.panel.arrange()),root),lifetime.observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(
 entries=>{this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,
 root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){
 let{objects,users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,frames:this.renderer.frames}}dispose(){
 this.lifetime.isOver||(this.player.playing=!1,this.lifetime.end(),this.requests?.stop(),this.tiles?.dispose(),this.tiles=
 null,this.scene?.dispose(),this.scene=null,this.held.clear(),this.graphics.leave(this),this.renderer.dispose(),this.root.
-remove())}setHeader(header){if(header.format!==4){this.panel.fail(`The scene has format ${header.format}, and this clien\
-t reads format ${4}.`,"Use the client of the flowtex that made the scene.");return}this.requests?.stop();let old=this.header;
-if(old&&old.generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));this.header=
-header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.tiles?.dispose(),this.scene?.
-dispose(),this.makeScene(header);let isElsewhere=!old||!isSamePlace(old.geometry,header.geometry);isElsewhere&&([this.firstCamera,
-this.camera]=[header.camera,null]),old&&old.generation!==header.generation&&this.held.clear(name=>isElsewhere||name.includes(
+remove())}setHeader(header,keepsCamera=!1){if(header.format!==4){this.panel.fail(`The scene has format ${header.format},\
+ and this client reads format ${4}.`,"Use the client of the flowtex that made the scene.");return}this.requests?.stop();
+let old=this.header;if(old?.generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));
+old&&this.holdDraft(STEADY_MS),this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
+header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header);let isElsewhere=!old||!isSamePlace(old.geometry,
+header.geometry);isElsewhere&&(this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.camera]=[this.
+keptCamera?null:header.camera,null]),old&&old.generation!==header.generation&&this.held.clear(name=>isElsewhere||name.includes(
 "/")),this.panel.build(),this.resize(),this.change()}recolour(colours){if(this.header){Object.assign(this.header,colours);
 for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){
 if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
@@ -1555,26 +1560,26 @@ name)&&this.panel.showLegend(),this.change())}trim(){this.held.trim(this.header,
 0,2))}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(
 this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.
 setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(
-name,value)}get cameraState(){let state=this.camera?.state??this.firstCamera;return state?copyOf(state):null}setCamera(state){
-if(!state)return this.firstCamera=null,this.place(),this.change(!0);if(!this.camera)this.firstCamera=copyOf(state);else{
-if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),
-this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.
-reportCamera())}place(){let{header,firstCamera:first,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)
-return;let{geometry,limits}=header,state=firstLook(geometry,limits,first,nodes,aspect),globe=header.earth&&!header.earth.
-map?header.earth.radius:0;this.camera=new Camera(state,limits,geometry.planar,aspect,globe),this.camera.pick=(x,y)=>this.
-point(x,y)?.position??this.ground(x,y),this.panel.showAxes(),(!first||!isEqual(first,state))&&this.options.onCamera?.(copyOf(
-state))}get aspect(){return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.
-player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.
-header??{};if(timeShift===null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=
-last?own:last)}step(count2){let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&
-(this.pause(),this.setTime(player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,options}=this,
-{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),
-options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(clock){this.player.clock=
-clock,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.
-header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.
-update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();
-this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.
-options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(){this.busyUntil=performance.now()+STILL_MS}get isHeld(){
+name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):
+null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,
+this.keptCamera]=[copyOf(state),null];else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.
+change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){
+this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.
+parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.
+pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.
+showAxes(),(!first||!isEqual(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.
+max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
+this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.header??{};if(timeShift===
+null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=last?own:last)}step(count2){
+let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&(this.pause(),this.setTime(
+player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,options}=this,{first,last}=player.range(
+this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.
+time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.player.clock=seconds,this.panel.tick(),
+this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.
+varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),
+this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.
+playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??
+this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=performance.now()+duration}get isHeld(){
 return performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.panel.
 showAxes(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){
 let scenes2=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.pending??0),scenes2}draw(){
@@ -1820,11 +1825,11 @@ setClock(Number(clock)))),this.follow("playing",playing=>playing?first.play():fi
 panel.toggle(!!shown))}resize(){let[width,height]=this.model.get("size")??[0,0],{style,parentElement}=this.view;style.width=
 width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX2}px`,parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){
 let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row2=>[
-row2.name,model.get(row2.name)??row2.default]);this.viewers[n].setHeader({...header,settings:Object.fromEntries(values),
-camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0});for(let delivery of this.early.
-splice(0))this.take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(
-name,value)})}take(delivery){let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.
-header.generation??0:-1;if(delivery.generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.
+row2.name,model.get(row2.name)??row2.default]),now={shaders:model.get("_shaders")[n],settings:Object.fromEntries(values),
+camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0};this.viewers[n].setHeader({...header,
+...now},!0);for(let delivery of this.early.splice(0))this.take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.
+viewers)viewer.followSetting(name,value)})}take(delivery){let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.
+header?viewer.header.generation??0:-1;if(delivery.generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.
 generation!==generation&&name.includes("/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.
 lacking.filter(name=>!isOld(name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,
 view:delivery.view})}dispose(){for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.

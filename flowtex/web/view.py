@@ -73,6 +73,11 @@ class WebView:
         colours = colours_of(self.scene, textures.geometry.field, self._background)
         return ClientData(textures, colours, self._times, pyramid, traces=True)
 
+    def show(self, field: FlowField) -> None:
+        """Show another flow in the same way; raises what :meth:`Scene.showing` does."""
+        before, self.scene = self.scene, self.scene.showing(field)
+        self.scene.follow(before)
+
     def recoloured(self, data: ClientData) -> ClientData:
         """Return what the client has been handed with the colours of this moment."""
         return data.recoloured(colours_of(self.scene, data.field, self._background))

@@ -193,6 +193,8 @@ class Feed:
         """Make the textures again, and the traces if need be."""
         if affects == "uniform":
             return
+        self.picture, self._drawing = None, False
+        self.pictured.clear()
         if affects == "appearance":
             self._builds.do(self._recolour, urgency=2)
             return
@@ -257,14 +259,16 @@ class Feed:
         """Replace a scene that is still coarse and wanted."""
         shape = self.scene.textures.geometry.shape
         if order == self._order and shape != self._view.shape:
-            self._replace(make())
+            self._replace(make(), order)
 
-    def _replace(self, scene: ClientData) -> None:
-        """Put a scene in the place of the present one, once it can be shown."""
-        order = self._order
+    def _replace(self, scene: ClientData, order: int | None = None) -> None:
+        """Put a scene in the place of the present one, unless another than ``order`` is wanted.
+
+        Without one it is shown in any case: the flow may change faster than a scene is made.
+        """
         parts = self._first_parts(scene)
         with self._lock:
-            if order != self._order or self._closed:
+            if order not in (None, self._order) or self._closed:
                 return
             if scene.traced != self.scene.traced:
                 self._sent.clear()  # a client that traces makes some of the arrays itself

@@ -14,6 +14,7 @@ import numpy as np
 import traitlets
 
 from flowtex.errors import FieldError
+from flowtex.field import FlowField
 from flowtex.field.locate import locate
 from flowtex.options import (
     Appearance,
@@ -23,7 +24,7 @@ from flowtex.options import (
     ViewOptions,
     accepts_options,
 )
-from flowtex.scene import NO_IMAGE, Change, Scene
+from flowtex.scene import NO_IMAGE, Change, Scene, share_field
 from flowtex.settings import TABLE
 from flowtex.textures.images import load_image
 from flowtex.web.assets import client_module
@@ -47,6 +48,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     Attributes
     ----------
+    field
+        The flow; ``widget.field = mesh`` shows another one, of what the widget can be made of, with
+        the same settings and from the same camera.
     {appearance}
         Arguments that the widget was made with, live.
     camera
@@ -81,6 +85,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     _header = traitlets.Dict().tag(sync=True)
     _header_beside = traitlets.Dict().tag(sync=True)
+    #: The text of each view's shaders: most of a header, and seldom another one.
+    _shaders: Any = traitlets.List([{}, {}]).tag(sync=True)
     _key = traitlets.Unicode().tag(sync=True)
     camera = CameraTrait().tag(sync=True, echo_update=False)
     time = traitlets.Float(0.0).tag(sync=True, echo_update=False)
@@ -132,7 +138,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         )
         first = arguments.view.first_camera(views[0].field.surface, PREVIEW[0] / PREVIEW[1])
         super().__init__(
-            **dict(zip(HEADERS, self._views.headers, strict=False)),
             _key=uuid.uuid4().hex,
             camera=first.to_dict(),
             time=self.scene.time,
@@ -140,6 +145,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             bar=bar,
             **dict(self.settings),
         )
+        for number, header in enumerate(self._views.headers):
+            self._announce(number, header)
+        self._reading = arguments.field
         self.on_msg(self._handle_message)
         self.observe(self._to_settings, list(TABLE))
         self.observe(self._to_time, "time")
@@ -151,6 +159,17 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     def scene(self) -> Scene:
         """The arrays behind the picture."""
         return self._views.first
+
+    @property
+    def field(self) -> FlowField:
+        """The flow. Another one, or what makes one, takes its place: camera and settings stay."""
+        return self.scene.field
+
+    @field.setter
+    def field(self, mesh: Any) -> None:
+        reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
+        self._views.show(share_field(reading.field(mesh)))
+        self._frame = None
 
     def set_image(self, image: Any) -> None:
         """Advect another image, one that the argument ``image`` takes."""
@@ -245,7 +264,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         # Not while the browser's values are being taken in, which would hold it back until
         # after the arrays that belong to it.
         with self._state_lock:
-            setattr(self, HEADERS[number], header)
+            shaders = list(self._shaders)
+            shaders[number] = header["shaders"]
+            self._shaders = shaders
+            setattr(self, HEADERS[number], {**header, "shaders": None})
 
     def _handle_message(self, _: Any, content: Any, buffers: list[Any]) -> None:
         """Answer the client."""
@@ -274,7 +296,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             setattr(self, name, value)
 
     def _scene_changed(self, affects: Change) -> None:
-        if affects == "uniform":
+        if affects != "appearance":
             self._set("time", self.scene.time)
 
     def __repr__(self) -> str:

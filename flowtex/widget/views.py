@@ -14,8 +14,9 @@ from typing import Any, TypeGuard
 
 import numpy as np
 
+from flowtex.field import FlowField
 from flowtex.rendering.webgl.protocol import Header
-from flowtex.scene import Change
+from flowtex.scene import Change, Scene
 from flowtex.tiles import TileKey
 from flowtex.web.view import WebView
 from flowtex.widget.feed import Feed
@@ -40,9 +41,20 @@ class Views:
         self, views: Sequence[WebView], announce: Callable[[int, Header], None], send: Send
     ) -> None:
         self.views = tuple(views)
-        self.first = self.views[0].scene
         self.first.observe(self._share_appearance)
         self.feeds = [self._feed(n, view, announce, send) for n, view in enumerate(self.views)]
+
+    @property
+    def first(self) -> Scene:
+        """What the first view shows."""
+        return self.views[0].scene
+
+    def show(self, field: FlowField) -> None:
+        """Show another flow in all views, or in none where it does not fit one of them."""
+        for view in self.views:
+            view.scene.showing(field).close()
+        for view in self.views:
+            view.show(field)
 
     def _feed(
         self, number: int, view: WebView, announce: Callable[[int, Header], None], send: Send

@@ -134,6 +134,45 @@ def test_a_cell_shows_a_flow_that_both_sides_can_change(notebook: Lab) -> None:
     wait_until(lambda: lab.said(THREADS) == "[]", lambda: lab.said(THREADS))
 
 
+CHANGING = """import flowtex, ipywidgets
+def gyre(turn):
+    field = flowtex.examples.double_gyre_field(shape=(40, 60))
+    points = field.points * [1 + turn, 1, 1] + [4 * turn, 0, 0]
+    return flowtex.FlowField.from_arrays(points, field.velocity[0] * [1, 1 - 2 * turn, 1])
+w = flowtex.show(gyre(0), samples=9, size=(300, 200), cmap="magma")
+slider = ipywidgets.FloatSlider(max=1, step=0.5)
+slider.observe(lambda change: setattr(w, "field", gyre(change["new"])), "value")
+slider"""
+VIEWER = "document.querySelector('.flowtex-views').first"
+
+
+def test_a_slider_changes_the_data_and_the_view_stays(notebook: Lab) -> None:
+    lab, page = notebook, notebook.page
+    lab.run(CHANGING)
+    page.wait_for_function(DRAWN, arg=1)
+    dragged(lab, 0, 150, 60)
+    lab.said("setattr(w, 'samples', 15)")
+    page.wait_for_function(DRAWN, arg=1)
+    before = picture(page).astype(float)
+    camera = page.evaluate(f"{VIEWER}.camera.state")
+    handle = page.locator(".noUi-handle")
+    with acted(page):
+        handle.focus()
+        page.keyboard.press("ArrowRight")
+        page.keyboard.press("ArrowRight")
+        page.wait_for_function(f"() => {VIEWER}.header.geometry.center[0] > 4")
+    # The surface has gone out of the view, which has stayed.
+    assert page.evaluate(f"{VIEWER}.camera.state") == camera
+    assert page.evaluate(f"{VIEWER}.settings.samples") == 15
+    assert np.ptp(picture(page)) < np.ptp(before) / 4
+    with acted(page):
+        page.locator("[data-name=home]").click()
+    assert variation(picture(page)) > 5
+    assert lab.said("w.camera['focal_point'][0] > 4") == "True"
+    refused = "try: w.field = 'nothing'\nexcept Exception as error: said = type(error).__name__"
+    assert lab.said(f"(exec({refused!r}), w.field.shape)[1]") == "(40, 60)"
+
+
 MANY = """import flowtex
 mesh = flowtex.examples.double_gyre_field(shape=(30, 60))
 ws = [flowtex.show(mesh, samples=5, size=(90, 60), bar=False) for n in range(8)]"""

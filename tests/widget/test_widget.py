@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
 from PIL import Image
 from triangle_meshes import sphere, surface_of
 from waiting import PATIENCE_S, wait_until
@@ -547,6 +548,61 @@ def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -
     assert [bool(found) for found in re.findall(part.format("noise"), text)] == [True]
     # What the first view has as well lies in the page once.
     assert [bool(found) for found in re.findall(part.format("position"), text)] == [False]
+
+
+def test_another_flow_takes_the_place_of_the_first(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    widget = make(gyre(3), samples=30, contrast=0.5)
+    heard = Heard(widget, monkeypatch)
+    settle(widget, heard)
+    widget.time, widget.camera = 2.0, {"focal_point": [0.5, 0.25, 0]}
+    camera, first = dict(widget.camera), heard.arrays["flow/0"]
+    resent: list[Any] = []
+    widget.observe(resent.append, "_shaders")
+    widget.field = gyre(2, nodes=20)
+    heard.wait(lambda: heard.arrays["flow/0"].shape != first.shape)
+    assert widget._header["geometry"]["shape"] == [20, 20]
+    assert (widget.samples, widget.contrast, widget.camera) == (30, 0.5, camera)
+    assert widget.time == widget.scene.time == 1.0  # the nearest that it has
+    assert resent == [] and widget._header["shaders"] is None  # the text of 60 kB stays
+    # Settings reach what is shown now.
+    widget.noise = "spots"
+    heard.wait(lambda: "noise" in heard.arrays)
+
+
+def test_a_mesh_is_read_as_the_first_one_was(make: Make) -> None:
+    def block(scale: float) -> pv.ImageData:
+        mesh = pv.ImageData(dimensions=(8, 7, 4))
+        for name, turn in (("wind", scale), ("water", 0.0)):
+            mesh[name] = np.tile([1.0, turn, 0.0], (mesh.n_points, 1))
+        return mesh
+
+    widget = make(block(1.0), vectors="wind", plane="k=2")
+    widget.field = block(2.0)
+    assert widget.field.velocity[0, 0, 0].tolist() == [1, 2, 0]
+    field = gyre()
+    widget.field = field
+    assert widget.field.shape == field.shape
+
+
+def test_a_flow_that_does_not_fit_leaves_what_is_shown(make: Make) -> None:
+    at = nodes_of((9, 9))
+    warm = flowtex.FlowField.from_arrays(at, at, scalars={"heat": at[..., 0]})
+    widget = make(warm, beside={"scalars": "heat"})
+    field, header = widget.field, widget._header
+    wrong = [
+        ("mesh", r"mesh"),
+        (np.zeros((3, 3)), r"ndarray"),
+        (pv.Plane(), r"vectors"),
+        (gyre(), r"^there is no scalar 'heat'"),  # which the second view shows
+    ]
+    for value, said in wrong:
+        with pytest.raises((ValueError, TypeError, OSError), match=said):
+            widget.field = value
+    assert widget.field is field and widget._header is header
+    widget.cmap = "magma"
+    assert widget.scene.field is field
 
 
 def test_opacity_and_legend(make: Make) -> None:

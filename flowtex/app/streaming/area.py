@@ -86,8 +86,8 @@ class FlowArea(AppearanceAttributes):
         self.server = server
         self.state = state or PageState(server)
         names = FieldOptions.__dataclass_fields__
-        field = FieldOptions(**{k: options.pop(k, None) for k in names}).field(flow)
-        self.viewport = Viewport(field, **options)
+        self._reading = FieldOptions(**{k: options.pop(k, None) for k in names})
+        self.viewport = Viewport(self._reading.field(flow), **options)
         self.stream = FrameStream(self.state.key("view"), self.viewport)
         self.player = Player(self.viewport, self.stream)
         self.element = Element(self.state, self.viewport, self.stream, self.player)
@@ -106,6 +106,16 @@ class FlowArea(AppearanceAttributes):
     def scene(self) -> Scene:
         """The arrays behind the picture."""
         return self.viewport.scene
+
+    @property
+    def field(self) -> FlowField:
+        """The flow. Another one, or a mesh that makes one, takes its place: the camera stays."""
+        return self.viewport.field
+
+    @field.setter
+    def field(self, mesh: Any) -> None:
+        reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
+        self.show(reading.field(mesh), keep_view=True, keep_range=True)
 
     @property
     def settings(self) -> Settings:
