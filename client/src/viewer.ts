@@ -164,7 +164,7 @@ export class Viewer implements User {
     }
     if (old && old.generation !== header.generation) {
       // What is the same at all times is sent again only where it differs.
-      this.held.clear((name) => isElsewhere || name.includes("/"));
+      this.held.clear((name) => (isElsewhere && !keepsCamera) || name.includes("/"));
     }
     this.panel.build();
     this.resize(); // at once, so that no picture is drawn in the size without the bar

@@ -1548,27 +1548,27 @@ let old=this.header;if(old?.generation!==void 0&&old.generation===header.generat
 old&&this.holdDraft(STEADY_MS),this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
 header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header);let isElsewhere=!old||!isSamePlace(old.geometry,
 header.geometry);isElsewhere&&(this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.camera]=[this.
-keptCamera?null:header.camera,null]),old&&old.generation!==header.generation&&this.held.clear(name=>isElsewhere||name.includes(
-"/")),this.panel.build(),this.resize(),this.change()}recolour(colours){if(this.header){Object.assign(this.header,colours);
-for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){
-if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
-let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){
-this.options.streamed||(this.scene=new Scene(this.graphics,header,this.parts),this.tiles=new Tiles(this,this.scene))}setPart(part){
-let{name}=part,tile=tilePart(name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});this.held.set(
-part)&&(this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(
-name)&&this.panel.showLegend(),this.change())}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(
-0,2))}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(
-this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){name in(this.header?.own??{})||this.
-setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(
-name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):
-null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,
-this.keptCamera]=[copyOf(state),null];else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(state)}this.
-change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){
-this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.
-parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.
-pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.
-showAxes(),(!first||!isEqual(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.
-max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
+keptCamera?null:header.camera,null]),old&&old.generation!==header.generation&&this.held.clear(name=>isElsewhere&&!keepsCamera||
+name.includes("/")),this.panel.build(),this.resize(),this.change()}recolour(colours){if(this.header){Object.assign(this.
+header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),
+this.change()}}chooseColours(choice){if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.
+together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(
+part),viewer.recolour(colours)}}makeScene(header){this.options.streamed||(this.scene=new Scene(this.graphics,header,this.
+parts),this.tiles=new Tiles(this,this.scene))}setPart(part){let{name}=part,tile=tilePart(name);if(tile)return void this.
+tiles?.setPart(tile[0],{...part,name:tile[1]});this.held.set(part)&&(this.scene?.forget(name),this.trim(),name==="cmap"&&
+this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change())}trim(){this.
+held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}setSettings(settings){Object.entries(settings).
+every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
+name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
+this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?
+copyOf(state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.
+firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(
+state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.
+camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,
+aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,
+first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.
+keptCamera=null,this.panel.showAxes(),(!first||!isEqual(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){
+return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
 this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.header??{};if(timeShift===
 null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=last?own:last)}step(count2){
 let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&(this.pause(),this.setTime(

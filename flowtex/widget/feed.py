@@ -326,10 +326,10 @@ class Feed:
                 self._deliver({n: parts[n] for n in names if n in parts}, again=True, offer=False)
 
     def _deliver(self, parts: Parts, *, again: bool, offer: bool = True) -> None:
-        """Send arrays, the small ones first; those that a client has only when ``again``."""
+        """Send arrays, the flow after its surface; those that a client has only when ``again``."""
         offers: list[dict[str, Any]] = []
         batch: list[tuple[dict[str, Any], AnyArray]] = []
-        for name, array in sorted(parts.items(), key=lambda item: item[1].nbytes):
+        for name, array in sorted(parts.items(), key=lambda item: ("/" in item[0], item[1].nbytes)):
             info = part_info(name, array)
             if not again and "/" not in name and self._sent.get(name) == info["digest"]:
                 continue

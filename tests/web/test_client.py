@@ -561,8 +561,8 @@ def test_a_whole_scene_takes_the_place_of_a_coarse_one(client: ClientPage) -> No
 
 MODEL = """([scene, size]) => {
   const { settings, camera, time, clock, ...header } = scene.header;
-  const values = { _header: header, _shaders: [header.shaders], ...settings, camera, time, clock, playing: false,
-    point: null, size, bar: true };
+  const values = { _header: header, _shaders: [header.shaders], ...settings, camera, time, clock,
+    playing: false, point: null, size, bar: true };
   const handlers = new Map();
   const log = (window.log = []);
   const fire = (name, ...given) => (handlers.get(name) ?? []).slice().forEach((f) => f(...given));

@@ -211,7 +211,7 @@ def test_a_large_field_comes_coarse_first(
     heard = Heard(widget, monkeypatch)
     heard.say(kind="ready")
     heard.wait(lambda: heard.arrays.get("padded", np.zeros(1)).shape == (62, 62, 3))
-    heard.wait(lambda: names_of(heard.messages[-1])[-1] == "padded")
+    heard.wait(lambda: names_of(heard.messages[-1])[-1] == "flow/0")
     assert widget._header["geometry"]["shape"] == [60, 60]
     # Each array comes under the header that it belongs to.
     assert all(message["generation"] == message["header"] for message in heard.messages)

@@ -7,14 +7,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 pytest.importorskip("trame_rca")
 
 from aiohttp import web
 from small_pages import small, small_page
+from trame.app import get_server
 
 import flowtex
-from flowtex.app import FlowApp
+from flowtex.app import FlowApp, FlowArea
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.tiles import Pyramid
 
@@ -94,6 +96,26 @@ def test_a_tile_is_made_when_it_is_asked_for(
     app.close()
     with pytest.raises(web.HTTPNotFound):
         ask("0,0,1.0")
+
+
+def test_another_mesh_is_read_as_the_first_one_and_the_view_stays() -> None:
+    def gyre(turn: float, **arrays: Any) -> pv.ImageData:
+        mesh = pv.ImageData(dimensions=(9, 7, 1))
+        mesh["wind"] = np.tile([1.0, turn, 0.0], (63, 1))
+        mesh["water"] = np.zeros((63, 3))
+        return mesh
+
+    area = FlowArea(gyre(1), server=get_server("another mesh"), vectors="wind", samples=3, zoom=3)
+    camera = area.viewport.camera
+    area.settings.contrast = 0.5
+    area.field = gyre(2)
+    shown = area.field
+    assert shown.velocity[0, 0, 0].tolist() == [1, 2, 0]
+    assert (area.viewport.camera, area.settings.contrast) == (camera, 0.5)
+    with pytest.raises(flowtex.FieldError):
+        area.field = pv.Plane()
+    assert area.field is shown
+    area.close()
 
 
 def test_tiles_in_other_colours_are_not_traced_again(monkeypatch: pytest.MonkeyPatch) -> None:
