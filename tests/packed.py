@@ -22,7 +22,11 @@ def parts_of(file: bytes) -> dict[str, NDArray[Any]]:
     infos, start = file_infos(file)
     parts = {}
     for info in infos:
-        parts[info["name"]] = from_planes(info, file[start : start + info["bytes"]])
+        data = file[start : start + info["bytes"]]
+        is_packed = "differences" in info
+        parts[info["name"]] = (
+            from_planes(info, data) if is_packed else np.frombuffer(data, np.uint8)
+        )
         start += info["bytes"]
     return parts
 
@@ -31,12 +35,16 @@ def from_planes(info: dict[str, Any], data: bytes) -> NDArray[Any]:
     """Return the array of a part from its description and its bytes."""
     kind = np.dtype(info["dtype"])
     planes = np.frombuffer(data, np.uint8)
-    channels = np.ascontiguousarray(planes.reshape(kind.itemsize, -1).T).view(f"<u{kind.itemsize}")
-    numbers = channels.reshape(info["stride"], -1).T
-    for _ in range(info["differences"]):
-        numbers = np.cumsum(numbers, axis=0, dtype=numbers.dtype)
-    numbers = np.ascontiguousarray(numbers)
+    signed = np.ascontiguousarray(planes.reshape(kind.itemsize, -1).T).view(f"<u{kind.itemsize}")
+    shape = info["shape"]
+    width, channels = shape[-2:] if len(shape) > 2 else (*shape, 1)[-2:]
+    numbers = ((signed >> 1) ^ -(signed & 1)).reshape(channels, -1, width)
+    for axis, order in enumerate(info["differences"], start=1):
+        for _ in range(order):
+            numbers = np.cumsum(numbers, axis=axis, dtype=numbers.dtype)
+    numbers = np.ascontiguousarray(np.moveaxis(numbers, 0, -1))
     result: NDArray[Any] = numbers.view(kind)
     if info["scale"] is not None:
-        result = np.ldexp(numbers.view("<i4"), info["scale"]).astype("<f4")
-    return result.reshape(info["shape"])
+        whole = numbers.view(f"<i{kind.itemsize}")
+        result = np.ldexp(whole.astype(float), info["scale"]).astype(kind)
+    return result.reshape(shape)

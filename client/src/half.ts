@@ -10,14 +10,17 @@ export function fromHalf(bits: number): number {
   return bits & 32768 ? -size : size;
 }
 
+const SINGLE = new Float32Array(1);
+const BITS = new Uint32Array(SINGLE.buffer);
+
 export function toHalf(x: number): number {
-  const sign = x < 0 ? 32768 : 0;
-  const size = Math.abs(x);
-  if (!(size < 65520)) return sign | (size >= 65520 ? 31744 : 32256);
-  const exponent = Math.max(Math.floor(Math.log2(size || 1e-30)), -14);
-  const part = Math.round(size / 2 ** (exponent - 10));
-  // A part that rounds up to 2048 carries into the exponent by itself.
-  return sign | (part < 1024 ? part : (exponent + 14) * 1024 + part);
+  SINGLE[0] = x;
+  const sign = (BITS[0] >>> 16) & 32768;
+  const size = BITS[0] & 0x7fffffff;
+  if (size >= 0x477ff000) return sign | (size > 0x7f800000 ? 32256 : 31744);
+  if (size < 0x38800000) return sign | Math.round(Math.abs(x) * 2 ** 24);
+  // A part that rounds up carries into the exponent by itself.
+  return sign | ((size - 0x37fff000) >>> 13);
 }
 
 /** The next mip level of an image in half precision, filtered linearly, its width and height. */

@@ -3,9 +3,10 @@
 // as a buffer of a message, in a file of several parts, or as text in a page.
 
 import type { CameraLimits, CameraState, Surface } from "./camera.ts";
+import { toHalf } from "./half.ts";
 
 /** Form of header and parts that this client reads. */
-export const FORMAT = 4;
+export const FORMAT = 5;
 /** Share of the larger end of a range below which a legend tells the other one as 0. */
 const ZERO_SHARE = 1e-5;
 
@@ -28,10 +29,9 @@ export interface NamedPart extends Part {
 /** A part without its numbers, and how these are packed in a page. */
 export interface PartInfo extends Omit<NamedPart, "data"> {
   dtype: string;
-  /** How often numbers are those of the differences to the ones so far before them. */
-  differences?: number;
-  stride?: number;
-  /** Exponent of the unit of single precision that comes as whole numbers. */
+  /** How often numbers are the differences to those before them, along rows and along columns. */
+  differences?: [number, number];
+  /** Exponent of the unit of floats that come as whole numbers. */
   scale?: number | null;
 }
 
@@ -385,7 +385,7 @@ export function partsOfFile(file: ArrayBuffer): NamedPart[] {
   return infos.map((info) => {
     const bytes = new Uint8Array(file, start, info.bytes);
     start += info.bytes;
-    return info.stride === undefined ? decoded(info, bytes) : partOfPlanes(info, bytes);
+    return info.differences === undefined ? decoded(info, bytes) : partOfPlanes(info, bytes);
   });
 }
 
@@ -405,29 +405,37 @@ export async function partOfText(info: PartInfo, text: string): Promise<NamedPar
   return partOfPlanes(info, new Uint8Array(await new Response(unpacked).arrayBuffer()));
 }
 
-function partOfPlanes(info: PartInfo, planes: Uint8Array): NamedPart {
-  const count = info.shape.reduce((product, n) => product * n, 1);
-  const width = count ? planes.length / count : 1;
-  const { stride = 1 } = info;
-  const steps = count / stride;
-  if (!Number.isInteger(steps)) throw new Error(`the part "${info.name}" is not packed as it tells`);
-  const bytes = new Uint8Array(planes.length);
-  for (let n = 0, from = 0; n < width * stride; n += 1) {
-    const [plane, channel] = [Math.floor(n / stride), n % stride];
-    for (let k = 0; k < steps; k += 1) bytes[(k * stride + channel) * width + plane] = planes[from++];
-  }
-  return decoded(info, summed(info, bytes, width));
-}
-
 const UNSIGNED = { 1: Uint8Array, 2: Uint16Array, 4: Uint32Array } as const;
 
-/** Bytes of numbers of which a page has differences, or multiples of a unit. */
-function summed(info: PartInfo, bytes: Uint8Array<ArrayBuffer>, width: number): ArrayBuffer {
-  const { differences = 0, stride = 1, scale = null } = info;
-  const numbers = new UNSIGNED[width as 1 | 2 | 4](bytes.buffer);
-  for (let order = 0; order < differences; order += 1) {
-    for (let n = stride; n < numbers.length; n += 1) numbers[n] += numbers[n - stride];
+/** A part of its bytes, channel by channel in those of one significance: `_packed` of the other side. */
+function partOfPlanes(info: PartInfo, planes: Uint8Array): NamedPart {
+  const { shape, differences = [0, 0], scale = null } = info;
+  const count = shape.reduce((product, n) => product * n, 1);
+  const width = count ? planes.length / count : 1;
+  if (!(width in UNSIGNED)) throw new Error(`the part "${info.name}" is not packed as it tells`);
+  const [line, channels] = shape.length > 2 ? shape.slice(-2) : [...shape, 1].slice(-2);
+  const numbers = new UNSIGNED[width as 1 | 2 | 4](count);
+  for (let c = 0, from = 0; c < channels; c += 1) {
+    for (let n = c; n < count; n += channels, from += 1) {
+      let bits = 0;
+      for (let plane = 0; plane < width; plane += 1) bits |= planes[plane * count + from] << (8 * plane);
+      numbers[n] = (bits >>> 1) ^ -(bits & 1);
+    }
   }
-  if (scale === null) return bytes.buffer;
-  return Float32Array.from(new Int32Array(bytes.buffer), (n) => n * 2 ** scale).buffer;
+  const row = line * channels;
+  for (let order = 0; order < differences[0]; order += 1) {
+    for (let n = row; n < count; n += 1) numbers[n] += numbers[n - row];
+  }
+  for (let order = 0; order < differences[1]; order += 1) {
+    for (let first = 0; first < count; first += row) {
+      for (let n = first + channels; n < first + row; n += 1) numbers[n] += numbers[n - channels];
+    }
+  }
+  return decoded(info, scale === null ? numbers : floats(numbers, 2 ** scale));
+}
+
+/** Floats of whole numbers in units. */
+function floats(numbers: Uint8Array | Uint16Array | Uint32Array, unit: number): Data {
+  if (numbers instanceof Uint16Array) return numbers.map((n) => toHalf(((n << 16) >> 16) * unit));
+  return Float32Array.from(numbers, (n) => (n | 0) * unit);
 }

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { gzipSync } from "node:zlib";
+import { fromHalf } from "../src/half.ts";
 import { decoded, isSignFree, legendLimits, partOfText, partsOfFile, stepOf } from "../src/protocol.ts";
 
 const INFO = { name: "position", dtype: "float32", shape: [1, 2], digest: "d" };
@@ -53,23 +54,27 @@ test("a file has several parts", () => {
   );
 });
 
-test("text has the bytes of one significance side by side", async () => {
-  const bytes = new Uint8Array(new Float32Array([1.5, -2]).buffer);
+test("text has the bytes of one significance side by side, the sign last", async () => {
+  const bits = [...new Int32Array(new Float32Array([1.5, -2]).buffer)].map((n) => (n << 1) ^ (n >> 31));
+  const bytes = new Uint8Array(Int32Array.from(bits).buffer);
   const planes = new Uint8Array(8);
   for (let k = 0; k < 4; k += 1) for (let n = 0; n < 2; n += 1) planes[2 * k + n] = bytes[4 * n + k];
   const part = await partOfText(INFO, gzipSync(planes).toString("base64"));
   assert.deepEqual([...part.data], [1.5, -2]);
 });
 
-test("differences are summed, channel by channel, and whole numbers are multiples of a unit", async () => {
-  // Of (1, 10), (3, 20), (6, 30) and (10, 40): twice the differences of each channel.
-  const numbers = [1, 1, 1, 1, 10, 0, 0, 0];
-  const planes = new Uint8Array(32);
-  planes.set(numbers);
-  const packing = { differences: 2, stride: 2, scale: -1 };
-  const info = { ...INFO, shape: [4, 2], ...packing };
-  const part = await partOfText(info, gzipSync(planes).toString("base64"));
-  assert.deepEqual([...part.data], [0.5, 5, 1.5, 10, 3, 15, 5, 20]);
+test("differences are summed along both axes, and whole numbers are multiples of a unit", async () => {
+  // Of the rows (1, 10), (3, 20) and (-4, 7), (-1, 18): 2 for 1, and 1 for -1.
+  const numbers = [2, 4, 9, 2, 20, 20, 5, 2];
+  const differences: [number, number] = [1, 1];
+  for (const [dtype, width] of [["float32", 4], ["float16", 2]] as const) {
+    const planes = new Uint8Array(8 * width);
+    planes.set(numbers);
+    const info = { ...INFO, dtype, shape: [2, 2, 2], differences, scale: -1 };
+    const { data } = await partOfText(info, gzipSync(planes).toString("base64"));
+    const told = width === 2 ? [...data].map(fromHalf) : [...data];
+    assert.deepEqual(told, [0.5, 5, 1.5, 10, -2, 3.5, -0.5, 9]);
+  }
 });
 
 test("an array without numbers is a part as well", async () => {

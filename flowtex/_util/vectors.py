@@ -9,7 +9,8 @@ from flowtex._util.array_types import Floats
 
 def dot(one: Floats, other: Floats) -> Floats:
     """Inner products of vectors (..., C), of shape (...)."""
-    return np.asarray(np.einsum("...c,...c->...", one, other))
+    product = one * other
+    return np.asarray(product @ np.ones(product.shape[-1], product.dtype))
 
 
 def norm(vectors: Floats) -> Floats:

@@ -21,6 +21,7 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.blocks import row_blocks
+from flowtex._util.vectors import dot, norm
 from flowtex.field.poles import Pole, Poles
 from flowtex.field.steps import Steps
 
@@ -73,24 +74,18 @@ def _project(
     velocity: Floats, p_i: Floats, p_j: Floats, valid: Bools, tiny: float, u: Floats, speed: Floats
 ) -> tuple[float, float]:
     """Write components and speed of nodes, and return squares of all and of the normal part."""
-    g_ii, g_jj, g_ij = (
-        np.einsum("jic,jic->ji", a, b) for a, b in ((p_i, p_i), (p_j, p_j), (p_i, p_j))
-    )
+    g_ii, g_jj, g_ij = dot(p_i, p_i), dot(p_j, p_j), dot(p_i, p_j)
     determinant = g_ii * g_jj - g_ij**2
-    along_i = np.einsum("tjic,jic->tji", velocity, p_i)
-    along_j = np.einsum("tjic,jic->tji", velocity, p_j)
+    along_i, along_j = dot(velocity, p_i), dot(velocity, p_j)
     flat = (determinant <= COLLAPSED_AREA * g_ii * g_jj) | (g_ii <= tiny) | (g_jj <= tiny)
     safe = np.where(flat, 1.0, determinant)
     u_i = np.where(flat, _alone(along_i, g_ii, tiny), (g_jj * along_i - g_ij * along_j) / safe)
     u_j = np.where(flat, _alone(along_j, g_jj, tiny), (g_ii * along_j - g_ij * along_i) / safe)
     u[..., 0], u[..., 1] = u_i, u_j
     along = u_i[..., None] * p_i + u_j[..., None] * p_j
-    np.sqrt(np.einsum("tjic,tjic->tji", along, along), out=speed)
+    speed[:] = norm(along)
     np.subtract(velocity, along, out=along)
-    known = ~flat & valid
-    all_, normal = (
-        float(np.einsum("tjic,tjic,ji->", v, v, known.astype(float))) for v in (velocity, along)
-    )
+    all_, normal = (float((dot(v, v) * (~flat & valid)).sum()) for v in (velocity, along))
     return all_, normal
 
 

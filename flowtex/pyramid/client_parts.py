@@ -12,10 +12,18 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats, Floats32
+from flowtex._util.array_types import Floats, Floats32
 from flowtex.field import FlowField
 from flowtex.field.steps import typical_steps
-from flowtex.pyramid.layout import FILE_BYTES, FILE_CHUNK, FLOW, SURFACE, VALUES, value_names
+from flowtex.pyramid.layout import (
+    FILE_BYTES,
+    FILE_CHUNK,
+    FLOW,
+    SURFACE,
+    VALUES,
+    Arrays,
+    value_names,
+)
 from flowtex.pyramid.places import PyramidError
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl import ClientData, Colours, can_trace, single, tile_parts
@@ -28,11 +36,9 @@ from flowtex.trace import SliceStore
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
 #: Error of a value as a share of the range that most of them have.
 VALUE_SHARE = 2.0**-17
-#: Steps of a rate, which is about one along the flow.
-RATE_STEPS = 512
 
 
-def write_tile(here: Any, pyramid: StoredPyramid, key: TileKey, steps: Sequence[int]) -> None:
+def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Sequence[int]) -> None:
     """Write what a browser is handed of a tile at some times; at the first its surface too."""
     of = pyramid.about["fingerprint"]
     textures = _textures(pyramid, key)
@@ -42,23 +48,19 @@ def write_tile(here: Any, pyramid: StoredPyramid, key: TileKey, steps: Sequence[
         # A page of a store may have some of its steps, which pathlines lead through.
         data = ClientData(textures, colours, traces=textures.store.streamlines)
     if 0 in steps and key.level < pyramid.depth:  # a page has the surface of the root
-        _write(here[SURFACE], at, of, _surface(pyramid, key, data))
+        _write(array(f"{key.level}/{SURFACE}"), at, of, _surface(pyramid, key, data))
     prefix = f"tile/{key.level}/{key.row}/{key.column}"
     for step in steps:
         parts: Parts = {}
         if data is not None:
             for number, values in _values(pyramid, data, step).items():
                 file = {f"{prefix}/scalars/{step}/{number}": values}
-                _write(here[VALUES], (step, *at, number), of, file)
+                _write(array(f"{key.level}/{VALUES}"), (step, *at, number), of, file)
             named = data.step(step).items()
-            flow = {k: v for k, v in named if not k.startswith("scalars/")}
-            parts = {
-                f"{prefix}/{k}": _shortened(v) if k.startswith("flow/") else v
-                for k, v in flow.items()
-            }
+            parts = {f"{prefix}/{k}": v for k, v in named if not k.startswith("scalars/")}
             data.textures.forget()
         # The last one: by it a tile is known to be whole.
-        _write(here[FLOW], (step, *at), of, parts)
+        _write(array(f"{key.level}/{FLOW}"), (step, *at), of, parts)
 
 
 def _textures(pyramid: StoredPyramid, key: TileKey) -> TextureSet | None:
@@ -118,14 +120,6 @@ def _values(pyramid: StoredPyramid, data: ClientData, step: int) -> dict[int, Fl
             values = np.rint(values / unit) * unit
         result[number] = single(values)
     return result
-
-
-def _shortened(flow: AnyArray) -> AnyArray:
-    """Round velocities (J, I, 3 or 4) to what paths and colours need, so that gzip packs more."""
-    result = np.rint(flow * RATE_STEPS) / RATE_STEPS
-    bits = np.ascontiguousarray(flow[..., 2:]).view(np.uint16)
-    result[..., 2:] = ((bits + 2) & ~np.uint16(3)).view(np.float16)
-    return np.asarray(result, "<f2")
 
 
 def _colours(pyramid: StoredPyramid, field: FlowField) -> Colours:

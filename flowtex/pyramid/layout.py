@@ -30,9 +30,9 @@ which field it is.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from functools import partial
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache, partial
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -241,15 +241,24 @@ def rounded(velocity: Floats) -> Floats32:
     return np.asarray(np.ldexp(whole, exponent - VELOCITY_BITS), np.float32)
 
 
-def to_write(group: Any, name: str) -> Any:
-    """Return an array to write values into, zeros as well.
+#: Gives the array of a name.
+Arrays: TypeAlias = Callable[[str], Any]
+
+
+def to_write(store: Any) -> Arrays:
+    """Return what opens arrays of a store to write values into, zeros as well.
 
     What is there has an object, by which it is known that nothing is missing; of itself Zarr leaves
     chunks of zeros out, which land is.
     """
-    zarr, array = import_extra("zarr", "store"), group[name]
-    config = {"write_empty_chunks": True}
-    return zarr.Array(zarr.AsyncArray(array.metadata, array.store_path, config))
+    zarr = import_extra("zarr", "store")
+
+    def opened(name: str) -> Any:
+        array = zarr.open_array(store, path=name, mode="r+")
+        config = {"write_empty_chunks": True}
+        return zarr.Array(zarr.AsyncArray(array.metadata, array.store_path, config))
+
+    return cache(opened)
 
 
 def empty_field(about: Mapping[str, Any]) -> FlowField:

@@ -83,7 +83,7 @@ class Levels:
         #: What is told of the field and its pyramid.
         self.about = check_about(about, self.place)
         self._arrays: dict[str, Any] = {}
-        self._expected: dict[str, Any] = {}
+        self._expected: dict[str, dict[str, dict[str, Any]]] = {}
         self._lock = threading.Lock()
 
     def _format(self, name: str) -> dict[str, Any]:
@@ -91,15 +91,15 @@ class Levels:
         top = name.partition("/")[0]
         with self._lock:
             if top not in self._expected:
-                levels = [] if top == SAMPLES else [int(top)]
-                self._expected[top] = described(self.about, levels)
+                group = described(self.about, [] if top == SAMPLES else [int(top)])
                 if top == SAMPLES:
-                    create_samples(self._expected[top], self.about)
-            group = self._expected[top]
-            if name not in group:
+                    create_samples(group, self.about)
+                members = group.members(max_depth=None)
+                self._expected[top] = {n: _format_of(a) for n, a in members if hasattr(a, "dtype")}
+            if name not in self._expected[top]:
                 msg = f"{self.place} has no {name}; build it again"
                 raise PyramidError(msg)
-            return _format_of(group[name])
+            return self._expected[top][name]
 
     def shape(self, level: int) -> tuple[int, int]:
         """Return the number of nodes (J, I) of a level."""

@@ -14,14 +14,15 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.vectors import norm
 from flowtex.field.steps import Nodes, typical_steps
 from flowtex.pyramid.layout import (
     SHARD_CHUNKS,
     TILE_CELLS,
+    Arrays,
     Part,
     create_array,
     parts_along,
-    to_write,
 )
 from flowtex.tiles import ends_of
 
@@ -40,21 +41,21 @@ def create_samples(group: Any, about: Mapping[str, Any]) -> None:
     create_array(group, SAMPLES, "float64", axes)
 
 
-def write_samples(group: Any, about: Mapping[str, Any], part: Part, nodes: Nodes) -> None:
+def write_samples(array: Arrays, about: Mapping[str, Any], part: Part, nodes: Nodes) -> None:
     """Tell the values of a part of level 0, where its step is one that ranges are taken from."""
     if part.step not in _steps(about):
         return
     step, shape = _every(about), _shape(about)
     values = {**nodes.scalars}
     if "speed" not in values:
-        values["speed"] = np.linalg.norm(nodes.velocity, axis=-1)
+        values["speed"] = norm(nodes.velocity)
     result = np.full((len(values), 2 + math.prod(shape)), np.nan)
     for row, name in zip(result, _quantities(about), strict=True):
         known: Floats = np.where(nodes.valid, values[name], np.nan)
         row[:2] = ends_of(known, robust=False) or (np.nan, np.nan)
         some = known[::step, ::step]
         row[2:].reshape(shape)[: some.shape[0], : some.shape[1]] = some
-    to_write(group, SAMPLES)[_steps(about).index(part.step), part.row, part.column] = result
+    array(SAMPLES)[_steps(about).index(part.step), part.row, part.column] = result
 
 
 def ranges_of(samples: AnyArray, about: Mapping[str, Any]) -> dict[str, list[tuple[float, float]]]:

@@ -21,6 +21,7 @@ from flowtex.pyramid.layout import (
     FLOW,
     SURFACE,
     VALUES,
+    Arrays,
     Part,
     rounded,
     to_write,
@@ -44,11 +45,11 @@ class TileTask(NamedTuple):
 
 def make_finest(source: Source, place: str, run: str, part: Part) -> None:
     """Make a part of level 0 from what is in the source; that of the first step tells the valid."""
-    levels, group = _levels(place, run), _writable(place, run)
+    levels, array = _levels(place, run), _writable(place, run)
     nodes = _source_nodes(levels, source, part)
     if not levels.about.get("ranges"):
-        write_samples(group, levels.about, part, nodes)
-    write_part(group, levels.about, part, part.lines(source.shape), _as_written(nodes))
+        write_samples(array, levels.about, part, nodes)
+    write_part(array, levels.about, part, part.lines(source.shape), _as_written(nodes))
 
 
 def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
@@ -68,13 +69,13 @@ def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
 
 def mend(place: str, run: str, unit: Part | TileTask) -> None:
     """Remove a part, or a tile at its steps, of which some is missing or corrupt."""
-    levels, group = _levels(place, run), _writable(place, run)
+    levels, store = _levels(place, run), store_at(place, read_only=False)
     for one, check in checks_of(levels, unit):
         try:
             check()
         except DamageError:
             for name in _objects(levels.about, one):
-                sync(group.store.delete(name))
+                sync(store.delete(name))
 
 
 def checks_of(
@@ -146,29 +147,28 @@ def make_part(place: str, run: str, part: Part) -> None:
 
 
 def write_part(
-    group: Any, about: dict[str, Any], part: Part, lines: tuple[slice, slice], nodes: Nodes
+    array: Arrays, about: dict[str, Any], part: Part, lines: tuple[slice, slice], nodes: Nodes
 ) -> None:
     """Write a part of a level; velocity (J, I, C) and scalars (J, I) are those of its step."""
-    here, components = group[str(part.level)], about["components"]
+    here, components = part.level, about["components"]
     for name, values in nodes.scalars.items():
         if part.step < about["scalars"][name]:
-            to_write(here["scalars"], name)[(part.step, *lines)] = values
+            array(f"{here}/scalars/{name}")[(part.step, *lines)] = values
     if part.step == 0:
-        to_write(here, "valid")[lines] = nodes.valid
+        array(f"{here}/valid")[lines] = nodes.valid
         if nodes.has_position is not None:
-            to_write(here, "has_position")[lines] = nodes.has_position
+            array(f"{here}/has_position")[lines] = nodes.has_position
         if not about["axes"]:
-            to_write(here, "points")[lines] = nodes.points[..., :components]
+            array(f"{here}/points")[lines] = nodes.points[..., :components]
     own = np.frombuffer(part_digest(nodes, about, part.step), np.uint8)
-    to_write(here, DIGESTS)[part.step, part.row, part.column] = own
+    array(f"{here}/{DIGESTS}")[part.step, part.row, part.column] = own
     # The last one: by it a part is known to be whole.
-    to_write(here, "velocity")[(part.step, *lines)] = nodes.velocity[..., :components]
+    array(f"{here}/velocity")[(part.step, *lines)] = nodes.velocity[..., :components]
 
 
 def make_tile(place: str, run: str, task: TileTask) -> None:
     """Write what a browser is handed of a tile."""
-    pyramid, here = _pyramid(place, run), _writable(place, run)[str(task.key.level)]
-    write_tile(here, pyramid, task.key, task.steps)
+    write_tile(_writable(place, run), _pyramid(place, run), task.key, task.steps)
 
 
 def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indices) -> Nodes:
@@ -198,8 +198,6 @@ def _pyramid(place: str, run: str) -> StoredPyramid:
 
 
 @lru_cache(maxsize=1)
-def _writable(place: str, run: str) -> Any:
+def _writable(place: str, run: str) -> Arrays:
     del run
-    import zarr
-
-    return zarr.open_group(store_at(place, read_only=False), mode="r+")
+    return to_write(store_at(place, read_only=False))

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -214,54 +214,41 @@ class MeshLevels:
         """
         count = BLOCK_CELLS.bit_length()
         errors = np.zeros((2, count, len(self._rows.first), len(self._columns.first)))
-        rows, columns = (np.arange(n) for n in self._shape)
+        lines = [np.arange(n) for n in self._shape]
         for level in range(1, count):
-            step = 1 << level
-            next_rows, next_columns = (_lines(n, step) for n in self._shape)
-            # Only lines that are left out have an error.
-            left = ~np.isin(rows, next_rows)
-            size = np.zeros((2, len(rows), len(columns)))
-            off = _deviation(values[:, columns], rows[left], next_rows)
-            size[:, left] = self._size(off, directions, np.ix_(rows[left], columns), border=1)
-            errors[:, level] = errors[:, level - 1] + self._greatest(size, rows, columns)
-            left = ~np.isin(columns, next_columns)
-            kept = values[next_rows]
-            size = np.zeros((2, len(next_rows), len(columns)))
-            off = _deviation(kept.swapaxes(0, 1), columns[left], next_columns).swapaxes(0, 1)
-            at = np.ix_(next_rows, columns[left])
-            size[:, :, left] = self._size(off, directions, at, border=0)
-            errors[:, level] += self._greatest(size, next_rows, columns)
-            twist = kept[:, next_columns]
-            twist = twist[1:, 1:] + twist[:-1, :-1] - twist[1:, :-1] - twist[:-1, 1:]
-            here = np.ix_(next_rows[:-1], next_columns[:-1])
-            size = self._size(twist / 4, directions, here)
-            errors[:, level] += self._greatest(size, next_rows[:-1], next_columns[:-1])
-            rows, columns = next_rows, next_columns
+            errors[:, level] = errors[:, level - 1]
+            for axis in (0, 1):
+                # Only lines that are left out have an error.
+                left = slice(1, len(lines[axis]) - 1, 2)
+                at = (slice(None),) * axis + (left,)
+                here = None if directions is None else directions[:, *at]
+                size = self._size(_deviation(values, lines[axis], axis), here, border=1 - axis)
+                some = [own[left] if a == axis else own for a, own in enumerate(lines)]
+                errors[:, level] += self._greatest(size, *some)
+                at = (slice(None),) * axis + (_every_second(len(lines[axis])),)
+                values, lines[axis] = values[at], lines[axis][at[-1]]
+                directions = None if directions is None else directions[:, *at]
+            twist = values[1:, 1:] + values[:-1, :-1] - values[1:, :-1] - values[:-1, 1:]
+            here = None if directions is None else directions[:, :-1, :-1]
+            size = self._size(twist / 4, here)
+            errors[:, level] += self._greatest(size, lines[0][:-1], lines[1][:-1])
         return np.asarray(errors.max(axis=0))
 
-    def _size(
-        self,
-        off: Floats,
-        directions: Floats | None,
-        at: tuple[Indices, ...],
-        *,
-        border: int | None = None,
-    ) -> Floats:
-        """Size of errors (J, I, C) at some nodes and of the outline, (2, J, I).
+    def _size(self, off: Floats, directions: Floats | None, *, border: int | None = None) -> Floats:
+        """Size of errors (J, I, C) and of the outline, (2, J, I), at nodes with some directions.
 
         Those along the surface count less. ``border`` is the axis whose first and last nodes are on
-        the outline.
+        the outline. Without directions the outline is not told apart, (1, J, I).
         """
         size = norm(off)
-        both = np.stack([size, np.zeros_like(size)])
         if directions is None or not size.size:
-            return both
-        np.maximum(np.abs(dot(off, directions[0][at])), self._slide * size, out=both[0])
+            return size[None]
+        both = np.zeros((2, *size.shape))
+        np.maximum(np.abs(dot(off, directions[0])), self._slide * size, out=both[0])
         if border is not None:
             ends = (slice(None),) * border + ([0, -1],)
-            along = np.broadcast_arrays(*at)
-            line = directions[1 + border][along[0][ends], along[1][ends]]
-            aside = np.sqrt(np.maximum(size[ends] ** 2 - dot(off[ends], line) ** 2, 0))
+            along = dot(off[ends], directions[1 + border][ends])
+            aside = np.sqrt(np.maximum(size[ends] ** 2 - along**2, 0))
             both[1][ends] = OUTLINE_SHARE * aside
         return both
 
@@ -270,10 +257,15 @@ class MeshLevels:
         if not values.size:
             return np.zeros((len(self._rows.first), len(self._columns.first)))
         for axis, lines, blocks in ((-2, rows, self._rows), (-1, columns, self._columns)):
-            first = np.minimum(np.searchsorted(lines, blocks.first), len(lines) - 1)
+            first = np.searchsorted(lines, blocks.first)
+            last = np.searchsorted(lines, blocks.first + blocks.cells, side="right") - 1
+            # A short block at the end may have none of the lines.
+            lacking = int((first == len(lines)).sum())
+            first, last = first[: len(first) - lacking], last[: len(last) - lacking]
             inner = np.maximum.reduceat(values, first, axis=axis)
-            last = np.minimum(np.searchsorted(lines, blocks.first + blocks.cells), len(lines) - 1)
             values = np.maximum(inner, np.take(values, last, axis=axis))
+            if lacking:
+                values = np.pad(values, [(0, lacking * (a - 3 == axis)) for a in range(3)])
         return values
 
     def _mixed_levels(self) -> Bools:
@@ -324,18 +316,19 @@ def _directions(points: Floats) -> Floats:
     return np.asarray(found / np.where(length > 0, length, 1.0))
 
 
-def _deviation(values: Floats, left: Indices, kept: Indices) -> Floats:
-    """How lines of values that are left out differ from the kept ones beside them, by axis 0."""
-    after = np.searchsorted(kept, left)
-    low, high = kept[after - 1], kept[after]
-    share = ((left - low) / (high - low))[:, None, None]
-    return np.asarray(values[left] - (values[low] * (1 - share) + values[high] * share))
+def _deviation(values: Floats, lines: Indices, axis: int) -> Floats:
+    """How every second line of values differs from those beside it, but the first and the last."""
+    count = (len(lines) - 1) // 2
+    pick = [slice(first, first + 2 * count - 1, 2) for first in (0, 1, 2)]
+    numbers = [lines[some] for some in pick]
+    share = (numbers[1] - numbers[0]) / (numbers[2] - numbers[0])
+    low, left, high = (values[(slice(None),) * axis + (some,)] for some in pick)
+    return np.asarray(left - low - np.expand_dims(share, (1 - axis, 2)) * (high - low))
 
 
-def _lines(nodes: int, step: int) -> Indices:
-    """Every so many lines of nodes in each block, and the last one."""
-    lines = np.arange(0, nodes, step)
-    return lines if lines[-1] == nodes - 1 else np.append(lines, nodes - 1)
+def _every_second(count: int) -> Any:
+    """Index every second of so many lines, and the last one."""
+    return slice(None, None, 2) if count % 2 else np.append(np.arange(0, count, 2), count - 1)
 
 
 #: More doublings than there are.

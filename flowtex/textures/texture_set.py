@@ -178,12 +178,12 @@ class TextureSet:
             return 0.0
         field = self.geometry.field
         flow, tangents = field.index_velocity.components[0], field.surface.tangents
-        along = np.einsum("jic,cjik->jik", flow, tangents)
+        along = flow[..., :1] * tangents[0] + flow[..., 1:] * tangents[1]
         length = norm(along)[..., None]
         along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
         corners = field.surface.cell_corners
         # A flow that leaves the plane of a triangle has another direction in it.
-        mean = field.surface.in_cells(np.sum([along[at] for at in corners], axis=0))
+        mean = field.surface.in_cells(sum((along[at] for at in corners[1:]), along[corners[0]]))
         mean /= np.maximum(norm(mean), np.finfo(float).tiny)[..., None]
         # What stands still says nothing of the direction.
         cosines = [np.where(length[at][..., 0] > 0, dot(along[at], mean), 1) for at in corners]

@@ -27,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.vectors import norm
 from flowtex.field import FlowField
 from flowtex.field.steps import Nodes, Steps, map_steps
 from flowtex.textures import TextureSet, TriangleGeometry
@@ -376,15 +377,15 @@ def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
         for columns in (firsts[1], lasts[1]):
             center += 0.25 * points[np.ix_(rows, columns)]
     side = np.zeros(points.shape[:2])
-    side[:-1] = np.linalg.norm(np.diff(points, axis=0), axis=-1)
-    across = np.linalg.norm(np.diff(points, axis=1), axis=-1)
+    side[:-1] = norm(np.diff(points, axis=0))
+    across = norm(np.diff(points, axis=1))
     side[:, :-1] = np.maximum(side[:, :-1], across)
     size = _greatest(side, firsts, lasts)
     at = [
         np.minimum(np.arange(n) // cells, len(f) - 1)
         for f, n in zip(firsts, points.shape[:2], strict=True)
     ]
-    away = np.linalg.norm(points - center[np.ix_(*at)], axis=-1)
+    away = norm(points - center[np.ix_(*at)])
     radius = _greatest(away, firsts, lasts) + size
     return np.concatenate([center, radius[..., None], size[..., None]], axis=-1)
 
@@ -422,7 +423,7 @@ def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
     sides = []
     for axis in (0, 1):
         both = np.moveaxis(valid, axis, 0)
-        size = np.linalg.norm(np.diff(points, axis=axis), axis=-1)
+        size = norm(np.diff(points, axis=axis))
         known = np.moveaxis(size, axis, 0)[both[1:] & both[:-1]]
         sides.append(np.percentile(known[known > 0], (5, 95)) if known.any() else np.ones(2))
     # A little less, so that rounding does not make even cells ask for twice as long a lag.

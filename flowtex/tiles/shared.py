@@ -9,6 +9,7 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex._util.cache import WeakCache
+from flowtex._util.vectors import norm
 from flowtex.field import FlowField
 from flowtex.tiles.pyramid import Pyramid
 from flowtex.tiles.triangle_pyramid import TrianglePyramid
@@ -70,5 +71,5 @@ def widened(ends: tuple[float, float] | None) -> tuple[float, float]:
 
 def drawn_speeds(field: FlowField, root: FlowField) -> Floats:
     """Return speeds of valid nodes, (T, N); in space, where hardly any flow leaves the surface."""
-    steps = field.speed if root.leaves_surface else np.linalg.norm(field.velocity, axis=-1)
+    steps = field.speed if root.leaves_surface else norm(field.velocity)
     return np.asarray(np.asarray(steps)[:, field.valid])

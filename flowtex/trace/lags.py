@@ -53,7 +53,6 @@ def choose_lags(field: FlowField, parameter: str, longest: float | None = None) 
 
     The greatest length may be given instead, in the mesh's units.
     """
-    size = field.surface.cell_size[field.valid]
     if longest is None:
         longest = longest_path(field)
     if parameter == "arclength":
@@ -63,6 +62,7 @@ def choose_lags(field: FlowField, parameter: str, longest: float | None = None) 
         moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
         if not moving.any():
             return np.array([1.0, RATIO])
+        size = field.surface.cell_size[field.valid]
         crossing = np.broadcast_to(size, speed.shape)[moving] / speed[moving]
         first = FIRST_CELLS * float(np.percentile(crossing, 10))
         last = longest / float(np.sqrt(np.mean(speed[moving] ** 2)))
@@ -88,8 +88,9 @@ def drawn_lags(
     is composed at a single look-up. In a part of a surface it is that surface's ``cell`` times a
     power of two: all parts have the same lags. The last is the greatest length, where it is given.
     """
-    lags, unit = choose_lags(field, parameter, longest), lag_unit(field, parameter)
+    unit = lag_unit(field, parameter)
     if parameter == "time":
+        lags = choose_lags(field, parameter, longest)
         # Half precision holds lags near one, whatever the field's unit of time is.
         first = 2.0 ** np.rint(np.log2(lags[0]))
         return lags / first, unit * first
@@ -98,10 +99,11 @@ def drawn_lags(
         even = cell * 2.0 ** np.rint(np.log2(even / cell))
     alike = LEAST_CELL * even <= known.min() and known.max() <= MOST_CELL * even
     if not alike or field.triangles is not None:
-        return lags, unit
-    if longest is not None:
-        last = longest / even
-        doubled = FIRST_CELLS * RATIO ** np.arange(MOST_CHOSEN_LAGS - 1)
-        # A last lag that is hardly longer than the one before takes its place.
-        lags = np.append(doubled[doubled < last / np.sqrt(RATIO)], last)
-    return lags, np.full(field.shape, even)
+        return choose_lags(field, parameter, longest), unit
+    unit = np.full(field.shape, even)
+    if longest is None:
+        return choose_lags(field, parameter), unit
+    last = longest / even
+    doubled = FIRST_CELLS * RATIO ** np.arange(MOST_CHOSEN_LAGS - 1)
+    # A last lag that is hardly longer than the one before takes its place.
+    return np.append(doubled[doubled < last / np.sqrt(RATIO)], last), unit

@@ -212,31 +212,41 @@ low[n%3],points[n]),high[n%3]=Math.max(high[n%3],points[n]));let middle=low.map(
 hypot(...low.map((least,k)=>(high[k]-least)/2));groups.push({first,count:count2,middle,radius})}return groups}function visibleRuns(groups,planes){
 let runs=[];for(let{first,count:count2,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.
 hypot(a,b,c);if(planes.some(isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count2:runs.
-push([first,count2])}return runs}var EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,
-int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-
-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,
-log}){let least=log?0:1e-5*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[told(
-low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
-name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(
-number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,
-row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
-let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
-{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expect\
-ed ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){
-let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,
-info.bytes);return start+=info.bytes,info.stride===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){
-let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(
-4,first))),first]}async function partOfText(info,text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<
-packed.length;n+=1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream(
-"gzip"));return partOfPlanes(info,new Uint8Array(await new Response(unpacked).arrayBuffer()))}function partOfPlanes(info,planes){
-let count2=info.shape.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:1,{stride=1}=info,steps=count2/
-stride;if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed as it tells`);let bytes=new Uint8Array(
-planes.length);for(let n=0,from=0;n<width*stride;n+=1){let[plane,channel]=[Math.floor(n/stride),n%stride];for(let k=0;k<
-steps;k+=1)bytes[(k*stride+channel)*width+plane]=planes[from++]}return decoded(info,summed(info,bytes,width))}var UNSIGNED={
-1:Uint8Array,2:Uint16Array,4:Uint32Array};function summed(info,bytes,width){let{differences=0,stride=1,scale:scale3=null}=info,
-numbers=new UNSIGNED[width](bytes.buffer);for(let order=0;order<differences;order+=1)for(let n=stride;n<numbers.length;n+=
-1)numbers[n]+=numbers[n-stride];return scale3===null?bytes.buffer:Float32Array.from(new Int32Array(bytes.buffer),n=>n*2**
-scale3).buffer}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+push([first,count2])}return runs}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var SINGLE=new Float32Array(1),BITS=new Uint32Array(
+SINGLE.buffer);function toHalf(x){SINGLE[0]=x;let sign=BITS[0]>>>16&32768,size=BITS[0]&2147483647;return size>=1199566848?
+sign|(size>2139095040?32256:31744):size<947912704?sign|Math.round(Math.abs(x)*2**24):sign|size-93952e4>>>13}function halved(texels,width,height,channels){
+let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
+.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
+v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
+texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=5,ZERO_SHARE=1e-5,EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,
+uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-
+low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({
+low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;
+return[told(low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){
+return Number(name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.
+choices[Number(number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){
+let[kind,level,row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:
+null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.
+byteLength):new Uint8Array(bytes),{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a pa\
+rt has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,digest,data:new Type(view.
+slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.
+map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,info.differences===void 0?decoded(info,
+bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+new DataView(file.buffer,file.byteOffset).getUint32(
+0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),first]}async function partOfText(info,text){let letters=atob(
+text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob(
+[packed]).stream().pipeThrough(new DecompressionStream("gzip"));return partOfPlanes(info,new Uint8Array(await new Response(
+unpacked).arrayBuffer()))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{
+shape:shape2,differences=[0,0],scale:scale3=null}=info,count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?planes.
+length/count2:1;if(!(width in UNSIGNED))throw new Error(`the part "${info.name}" is not packed as it tells`);let[line,channels]=shape2.
+length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](count2);for(let c=0,from=0;c<channels;c+=1)
+for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count2+from]<<
+8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<
+count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<count2;first+=
+row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=numbers[n-channels];return decoded(info,scale3===null?numbers:
+floats(numbers,2**scale3))}function floats(numbers,unit2){return numbers instanceof Uint16Array?numbers.map(n=>toHalf((n<<
+16>>16)*unit2)):Float32Array.from(numbers,n=>(n|0)*unit2)}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
 let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
 return result2}function coordinates({shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},
 (_,n)=>(n+before+.5)/size);return grid(middles(shape2[1],columns),middles(shape2[0],rows))}function noiseCoordinates({alongI,
@@ -295,15 +305,7 @@ cells.data:cellCorners(cells);gl.bindVertexArray(drawn.array);let points=positio
 [this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,corners)],drawn.count=corners.length,gl.enableVertexAttribArray(
 0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};function cellCorners({data,shape:[rows,columns]}){let corners=[];
 for(let n=0;n<rows*columns;n+=1){if(!data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,
-low+1,high+1,low,high+1,high)}return Uint32Array.from(corners)}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
-size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}function toHalf(x){let sign=x<0?32768:0,size=Math.
-abs(x);if(!(size<65520))return sign|(size>=65520?31744:32256);let exponent=Math.max(Math.floor(Math.log2(size||1e-30)),-14),
-part=Math.round(size/2**(exponent-10));return sign|(part<1024?part:(exponent+14)*1024+part)}function halved(texels,width,height,channels){
-let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
-.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
-v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
-texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}function makeLayers(gl,texture,size){let{width,height,layers,channels,levels}=size,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),
+low+1,high+1,low,high+1,high)}return Uint32Array.from(corners)}function makeLayers(gl,texture,size){let{width,height,layers,channels,levels}=size,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),
 mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(width,height)>most||layers>mostLayers)throw new Error(
 `a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most} x ${most}\
  in ${mostLayers}; show fewer nodes`);let target=gl.TEXTURE_2D_ARRAY;gl.bindTexture(target,texture),gl.texStorage3D(target,
@@ -357,9 +359,9 @@ if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,
 lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in times2),end=isLast?to:
 lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between2=isLast?[0,1]:[lagOf(n),end],isWhole=end>=to-LAG_ROUNDING*
 to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between2}),from=isWhole?to:end}return result2}
-function programsOf({programs,floats},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,get=(fragment,...variant)=>{
+function programsOf({programs,floats:floats2},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,get=(fragment,...variant)=>{
 let names=variant.filter(name=>typeof name=="string"),program=programs.get(fullVertex,fragment,...names);if(program.error)
-throw new Error(`the tracer cannot be built: ${program.error}`);return program},target=floats&&"FLOWTEX_FLOATS",polar=trace.
+throw new Error(`the tracer cannot be built: ${program.error}`);return program},target=floats2&&"FLOWTEX_FLOATS",polar=trace.
 poles!==void 0&&"FLOWTEX_POLES";return{follow:get(path,polar,trace.pathlines&&"FLOWTEX_PATHLINES"),compose:trace.pathlines?
 null:get(path,polar,"FLOWTEX_COMPOSED"),slopes:get(layers,"FLOWTEX_SLOPES",target),tangents:get(layers,polar,target)}}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;poles;constructor(graphics,header,trace,find,step){
 this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.poles=new Poles(trace.poles??[],trace.nodes,
@@ -1429,20 +1431,20 @@ x,y,z,w]=numbers.subarray(4*(layer*texels.length+n));return[x,y,z,w]}}image(name
 texture(name,this.key([name],repeat),texture=>{let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,levels=Math.
 floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?
 gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,
-gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let{context:gl,floats}=this.graphics;makeLayers(gl,texture,size);for(let n=0;n<
-size.layers;n+=1)sendLayer(gl,floats?{...size,levels:0}:size,n,layer(n));floats&&size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}colourMap(){
-let gl=this.graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),
-gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,
-0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
-gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
-1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
-this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.header,repeat=paper?.repeat??[!1,!1];
-[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,!0]:repeat),paper&&
-this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.
-TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.resources.
-get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&(this.dropSlices(before,
-after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,this.resources.
-get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let{context:gl,floats:floats2}=this.graphics;makeLayers(gl,texture,
+size);for(let n=0;n<size.layers;n+=1)sendLayer(gl,floats2?{...size,levels:0}:size,n,layer(n));floats2&&size.levels&&gl.generateMipmap(
+gl.TEXTURE_2D_ARRAY)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.
+bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(
+1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
+gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<
+this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,
+next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.
+header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.image("nois\
+e",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(
+gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){
+return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&
+(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,
+this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
@@ -1542,8 +1544,8 @@ root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.l
 let{objects,users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,frames:this.renderer.frames}}dispose(){
 this.lifetime.isOver||(this.player.playing=!1,this.lifetime.end(),this.requests?.stop(),this.tiles?.dispose(),this.tiles=
 null,this.scene?.dispose(),this.scene=null,this.held.clear(),this.graphics.leave(this),this.renderer.dispose(),this.root.
-remove())}setHeader(header,keepsCamera=!1){if(header.format!==4){this.panel.fail(`The scene has format ${header.format},\
- and this client reads format ${4}.`,"Use the client of the flowtex that made the scene.");return}this.requests?.stop();
+remove())}setHeader(header,keepsCamera=!1){if(header.format!==FORMAT){this.panel.fail(`The scene has format ${header.format}\
+, and this client reads format ${FORMAT}.`,"Use the client of the flowtex that made the scene.");return}this.requests?.stop();
 let old=this.header;if(old?.generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));
 old&&this.holdDraft(STEADY_MS),this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
 header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header);let isElsewhere=!old||!isSamePlace(old.geometry,

@@ -29,22 +29,25 @@ if(from&&typeof from=="object"||typeof from=="function")for(let key of __getOwnP
 key!==except&&__defProp(to,key,{get:()=>from[key],enumerable:!(desc=__getOwnPropDesc(from,key))||desc.enumerable});return to};var __toESM=(mod,isNodeMode,target)=>(target=mod!=null?__create(__getProtoOf(mod)):{},__copyProps(isNodeMode||!mod||!mod.
 __esModule?__defProp(target,"default",{value:mod,enumerable:!0}):target,mod)),__toCommonJS=mod=>__copyProps(__defProp({},
 "__esModule",{value:!0}),mod);var store_exports={};__export(store_exports,{open:()=>open2});function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
-size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var SINGLE=new Float32Array(1),BITS=new Uint32Array(
+SINGLE.buffer);function toHalf(x){SINGLE[0]=x;let sign=BITS[0]>>>16&32768,size=BITS[0]&2147483647;return size>=1199566848?
+sign|(size>2139095040?32256:31744):size<947912704?sign|Math.round(Math.abs(x)*2**24):sign|size-93952e4>>>13}var TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,
 uint8:Uint8Array};function stepOf(name){return Number(name.split("/")[1])}function tilePart(name){let[kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join(
 "/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.
 byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(
 `a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape,digest,data:new Type(view.
 slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.
-map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,info.stride===void 0?decoded(info,bytes):
-partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,
-!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),first]}function partOfPlanes(info,planes){let count=info.shape.reduce((product,n)=>product*n,1),width=count?planes.length/count:
-1,{stride=1}=info,steps=count/stride;if(!Number.isInteger(steps))throw new Error(`the part "${info.name}" is not packed \
-as it tells`);let bytes=new Uint8Array(planes.length);for(let n=0,from=0;n<width*stride;n+=1){let[plane,channel]=[Math.floor(
-n/stride),n%stride];for(let k=0;k<steps;k+=1)bytes[(k*stride+channel)*width+plane]=planes[from++]}return decoded(info,summed(
-info,bytes,width))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function summed(info,bytes,width){let{differences=0,
-stride=1,scale=null}=info,numbers=new UNSIGNED[width](bytes.buffer);for(let order=0;order<differences;order+=1)for(let n=stride;n<
-numbers.length;n+=1)numbers[n]+=numbers[n-stride];return scale===null?bytes.buffer:Float32Array.from(new Int32Array(bytes.
-buffer),n=>n*2**scale).buffer}var ZarritaError=class extends Error{},NotFoundError=class extends ZarritaError{_tag="NotFoundError";name="NotFoundError";path;found;constructor(context,options={}){
+map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,info.differences===void 0?decoded(info,
+bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+new DataView(file.buffer,file.byteOffset).getUint32(
+0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),first]}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{shape,differences=[0,0],scale=null}=info,
+count=shape.reduce((product,n)=>product*n,1),width=count?planes.length/count:1;if(!(width in UNSIGNED))throw new Error(`\
+the part "${info.name}" is not packed as it tells`);let[line,channels]=shape.length>2?shape.slice(-2):[...shape,1].slice(
+-2),numbers=new UNSIGNED[width](count);for(let c=0,from=0;c<channels;c+=1)for(let n=c;n<count;n+=channels,from+=1){let bits=0;
+for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row=line*
+channels;for(let order=0;order<differences[0];order+=1)for(let n=row;n<count;n+=1)numbers[n]+=numbers[n-row];for(let order=0;order<
+differences[1];order+=1)for(let first=0;first<count;first+=row)for(let n=first+channels;n<first+row;n+=1)numbers[n]+=numbers[n-
+channels];return decoded(info,scale===null?numbers:floats(numbers,2**scale))}function floats(numbers,unit){return numbers instanceof
+Uint16Array?numbers.map(n=>toHalf((n<<16>>16)*unit)):Float32Array.from(numbers,n=>(n|0)*unit)}var ZarritaError=class extends Error{},NotFoundError=class extends ZarritaError{_tag="NotFoundError";name="NotFoundError";path;found;constructor(context,options={}){
 super(`Not found: ${context}`,{cause:options.cause}),this.path=options.path,this.found=options.found}},InvalidMetadataError=class extends ZarritaError{_tag="\
 InvalidMetadataError";name="InvalidMetadataError";path;constructor(message,options={}){super(message,{cause:options.cause}),
 this.path=options.path}},UnknownCodecError=class extends ZarritaError{_tag="UnknownCodecError";name="UnknownCodecError";codec;constructor(codec){

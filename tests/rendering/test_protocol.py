@@ -44,7 +44,8 @@ def test_text_has_all_bits(name: str) -> None:
 
 
 def test_multiples_of_a_power_of_two_are_whole_numbers() -> None:
-    assert part_text(ARRAYS["even"])[0]["scale"] == -38
+    assert part_text(ARRAYS["even"])[0]["scale"] == -20
+    assert part_text(ARRAYS["slices/0"])[0]["scale"] == 0
     assert part_text(ARRAYS["rough"])[0]["scale"] is None
     for odd in ([1.0, 1e-9], [np.nan, 1.0], [-0.0, 1.0], [1e-40, 0.0]):
         assert part_text(np.array(odd, "<f4"))[0]["scale"] is None
@@ -53,7 +54,7 @@ def test_multiples_of_a_power_of_two_are_whole_numbers() -> None:
 def test_what_changes_evenly_is_packed_as_differences() -> None:
     even = np.arange(30_000, dtype="<u4").reshape(100, 100, 3)
     packing, text = part_text(even)
-    assert packing["differences"] and packing["stride"] == 3 and len(text) < 500
+    assert packing["differences"][0] and len(text) < 500
 
 
 def test_a_part_that_lies_in_order_is_not_copied() -> None:

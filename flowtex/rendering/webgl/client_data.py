@@ -259,7 +259,7 @@ class ClientData:
         if colours.table is not None and (colours.choices or colours.name is not None):
             parts["cmap"] = np.ascontiguousarray(colours.table, np.uint8)
         if colours.choices:
-            parts["maps"] = np.stack([colour_table(name)[:, :3] for name in CMAPS])
+            parts["maps"] = _maps()
         if isinstance(geometry, TriangleGeometry):
             parts["blocks"] = geometry.blocks.astype("<u2")
             parts["triangles"] = geometry.triangles.astype("<u4")
@@ -326,7 +326,7 @@ class ClientData:
         )
         return ClientData(textures, colours, self.chosen, traces=self.traces)
 
-    @property
+    @cached_property
     def tile_header(self) -> Header:
         """What of the header of a tile differs from that of the root."""
         return {"geometry": self._geometry(), "slices": self._slices()}
@@ -495,6 +495,11 @@ def _paper(paper: PaperTextures) -> dict[str, Any]:
         "alongI": plain_list(paper.along_i),
         "alongJ": plain_list(paper.along_j),
     }
+
+
+@cache
+def _maps() -> Bytes:
+    return np.stack([colour_table(name)[:, :3] for name in CMAPS])
 
 
 @cache

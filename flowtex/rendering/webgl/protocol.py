@@ -25,13 +25,14 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import digest
 
 #: Number of the form of header and parts; a client refuses one that it does not know.
-FORMAT = 4
+FORMAT = 5
 #: Of gzip, for the parts of a page.
 COMPRESSION_LEVEL = 6
-#: How often numbers of a part of a page are taken from each other, and how many tell what is best.
-MOST_DIFFERENCES, SAMPLE = 2, 20_000
-#: Bits of whole numbers that single precision holds, and exponents of their unit.
-WHOLE_BITS, MOST_SCALE = 24, 100
+#: How often numbers of a part are taken from each other along an axis at most, and how many, and
+#: how many rows, tell what is best.
+MOST_DIFFERENCES, SAMPLE, LEAST_ROWS = 2, 20_000, 4
+#: Types of the whole numbers of which floats may be multiples, their bits, and exponents of a unit.
+WHOLE, MOST_SCALE = {"float16": ("<i2", 15), "float32": ("<i4", 24)}, 100
 
 Header: TypeAlias = dict[str, Any]
 Parts: TypeAlias = dict[str, AnyArray]
@@ -56,11 +57,12 @@ def parts_file(parts: Mapping[str, AnyArray], *, planes: bool = False) -> bytes:
     """Return parts as one file.
 
     It is the length of the descriptions as four bytes, the descriptions in JSON with the number of
-    bytes of each part, and the arrays one after the other; as ``planes`` where gzip follows.
+    bytes of each part, and the arrays one after the other; as ``planes`` where gzip follows, but
+    for texts.
     """
     infos, buffers = [], []
     for name, array in parts.items():
-        packing, buffer = _packed(array) if planes else ({}, part_buffer(array))
+        packing, buffer = _packed(array) if planes and array.ndim > 1 else ({}, part_buffer(array))
         infos.append({**part_info(name, array), "bytes": array.nbytes, **packing})
         buffers.append(buffer)
     text = json.dumps(infos).encode()
@@ -92,42 +94,58 @@ def _packed(array: AnyArray) -> tuple[dict[str, Any], bytes]:
     """Return bytes of a part that gzip packs well, and for its description what they are.
 
     Numbers that are multiples of a power of two are whole numbers, with its exponent as ``scale``.
-    What is packed is by how much numbers differ from those before them, ``differences`` times, in
-    each of ``stride`` channels; the bytes of a channel and of one significance lie side by side.
-    Nothing is lost.
+    What is packed is by how much numbers differ from those before them, along the rows and along
+    the columns of nodes as often as ``differences`` tell, with the sign as the last bit. The bytes
+    of a channel and of one significance lie side by side. Nothing is lost.
     """
     whole, scale = _whole(array)
-    stride = max(array.shape[-1], 1) if array.ndim > 2 else 1
-    numbers = whole.reshape(-1).view(f"<u{whole.itemsize}").reshape(-1, stride)
-    some = [_differences(numbers[:SAMPLE], n) for n in range(MOST_DIFFERENCES + 1)]
-    order = int(np.argmin([len(gzip.compress(_planes(one), 1)) for one in some]))
-    packing = {"differences": order, "stride": stride, "scale": scale}
-    return packing, _planes(_differences(numbers, order))
+    width, channels = array.shape[-2:] if array.ndim > 2 else (*array.shape, 1)[-2:]
+    numbers = whole.view(f"<u{whole.itemsize}").reshape(-1, max(width, 1), channels)
+    middle = len(numbers) // 2
+    some = numbers[middle : middle + max(SAMPLE // max(width * channels, 1), LEAST_ROWS)]
+    differences = []
+    for axis in (0, 1):
+        orders = [some]
+        for _ in range(MOST_DIFFERENCES):
+            orders.append(_differences(orders[-1], axis))
+        sizes = [float(np.log2(_signed_last(one) + 1.0).sum()) for one in orders]
+        differences.append(int(np.argmin(sizes)))
+        some = orders[differences[-1]]
+    for axis, order in enumerate(differences):
+        for _ in range(order):
+            numbers = _differences(numbers, axis)
+    numbers = np.ascontiguousarray(np.moveaxis(_signed_last(numbers), -1, 0))
+    planes = numbers.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
+    return {"differences": differences, "scale": scale}, planes
 
 
 def _whole(array: AnyArray) -> tuple[AnyArray, int | None]:
-    """Return single precision as whole numbers, where it is, and the exponent of their unit."""
+    """Return multiples of a power of two as whole numbers, and its exponent."""
     array = np.ascontiguousarray(array)
-    if array.dtype != np.float32 or not array.size or not np.isfinite(array).all():
+    kind = WHOLE.get(array.dtype.name)
+    if kind is None or not array.size or not np.isfinite(array).all():
         return array, None
-    scale = int(np.frexp(np.abs(array).max())[1]) - WHOLE_BITS
+    scale = int(np.frexp(np.abs(array).max())[1]) - kind[1]
     if abs(scale) > MOST_SCALE:
         return array, None
-    numbers = np.rint(np.ldexp(array.astype(float), -scale)).astype("<i4")
-    same = np.ldexp(numbers, scale).astype(np.float32).tobytes() == array.tobytes()
-    return (numbers, scale) if same else (array, None)
+    multiples = array.astype(np.float32) * np.float32(2.0**-scale)
+    numbers = multiples.astype(kind[0])
+    same = numbers.astype(np.float32).view(np.uint32) == multiples.view(np.uint32)
+    if not same.all():  # nor is a zero below zero
+        return array, None
+    every = int(np.bitwise_or.reduce(numbers, axis=None))
+    shift = (every & -every).bit_length() - 1 if every else 0
+    return numbers >> shift, scale + shift
 
 
-def _differences(numbers: AnyArray, order: int) -> AnyArray:
-    for _ in range(order):
-        numbers = np.concatenate([numbers[:1], np.diff(numbers, axis=0)])
-    return numbers
+def _differences(numbers: AnyArray, axis: int) -> AnyArray:
+    return np.diff(numbers, axis=axis, prepend=numbers.dtype.type(0))
 
 
-def _planes(numbers: AnyArray) -> bytes:
-    """Return the bytes of numbers (N, C), channel by channel in those of one significance."""
-    channels = np.ascontiguousarray(numbers.T).reshape(-1)
-    return channels.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
+def _signed_last(numbers: AnyArray) -> AnyArray:
+    """Return whole numbers, of which those near zero have small bytes, negative ones as well."""
+    signed = numbers.view(f"<i{numbers.itemsize}")
+    return (numbers << 1) ^ (signed >> (8 * numbers.itemsize - 1)).view(numbers.dtype)
 
 
 def plain_list(values: Any) -> list[float]:

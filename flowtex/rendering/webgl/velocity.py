@@ -29,6 +29,9 @@ SAME_SPEED_SHARE = 1e-3
 LEAST_SIZE = 1e-4
 #: Error of a position as a share of a small cell, and which percentile that is.
 CELL_SHARE, SMALL_CELLS = 2**-11, 1.0
+#: Steps of a rate, which is about one along the flow, of the speed, and of a share of the speed:
+#: its error is 2^-10 of itself, or 2^-13 of the typical one.
+RATE_UNIT, SPEED_UNIT, SPEED_STEPS = 2.0**-9, 2.0**-12, 2**9
 #: Bytes of a node at one time, about.
 NODE_BYTES = 4
 #: Steps whose flow a client holds to follow the paths to one of them, at most.
@@ -141,7 +144,7 @@ def surface_parts(textures: TextureSet) -> Parts:
     small = float(np.percentile(norm(surface.tangents), SMALL_CELLS))
     least = np.ldexp(1.0, int(np.floor(np.log2(max(small, 1e-30) * CELL_SHARE))))
     if np.abs(padded).max() < least * 2**24:
-        padded = np.rint(padded / least) * least
+        padded = np.rint(padded / least) * least + 0.0  # no zero is below zero
     parts["padded"] = np.ascontiguousarray(padded, "<f4")
     if surface.poles is not None:
         parts["rays"] = np.stack([pole.rays / pole.size for pole in surface.poles]).astype("<f4")
@@ -162,7 +165,8 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     """Return the velocity of one time, (J, I, 3 or 4).
 
     It is the rate along i and j in cells in the length of a cell, the speed along the surface in
-    multiples of the typical one, and the whole speed where that is another.
+    multiples of the typical one, and the whole speed where that is another; all of it rounded to
+    what paths and colours need.
     """
     field = textures.geometry.field.at_step(step)
     flow, valid, typical = field.index_velocity, field.valid, textures.typical_speed
@@ -176,4 +180,7 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     whole = np.asarray(field.speed[0])
     if np.abs(whole - flow.speed[0])[valid].max(initial=0.0) > SAME_SPEED_SHARE * typical:
         channels.append(fill_blanked(whole, valid) / typical)
-    return half(np.stack(channels, axis=-1))
+    share, exponent = np.frexp(channels[2:])
+    channels[2:] = np.ldexp(np.rint(share * SPEED_STEPS), exponent) / SPEED_STEPS
+    unit = np.array([RATE_UNIT] * 2 + [SPEED_UNIT] * len(channels[2:]))
+    return half(np.rint(np.stack(channels, axis=-1) / unit) * unit + 0.0)
