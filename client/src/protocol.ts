@@ -31,8 +31,8 @@ export interface PartInfo extends Omit<NamedPart, "data"> {
   dtype: string;
   /** How often numbers are the differences to those before them, along rows and along columns. */
   differences?: [number, number];
-  /** Exponent of the unit of floats that come as whole numbers. */
-  scale?: number | null;
+  /** Exponents of the units of floats that come as whole numbers, of each channel. */
+  scale?: number[] | null;
 }
 
 /** A line of nodes along an axis of the textures. */
@@ -431,11 +431,14 @@ function partOfPlanes(info: PartInfo, planes: Uint8Array): NamedPart {
       for (let n = first + channels; n < first + row; n += 1) numbers[n] += numbers[n - channels];
     }
   }
-  return decoded(info, scale === null ? numbers : floats(numbers, 2 ** scale));
+  return decoded(info, scale ? floats(numbers, scale.map((exponent) => 2 ** exponent)) : numbers);
 }
 
-/** Floats of whole numbers in units. */
-function floats(numbers: Uint8Array | Uint16Array | Uint32Array, unit: number): Data {
-  if (numbers instanceof Uint16Array) return numbers.map((n) => toHalf(((n << 16) >> 16) * unit));
-  return Float32Array.from(numbers, (n) => (n | 0) * unit);
+/** Floats of whole numbers in the units of their channels. */
+function floats(numbers: Uint8Array | Uint16Array | Uint32Array, units: number[]): Data {
+  const channels = units.length;
+  if (numbers instanceof Uint16Array) {
+    return numbers.map((n, k) => toHalf(((n << 16) >> 16) * units[k % channels]));
+  }
+  return Float32Array.from(numbers, (n, k) => (n | 0) * units[k % channels]);
 }

@@ -70,7 +70,7 @@ test("differences are summed along both axes, and whole numbers are multiples of
   for (const [dtype, width] of [["float32", 4], ["float16", 2]] as const) {
     const planes = new Uint8Array(8 * width);
     planes.set(numbers);
-    const info = { ...INFO, dtype, shape: [2, 2, 2], differences, scale: -1 };
+    const info = { ...INFO, dtype, shape: [2, 2, 2], differences, scale: [-1, -1] };
     const { data } = await partOfText(info, gzipSync(planes).toString("base64"));
     const told = width === 2 ? [...data].map(fromHalf) : [...data];
     assert.deepEqual(told, [0.5, 5, 1.5, 10, -2, 3.5, -0.5, 9]);

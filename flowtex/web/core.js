@@ -244,9 +244,9 @@ length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](co
 for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count2+from]<<
 8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<
 count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<count2;first+=
-row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=numbers[n-channels];return decoded(info,scale3===null?numbers:
-floats(numbers,2**scale3))}function floats(numbers,unit2){return numbers instanceof Uint16Array?numbers.map(n=>toHalf((n<<
-16>>16)*unit2)):Float32Array.from(numbers,n=>(n|0)*unit2)}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
+row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=numbers[n-channels];return decoded(info,scale3?floats(numbers,
+scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){let channels=units.length;return numbers instanceof
+Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
 let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
 return result2}function coordinates({shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},
 (_,n)=>(n+before+.5)/size);return grid(middles(shape2[1],columns),middles(shape2[0],rows))}function noiseCoordinates({alongI,

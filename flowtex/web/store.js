@@ -46,8 +46,9 @@ the part "${info.name}" is not packed as it tells`);let[line,channels]=shape.len
 for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row=line*
 channels;for(let order=0;order<differences[0];order+=1)for(let n=row;n<count;n+=1)numbers[n]+=numbers[n-row];for(let order=0;order<
 differences[1];order+=1)for(let first=0;first<count;first+=row)for(let n=first+channels;n<first+row;n+=1)numbers[n]+=numbers[n-
-channels];return decoded(info,scale===null?numbers:floats(numbers,2**scale))}function floats(numbers,unit){return numbers instanceof
-Uint16Array?numbers.map(n=>toHalf((n<<16>>16)*unit)):Float32Array.from(numbers,n=>(n|0)*unit)}var ZarritaError=class extends Error{},NotFoundError=class extends ZarritaError{_tag="NotFoundError";name="NotFoundError";path;found;constructor(context,options={}){
+channels];return decoded(info,scale?floats(numbers,scale.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){
+let channels=units.length;return numbers instanceof Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):
+Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var ZarritaError=class extends Error{},NotFoundError=class extends ZarritaError{_tag="NotFoundError";name="NotFoundError";path;found;constructor(context,options={}){
 super(`Not found: ${context}`,{cause:options.cause}),this.path=options.path,this.found=options.found}},InvalidMetadataError=class extends ZarritaError{_tag="\
 InvalidMetadataError";name="InvalidMetadataError";path;constructor(message,options={}){super(message,{cause:options.cause}),
 this.path=options.path}},UnknownCodecError=class extends ZarritaError{_tag="UnknownCodecError";name="UnknownCodecError";codec;constructor(codec){

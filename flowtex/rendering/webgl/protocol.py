@@ -93,13 +93,14 @@ def part_text(array: AnyArray) -> tuple[dict[str, Any], str]:
 def _packed(array: AnyArray) -> tuple[dict[str, Any], bytes]:
     """Return bytes of a part that gzip packs well, and for its description what they are.
 
-    Numbers that are multiples of a power of two are whole numbers, with its exponent as ``scale``.
+    Numbers whose channels are multiples of powers of two are whole numbers, with the exponents as
+    ``scale``.
     What is packed is by how much numbers differ from those before them, along the rows and along
     the columns of nodes as often as ``differences`` tell, with the sign as the last bit. The bytes
     of a channel and of one significance lie side by side. Nothing is lost.
     """
-    whole, scale = _whole(array)
     width, channels = array.shape[-2:] if array.ndim > 2 else (*array.shape, 1)[-2:]
+    whole, scale = _whole(array, channels)
     numbers = whole.view(f"<u{whole.itemsize}").reshape(-1, max(width, 1), channels)
     middle = len(numbers) // 2
     some = numbers[middle : middle + max(SAMPLE // max(width * channels, 1), LEAST_ROWS)]
@@ -119,23 +120,24 @@ def _packed(array: AnyArray) -> tuple[dict[str, Any], bytes]:
     return {"differences": differences, "scale": scale}, planes
 
 
-def _whole(array: AnyArray) -> tuple[AnyArray, int | None]:
-    """Return multiples of a power of two as whole numbers, and its exponent."""
+def _whole(array: AnyArray, channels: int) -> tuple[AnyArray, list[int] | None]:
+    """Return multiples of powers of two as whole numbers, and the exponents of all channels."""
     array = np.ascontiguousarray(array)
     kind = WHOLE.get(array.dtype.name)
     if kind is None or not array.size or not np.isfinite(array).all():
         return array, None
-    scale = int(np.frexp(np.abs(array).max())[1]) - kind[1]
-    if abs(scale) > MOST_SCALE:
+    values = array.reshape(-1, channels)
+    scale = np.frexp(np.abs(values).max(axis=0))[1] - kind[1]
+    if np.abs(scale).max() > MOST_SCALE:
         return array, None
-    multiples = array.astype(np.float32) * np.float32(2.0**-scale)
+    multiples = values.astype(np.float32) * np.ldexp(np.float32(1), -scale)
     numbers = multiples.astype(kind[0])
     same = numbers.astype(np.float32).view(np.uint32) == multiples.view(np.uint32)
     if not same.all():  # nor is a zero below zero
         return array, None
-    every = int(np.bitwise_or.reduce(numbers, axis=None))
-    shift = (every & -every).bit_length() - 1 if every else 0
-    return numbers >> shift, scale + shift
+    every = np.bitwise_or.reduce(numbers, axis=0)
+    shift = np.maximum(np.frexp((every & -every).astype(float))[1] - 1, 0)
+    return numbers >> shift.astype(numbers.dtype), (scale + shift).tolist()
 
 
 def _differences(numbers: AnyArray, axis: int) -> AnyArray:

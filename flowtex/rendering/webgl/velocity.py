@@ -29,9 +29,9 @@ SAME_SPEED_SHARE = 1e-3
 LEAST_SIZE = 1e-4
 #: Error of a position as a share of a small cell, and which percentile that is.
 CELL_SHARE, SMALL_CELLS = 2**-11, 1.0
-#: Steps of a rate, which is about one along the flow, of the speed, and of a share of the speed:
-#: its error is 2^-10 of itself, or 2^-13 of the typical one.
-RATE_UNIT, SPEED_UNIT, SPEED_STEPS = 2.0**-9, 2.0**-12, 2**9
+#: Steps of a rate as a share of that along wide cells, and which percentile these are; of the
+#: speed, and of a share of it: its error is 2^-10 of itself, or 2^-13 of the typical one.
+RATE_UNIT, WIDE_CELLS, SPEED_UNIT, SPEED_STEPS = 2.0**-9, 95, 2.0**-12, 2**9
 #: Bytes of a node at one time, about.
 NODE_BYTES = 4
 #: Steps whose flow a client holds to follow the paths to one of them, at most.
@@ -182,5 +182,7 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
         channels.append(fill_blanked(whole, valid) / typical)
     share, exponent = np.frexp(channels[2:])
     channels[2:] = np.ldexp(np.rint(share * SPEED_STEPS), exponent) / SPEED_STEPS
-    unit = np.array([RATE_UNIT] * 2 + [SPEED_UNIT] * len(channels[2:]))
+    across = norm(field.surface.tangents)[:, ::4, ::4] / _sizes(textures)[::4, ::4]
+    wide = np.maximum(np.percentile(across, WIDE_CELLS, axis=(1, 2)), LEAST_SIZE)
+    unit = np.array([*RATE_UNIT / 2 ** np.rint(np.log2(wide)), *[SPEED_UNIT] * len(channels[2:])])
     return half(np.rint(np.stack(channels, axis=-1) / unit) * unit + 0.0)
