@@ -54,6 +54,8 @@ def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
     projection, box = field.projection, map_box(field)
     if projection is None:
         return {}
+    if field.surface.is_closed:  # of which nothing ends
+        return {"coastlines": coastlines(projection), "graticule": graticule(projection, box)}
     middles, reach = _cells(field)
     tree = scipy.spatial.cKDTree(middles)
 
