@@ -200,8 +200,8 @@ FlowWidget.send = send
 widget = FlowWidget(flowtex.examples.double_gyre_field(shape=(20, 40)), samples=5)
 assert done.wait(30)
 header = {
-    **widget._header, "settings": dict(widget.settings), "camera": widget.camera,
-    "time": widget.time, "clock": widget.clock,
+    **widget._header, "shaders": widget._shaders[0], "settings": dict(widget.settings),
+    "camera": widget.camera, "time": widget.time, "clock": widget.clock,
 }
 json.dump({
     "package": flowtex.__file__, "node": shutil.which("node"), "client": str(widget._esm),

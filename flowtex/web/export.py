@@ -42,7 +42,7 @@ from flowtex.web.view import WebView, web_views
 #: Size of an average part after packing, over that before, base64 included.
 PACKED_SHARE = 0.45
 #: The same where the client traces, and of values.
-TRACED_SHARE, VALUES_SHARE = 0.3, 0.75
+TRACED_SHARE, VALUES_SHARE = 0.19, 0.75
 #: Bytes of the client, its shaders, the header and the preview, about.
 CLIENT_BYTES = 250_000
 #: Bytes of what reads a store.
