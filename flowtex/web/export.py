@@ -31,7 +31,7 @@ from flowtex._util.whole_file import whole_file
 from flowtex._version import __version__
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.rendering.webgl import ClientData
-from flowtex.rendering.webgl.protocol import Header, part_info, part_text
+from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text
 from flowtex.tiles import Pyramid
 from flowtex.web import preview
 from flowtex.web.assets import asset, client_script
@@ -39,12 +39,10 @@ from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
 from flowtex.web.source import TileSource
 from flowtex.web.view import WebView, web_views
 
-#: Size of an average part after packing, over that before, base64 included.
-PACKED_SHARE = 0.45
-#: The same where the client traces, and of values.
-TRACED_SHARE, VALUES_SHARE = 0.19, 0.75
+#: Size of slices and of values after packing, over that before, base64 included.
+PACKED_SHARE, VALUES_SHARE = 0.45, 0.75
 #: Bytes of the client, its shaders, the header and the preview, about.
-CLIENT_BYTES = 250_000
+CLIENT_BYTES = 320_000
 #: Bytes of what reads a store.
 READER_BYTES = 60_000
 #: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
@@ -199,26 +197,31 @@ def page_data(views: Sequence[WebView], *, traces: bool = True) -> list[ClientDa
         scene = replace(view.page_data(), traces=traces)
         pyramid, finest = scene.pyramid, 0
         if pyramid is not None:
-            finest, room = pyramid.depth, TILE_BYTES
-            while finest and (room := room - _level_bytes(scene, pyramid, finest - 1)) >= 0:
+            finest, room = pyramid.depth, float(TILE_BYTES)
+            root = _arrays_bytes(scene, scene.steps)
+            while finest and (room := room - root * _times_larger(pyramid, finest - 1)) >= 0:
                 finest -= 1
             pyramid = pyramid if finest < pyramid.depth else None
         scenes.append(replace(scene, pyramid=pyramid, finest=finest))
     return scenes
 
 
-def _level_bytes(scene: ClientData, pyramid: Pyramid, level: int) -> int:
-    """Bytes of the tiles of a level in a page, about."""
-    more = np.prod(pyramid.shape(level)) / np.prod(pyramid.shape(pyramid.depth))
-    return int(more * _arrays_bytes(scene, scene.steps))
+def _times_larger(pyramid: Pyramid, level: int) -> float:
+    """How many times as many nodes a level has as the root."""
+    return float(np.prod(pyramid.shape(level)) / np.prod(pyramid.shape(pyramid.depth)))
 
 
 def _arrays_bytes(scene: ClientData, steps: int) -> int:
-    """Bytes of the arrays of a scene without tiles, packed."""
-    surface = sum(part.nbytes for part in scene.surface().values())
-    share = TRACED_SHARE if scene.traced else PACKED_SHARE
+    """Bytes of the arrays of a scene without tiles, packed; slices are not made for that."""
+    surface = _packed_bytes(scene.surface())
+    if scene.traced:
+        return surface + steps * _packed_bytes(scene.step(0))
     values = VALUES_SHARE * scene.nbytes_of_values
-    return int(share * surface + steps * (share * scene.nbytes_of_step + values))
+    return int(surface + steps * (PACKED_SHARE * scene.nbytes_of_step + values))
+
+
+def _packed_bytes(parts: Parts) -> int:
+    return sum(len(part_text(part)[1]) for part in parts.values())
 
 
 def estimate(scenes: Sequence[ClientData], *, linked: bool = False) -> int:
@@ -231,12 +234,11 @@ def estimate(scenes: Sequence[ClientData], *, linked: bool = False) -> int:
         if n and scene.textures is scenes[0].textures:
             break
         steps = len(scene.moment(scene.times[0])) if linked else scene.steps
-        size += READER_BYTES * linked + _arrays_bytes(scene, steps)
-        if linked:
-            continue
-        if (pyramid := scene.pyramid) is not None:
+        root = _arrays_bytes(scene, steps)
+        size += READER_BYTES * linked + root
+        if (pyramid := scene.pyramid) is not None and not linked:
             levels = range(scene.finest, pyramid.depth)
-            size += sum(_level_bytes(scene, pyramid, level) for level in levels)
+            size += int(root * sum(_times_larger(pyramid, level) for level in levels))
     return CLIENT_BYTES + size
 
 
