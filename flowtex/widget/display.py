@@ -101,11 +101,13 @@ class Displayed(anywidget.AnyWidget):
         self._shown_in = _cell_number()
         return self
 
-    def _update_stills(self) -> None:
+    def _update_stills(self, *, last: bool = False) -> None:
         """Show the present picture where widgets do not run."""
         stills: dict[str, Any] = vars(self).get("_stills", {})  # none where its making failed
         for name, shown in stills.items():
             _display_still(shown, name, update=True)
+        if last:  # a widget is closed once more when it is collected
+            stills.clear()
 
 
 def _display(shown: Any) -> None:

@@ -221,7 +221,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             self._views.close()
         super().close()
         if not sys.is_finalizing():  # a kernel that ends leaves its stills
-            self._update_stills()
+            self._update_stills(last=True)
 
     @traitlets.validate("noise")
     def _check_noise(self, proposal: Any) -> Any:

@@ -412,6 +412,9 @@ def test_show_displays_once_in_a_notebook(make: Make, monkeypatch: pytest.Monkey
     with pytest.raises(FieldError, match=r"^scalar_bar_args is for windows"):
         flowtex.show(gyre(), scalar_bar_args={"title": "speed"})
     widget.close()
+    count = len(shown)
+    widget.close()  # as its collection does
+    assert len(shown) == count
 
 
 def test_show_displays_a_widget_in_marimo(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
