@@ -5,7 +5,8 @@ tells a person what it does. Command-line flags, shader uniforms, controls and t
 are made from :data:`TABLE`, so a new setting is one row here.
 
 ``affects`` says what a change costs: ``"uniform"`` a number on the graphics card, ``"shader"`` a
-shader build, ``"textures"`` new textures, ``"trace"`` new traces.
+shader build, ``"textures"`` new textures, ``"trace"`` new traces. A number with a ``switch`` may be
+given as True, which stands for that, or as False, which stands for 0.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ NEEDS: dict[str, tuple[Condition, ...]] = {
     "tiles": (_NEEDS_TEXTURE,),
     "noise_correction": (_NEEDS_TEXTURE,),
     "resolution": (_NEEDS_TEXTURE, ("fixed_grain", "==", True), ("lod", "==", False)),
+    "arrows": (("noise", "==", "procedural"),),
+    "arrow_length": (("arrows", "!=", 0.0),),
     "speed": _NEEDS_MOTION,
     "speed_in": _NEEDS_MOTION,
     "period": _NEEDS_MOTION,
@@ -73,9 +76,12 @@ class Setting:
     low: float | None = None
     high: float | None = None
     choices: tuple[str, ...] = ()
+    switch: float | None = None
 
     def check(self, value: Any) -> Any:
         """Return the value in the setting's own type; a SettingsError says what was expected."""
+        if self.switch is not None and isinstance(value, bool):
+            value = self.switch if value else 0
         if self.kind is bool:
             fits = isinstance(value, bool) or type(value).__name__ == "bool"
         elif self.kind is str:
@@ -93,9 +99,9 @@ class Setting:
         """Return the value of a text such as ``"off"``, ``"1.5"`` or ``"box"``, checked."""
         text = text.strip()
         value: Any = text
-        if self.kind is bool:
+        if self.kind is bool or self.switch is not None:
             value = _SWITCH.get(text.lower(), text)
-        elif self.kind is not str:
+        if self.kind not in (bool, str):
             with suppress(ValueError):
                 value = float(text)
         return self.check(value)
@@ -154,7 +160,8 @@ class Setting:
         if self.kind is str:
             return " or ".join(map(repr, self.choices))
         number = "a whole number" if self.kind is int else "a number"
-        return f"{number} from {self.low:g} to {self.high:g}"
+        switch = "" if self.switch is None else "True, False or "
+        return f"{switch}{number} from {self.low:g} to {self.high:g}"
 
 
 def _row(
@@ -164,9 +171,11 @@ def _row(
     affects: Affects = "uniform",
     span: tuple[float, float] | None = None,
     choices: tuple[str, ...] = (),
+    switch: float | None = None,
 ) -> Any:
     low, high = span or (None, None)
     row = {"affects": affects, "text": text, "low": low, "high": high, "choices": choices}
+    row["switch"] = switch
     return field(default=default, metadata=row)
 
 
@@ -274,6 +283,17 @@ class Settings:
         default=4.0,
         text="Seconds after which the streaming begins again, without a seam.",
         span=(0.1, 600),
+    )
+    arrows: float = _row(
+        default=0.0,
+        text="Pixels between arrows that follow the flow, 0 for none; True stands for 40.",
+        span=(0, 400),
+        switch=40.0,
+    )
+    arrow_length: str = _row(
+        default="even",
+        text="Arrows that are all as long, or longer where the flow is faster.",
+        choices=("even", "speed"),
     )
     show_level: bool = _row(
         default=False,

@@ -292,6 +292,9 @@ export interface Header {
     mostTurns: number;
     kernels: string[];
     anchorRange: number;
+    arrowPieces: number;
+    arrowLeast: number;
+    arrowMostDense: number;
     /** Cells that a side of a path goes over, beyond which it does not follow their own velocity. */
     farCells: number;
     shading: Shading;

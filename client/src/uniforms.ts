@@ -66,6 +66,10 @@ export function uniforms(
     ...noiseOrigin(header, view, finest),
     u_noiseFinest: finest,
     u_texel: geometry.extent / s.resolution,
+    u_apart: arrowDistance(header, settings) * view.density,
+    u_bySpeed: settings.arrow_length === "speed",
+    u_arrowSides: slices.sides,
+    u_pieces: constants.arrowPieces,
     ...(header.paper && noiseShape ? paperUniforms(header.paper, s, noiseShape, view.density) : {}),
   };
 }
@@ -79,6 +83,16 @@ export function isMoving(header: Header, settings: Settings): boolean {
 /** Whether the texture is one of streaklets, which is a variant too. */
 export function isSparse(header: Header, settings: Settings): boolean {
   return !header.paper && settings.texture === "streaklets";
+}
+
+/** Whether arrows are drawn: a field without a sign has none, nor has a noise's texture. */
+export function hasArrows(header: Header, settings: Settings): boolean {
+  return Number(settings.arrows) > 0 && !isSignFree(header) && !header.paper;
+}
+
+/** Pixels of the page from an arrow to the next at least. */
+export function arrowDistance({ constants }: Header, { arrows }: Settings): number {
+  return constants.arrowLeast * Math.max(Number(arrows), constants.arrowMostDense);
 }
 
 /**

@@ -27,6 +27,11 @@ WAVE_PIXELS = 96.0
 #: stays exact.
 CLOCK_STEP, MOST_TURNS = 2.0**-12, 2.0**12
 
+#: Pieces of an arrow, the least distance of two over the mean one, and that in pixels at least.
+ARROW_PIECES, ARROW_LEAST, ARROW_MOST_DENSE = 12, 0.85, 8.0
+#: Length of an arrow over the least distance, at most.
+ARROW_LONGEST = 1.5
+
 #: How much more lag a path may take than its length: beside critical points, where those of
 #: neighbours part, their mean is slow.
 SLOWER = 4.0
@@ -124,6 +129,9 @@ def client_constants() -> dict[str, Any]:
         "mostTurns": MOST_TURNS,
         "kernels": list(KERNELS),
         "anchorRange": ANCHOR_RANGE,
+        "arrowPieces": ARROW_PIECES,
+        "arrowLeast": ARROW_LEAST,
+        "arrowMostDense": ARROW_MOST_DENSE,
         "farCells": FAR_CELLS,
         "shading": _shading(),
     }
@@ -187,6 +195,10 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         **_noise_origin(even, finest, view.anchor),
         "u_noiseFinest": finest,
         "u_texel": geometry.extent / settings.resolution,
+        "u_apart": arrow_distance(settings) * view.density,
+        "u_bySpeed": settings.arrow_length == "speed",
+        "u_arrowSides": textures.sides,
+        "u_pieces": ARROW_PIECES,
     }
     if textures.paper is not None:
         values |= _paper(textures.paper, settings, view.density)
@@ -207,6 +219,17 @@ def is_moving(textures: TextureSet, settings: Settings) -> bool:
 def is_sparse(textures: TextureSet, settings: Settings) -> bool:
     """Tell whether the texture is one of streaklets, which a noise in a texture is not."""
     return settings.texture == "streaklets" and textures.paper is None
+
+
+def has_arrows(textures: TextureSet, settings: Settings) -> bool:
+    """Tell whether arrows are drawn: a field without a sign has none, nor has a noise's texture."""
+    signed = not textures.geometry.field.sign_free
+    return settings.arrows > 0 and signed and textures.paper is None
+
+
+def arrow_distance(settings: Settings) -> float:
+    """Pixels, as the settings count them, from an arrow to the next at least."""
+    return ARROW_LEAST * max(settings.arrows, ARROW_MOST_DENSE)
 
 
 def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
@@ -232,7 +255,10 @@ def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> in
     pixel = view.pixel / max(float(facing), 1e-30)
     sides, samples = _direction(textures, settings)[0], _samples(textures, settings)
     count = samples // 2 if sides == 2 else samples - 1
-    longest = SLOWER * count * _distance(textures, settings, view, pixel)
+    longest = count * _distance(textures, settings, view, pixel)
+    if has_arrows(textures, settings):
+        longest = max(longest, ARROW_LONGEST * arrow_distance(settings) * view.density * pixel)
+    longest *= SLOWER
     return int(np.searchsorted(store.lags[:-1], longest / textures.least_unit)) + 1
 
 

@@ -35,9 +35,7 @@ uniform bool u_travelInPixels;
 uniform bool u_travelBySpeed;  // where its speed is the typical one, or everywhere
 uniform float u_wave;          // pixels that it goes in one turn, at least
 
-#ifndef FLOWTEX_PLANAR
 uniform vec4 u_eye;              // the eye, as positions are given, or with w = 0 the way to it
-#endif
 uniform vec3 u_noiseOrigin;      // point near the view, as positions are given
 uniform vec3 u_noiseOriginEven;  // the same in cells of octave 0, whole numbers
 uniform vec3 u_noiseOriginOdd;   // and in cells of octave 1: whole numbers,

@@ -67,7 +67,7 @@ VIEWS: dict[str, tuple[Any, Any, float, dict[str, Any]]] = {
     "streaming": (gyre, WHOLE, 1.0, {"motion": "uniform", "period": 3.0}),
     "without a sign": (lines, WHOLE, 1.0, {"kernel": "ramp", "two_sided": False}),
     "streaklets": (gyre, WHOLE, 1.0, {"texture": "streaklets", "two_sided": False}),
-    "finer": (gyre, WHOLE, 2.0, {"motion": "speed", "kernel": "box"}),
+    "finer": (gyre, WHOLE, 2.0, {"motion": "speed", "kernel": "box", "arrows": True}),
     "finer paper": (gyre, WHOLE, 2.0, {"noise": "texture", "resolution": 64}),
     "finer image": (gyre, WHOLE, 2.0, {"noise": "image", "tiles": 3}),
     "coarser": (gyre, WHOLE, 0.4, {"grain": 1.2}),

@@ -109,7 +109,7 @@ class FlowLayer:
         self._retired: list[GPUTexture] = []
         self.view = ViewState()
         self._map_attributes()
-        update = self._observer("_before_draw")
+        update = self._observer("before_draw")
         update.CallDataType = VTK_OBJECT
         self._observed = self._mapper.AddObserver("UpdateShaderEvent", update)
 
@@ -206,7 +206,7 @@ class FlowLayer:
             text = f"{shader_text(name, variant)}\n{mark}\n"
             self._actor.add_shader_replacement(shader, mark, text, _feature_name=OWNER)
 
-    def _before_draw(self, program: Any) -> None:
+    def before_draw(self, program: Any) -> None:
         """Write uniforms and texture units to the program that is about to draw."""
         window = self._window()
         if program is None or window is None:
@@ -223,7 +223,7 @@ class FlowLayer:
         values["u_mapped"] = self._colours is not None
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
-                _write(program, name, value)
+                write_uniform(program, name, value)
         for name, load in self._loaders().items():
             if program.IsUniformUsed(name):
                 if name not in self._gpu:
@@ -400,7 +400,7 @@ def _window_height(camera: Any) -> float:
     return float(2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2)))
 
 
-def _write(program: Any, name: str, value: Any) -> None:
+def write_uniform(program: Any, name: str, value: Any) -> None:
     """Set one uniform, by the type of its value."""
     if isinstance(value, (bool, int)):
         program.SetUniformi(name, int(value))

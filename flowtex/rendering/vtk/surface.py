@@ -29,7 +29,8 @@ from flowtex.rendering.tile_choice import (
     wanted_tiles,
 )
 from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
-from flowtex.rendering.uniforms import ViewState
+from flowtex.rendering.uniforms import ViewState, has_arrows
+from flowtex.rendering.vtk.arrows import FlowArrows
 from flowtex.rendering.vtk.layer import FlowLayer, corrects_places
 from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
 from flowtex.settings import Settings
@@ -87,6 +88,7 @@ class FlowSurface:
         self._moment = (0, 0, 0.0)
         self._scalars: tuple[str, Callable[[FlowField], Floats]] | None = None
         self._drawn: tuple[Any, ...] = ()
+        self._arrows: FlowArrows | None = None
         self._tiles: dict[TileKey, _TileActor] = {}
         self._loader = None if pyramid is None else self._loader_of(pyramid)
         self.full_height: int | None = None
@@ -124,6 +126,7 @@ class FlowSurface:
     def set_textures(self, textures: TextureSet, pyramid: Pyramid | None = None) -> None:
         """Draw another texture set from now on, of the same flow or of another one."""
         self._drop(list(self._tiles))
+        self._drop_arrows()
         if self._loader is not None:
             self._loader.close()
         self._loader = None if pyramid is None else self._loader_of(pyramid)
@@ -164,6 +167,7 @@ class FlowSurface:
             for _, tag in self._observed:
                 renderer.RemoveObserver(tag)
         self._drop(list(self._tiles))
+        self._drop_arrows()
         if self._loader is not None:
             self._loader.close()
         self._base.close()
@@ -212,6 +216,10 @@ class FlowSurface:
             layer.set_moment(*self._moment)
             layer.look()
         self._set_triangles(layers, shown, view)
+        if has_arrows(self._base.textures, self._settings) and self._arrows is None:
+            self._arrows = FlowArrows(self._base, renderer, self._settings)
+        if self._arrows is not None:
+            self._arrows.look(view, self._place)
 
     def _cull(self) -> None:
         """Leave out the far side of a whole globe, which is hidden but would be shaded as well.
@@ -297,11 +305,15 @@ class FlowSurface:
         width, height = renderer.GetSize()
         planes = [0.0] * 24
         renderer.GetActiveCamera().GetFrustumPlanes(width / max(height, 1), planes)
-        matrix = self._actor.GetMatrix()
-        placed = np.array([[matrix.GetElement(r, c) for c in range(4)] for r in range(4)])
-        sides = np.reshape(planes, (6, 4))[:4] @ placed  # not those before and behind
+        sides = np.reshape(planes, (6, 4))[:4] @ self._place  # not those before and behind
         pixels = (self.full_height or height) / self.view.density
         return TileView(eye, half, pixels, sides, cell_pixels(self._settings))
+
+    @property
+    def _place(self) -> Floats:
+        """The actor's matrix, (4, 4)."""
+        matrix = self._actor.GetMatrix()
+        return np.array([[matrix.GetElement(r, c) for c in range(4)] for r in range(4)])
 
     def _ready(self, key: TileKey, steps: list[int]) -> bool:
         """Whether a tile can be drawn, making its actor first."""
@@ -355,6 +367,11 @@ class FlowSurface:
             if key in keys:
                 drawn.layer.follow(base.mapper)
                 drawn.actor.SetPickable(base.GetPickable())
+
+    def _drop_arrows(self) -> None:
+        if self._arrows is not None:
+            self._arrows.close()
+        self._arrows = None
 
     def _drop(self, keys: list[TileKey]) -> None:
         renderer = self._renderer()

@@ -1,0 +1,283 @@
+"""Where arrows stand on a surface: points nested by octaves, at each as even as they can be.
+
+An octave halves the area that a seed has to itself. Its candidates are spread over the surface by
+hashed numbers; of these the one farthest from all seeds is taken, then the next, as long as they
+keep the octave's distance. So a seed has a *radius*, its distance from all that came before it, and
+those whose radius is above any number stand at least so far apart, and hardly farther: a view shows
+the seeds whose radius is long enough on the screen, and a zoom adds some between them. As they
+depend on the surface alone, they stay where they are.
+
+The first octaves are those of the whole surface. For finer ones the cells in view are divided,
+along their longer sides, until a part is no larger than what a candidate has to itself.
+``client/src/arrowseeds.ts`` has the same for the browser.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.vectors import norm
+from flowtex.rendering.constants import HASH_FACTORS, HASH_SHIFT, OCTAVE_PRIME, SEED_PRIME
+from flowtex.rendering.tile_choice import TileView
+from flowtex.textures.geometry import DrawnSurface
+
+#: Distance of seeds in an octave over that in the one before, and most octaves.
+OCTAVE, MOST_OCTAVES = float(np.sqrt(0.5)), 80
+#: Area that a candidate has to itself, over the square of that distance.
+CANDIDATE_AREA = 0.125
+#: Candidates in an octave of the whole surface, at most.
+MOST_CANDIDATES = 50_000
+#: What is seeded beside a view, in heights of it and in distances of seeds; and how much closer
+#: seeds are, so that views hardly nearer find theirs there.
+AROUND, AROUND_RADII, CLOSER = 0.5, 3.0, 0.75
+
+Hashes = NDArray[np.uint32]
+
+
+class _Rows:
+    """Arrays of one length, some of which are taken, or more are added to."""
+
+    def __getitem__(self, some: Indices | Bools) -> Self:
+        return type(self)(*(values[some] for values in vars(self).values()))
+
+    def __add__(self, more: Self) -> Self:
+        pairs = zip(vars(self).values(), vars(more).values(), strict=True)
+        return type(self)(*map(np.concatenate, pairs))
+
+
+@dataclass(frozen=True, eq=False)
+class Seeds(_Rows):
+    """Points of a surface: cell, place (i, j) in it, 0 to 1, position in its frame, and radius."""
+
+    cell: Indices
+    place: Floats
+    position: Floats
+    radius: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class _Parts(_Rows):
+    """Parts of cells: cell, lower corner and size in it, and a hashed number of each."""
+
+    cell: Indices
+    low: Floats
+    size: Floats
+    key: Hashes
+
+
+class ArrowSeeds:
+    """Seeds of one surface, made as views ask for them.
+
+    Attributes
+    ----------
+    corners
+        Vertices at the corners of each cell, (N, 4); the last two of a triangle are one.
+    """
+
+    def __init__(self, geometry: DrawnSurface) -> None:
+        faces = geometry.faces
+        self.corners = faces[:, [0, 1, 3, 2] if faces.shape[1] == 4 else [0, 1, 2, 2]]
+        self._geometry = geometry
+        self._nodes: Floats32 = geometry.at_vertices(geometry.position)
+        self._cells = _Parts(
+            np.arange(len(faces)),
+            np.zeros((len(faces), 2)),
+            np.ones((len(faces), 2)),
+            _mixed(np.arange(len(faces), dtype=np.uint32)),
+        )
+        self._sums = np.cumsum(self._areas(self._cells))
+        none = np.zeros((0, 3))
+        self._whole = [Seeds(np.zeros(0, np.intp), none[:, :2], none, none[:, 0])]
+        self._last: tuple[TileView, float, Seeds] | None = None
+
+    def seen(self, view: TileView, spacing: float) -> Seeds:
+        """Return the seeds of a view that are so many pixels apart, and some more."""
+        if self._last is None or not self._covers(*self._last[:2], view, spacing):
+            self._last = view, spacing, self._make(view, spacing)
+        return self._last[2]
+
+    def normals(self, seeds: Seeds) -> Floats:
+        """Return unit normals of the surface at seeds, (n, 3), in its own frame."""
+        across = np.cross(*self._sides(self._cells[seeds.cell]))
+        return across / np.maximum(norm(across), np.finfo(float).tiny)[:, None]
+
+    def between(self, nodal: NDArray[np.floating], seeds: Seeds) -> Floats:
+        """Return what seeds have, (n, ...), of what the vertices have, (V, ...)."""
+        return _between(nodal[self.corners[seeds.cell]], seeds.place)
+
+    def _covers(self, last: TileView, least: float, view: TileView, spacing: float) -> bool:
+        """Whether the seeds of the last view do for another one."""
+        points = self._corners_of(view)
+        there = CLOSER * least * _pixel(last, _away(last, points))
+        here = spacing * _pixel(view, _away(view, points))
+        return bool((there <= here).all() and _sees(last, points, 0.0).all())
+
+    def _corners_of(self, view: TileView) -> Floats:
+        """Corners of what is in view as far as the surface goes, (8, 3), in mesh coordinates."""
+        away = np.cross(view.planes[0, :3], view.planes[2, :3])
+        center = float(away @ self._geometry.center)
+        reach = 0.5 * self._geometry.extent * float(np.linalg.norm(away))
+        return np.array(
+            [
+                np.linalg.solve(
+                    [side[:3], end[:3], away], [-side[3], -end[3], center + sign * reach]
+                )
+                for side in view.planes[:2]
+                for end in view.planes[2:]
+                for sign in (-1, 1)
+            ]
+        )
+
+    def _make(self, view: TileView, spacing: float) -> Seeds:
+        geometry = self._geometry
+        away = np.inf if view.eye is None else norm(geometry.center - view.eye)
+        nearest = max(away - 0.5 * geometry.extent, 0.0) if view.eye is not None else 1.0
+        least = CLOSER * spacing * _pixel(view, np.array(nearest))
+        radius, parts, seeds = geometry.extent, self._cells, self._whole[0]
+        for octave in range(MOST_OCTAVES):
+            area = CANDIDATE_AREA * radius**2
+            if self._sums[-1] <= MOST_CANDIDATES * area:
+                if octave + 1 == len(self._whole):
+                    self._whole.append(self._grown(seeds, self._spread(octave, area), radius))
+                seeds = self._whole[octave + 1]
+            else:
+                parts = self._divided(self._needed(parts, view, spacing, radius), area)
+                key = _mixed(parts.key + np.uint32(octave))
+                some = _shares(key) * area < self._areas(parts)
+                seeds = self._grown(seeds, self._points(parts[some], key[some]), radius)
+            if radius <= least or not len(parts.cell):
+                break
+            radius *= OCTAVE
+        points = self._mesh_points(seeds.position)
+        near = _sees(view, points, 0.0) & (
+            seeds.radius >= CLOSER * spacing * _pixel(view, _away(view, points))
+        )
+        return seeds[near]
+
+    def _mesh_points(self, position: Floats) -> Floats:
+        """Take positions in the surface's frame (n, 3) to mesh coordinates."""
+        return position @ self._geometry.frame + self._geometry.center
+
+    def _spread(self, octave: int, area: float) -> Seeds:
+        """Candidates of an octave all over the surface, evenly along the row of its cells."""
+        number = np.arange(int(self._sums[-1] / area), dtype=np.uint32)
+        key = _mixed(_mixed(np.full(1, octave, np.uint32) + OCTAVE_PRIME) + number)
+        cell = np.searchsorted(self._sums, (number + _shares(key)) * area, side="right")
+        return self._points(self._cells[np.minimum(cell, len(self._sums) - 1)], key)
+
+    def _points(self, parts: _Parts, key: Hashes) -> Seeds:
+        """One candidate in each part."""
+        first = _mixed(key + OCTAVE_PRIME)
+        share = np.stack([_shares(first), _shares(_mixed(first + OCTAVE_PRIME))], axis=-1)
+        place = parts.low + parts.size * share
+        position = self._positions(parts.cell, place)
+        return Seeds(parts.cell, place, position, np.full(len(place), np.inf))
+
+    def _grown(self, seeds: Seeds, candidates: Seeds, least: float) -> Seeds:
+        """Take candidates, the farthest from all others first, that are not too near."""
+        most = least / OCTAVE
+        away: Floats = np.full(len(candidates.cell), most)
+        if len(seeds.cell):
+            found = cKDTree(seeds.position).query(candidates.position, distance_upper_bound=most)
+            away = np.minimum(found[0], most)
+        order = np.argsort(-away, kind="stable")
+        order = order[away[order] >= least]
+        position, away = candidates.position[order], away[order]
+        taken = []
+        if len(order):
+            around: Any = cKDTree(position).query_ball_point(position, most)
+            for n, others in enumerate(around):
+                if away[n] < least:
+                    continue
+                taken.append(n)
+                later = np.array([m for m in others if m > n], dtype=np.intp)
+                apart = norm(position[later] - position[n])
+                away[later] = np.minimum(away[later], apart)
+        new = candidates[order[taken]]
+        return seeds + Seeds(new.cell, new.place, new.position, away[taken])
+
+    def _needed(self, parts: _Parts, view: TileView, spacing: float, radius: float) -> _Parts:
+        """Parts of which something is seen, or near what is, and where the octave is needed."""
+        middle = self._mesh_points(self._positions(parts.cell, parts.low + 0.5 * parts.size))
+        reach = 0.5 * norm(self._sides(parts)).sum(axis=0)
+        pixel = _pixel(view, np.maximum(_away(view, middle) - reach, 0.0))
+        needed = radius >= OCTAVE * CLOSER * spacing * pixel
+        return parts[needed & _sees(view, middle, reach + AROUND_RADII * radius)]
+
+    def _divided(self, parts: _Parts, area: float) -> _Parts:
+        """Halve parts along their longer sides until none has more than an area."""
+        while (large := self._areas(parts) > area).any():
+            whole = parts[large]
+            sides = norm(self._sides(whole))
+            axis = (sides[1] > sides[0]).astype(int)
+            size, at = whole.size.copy(), np.arange(len(axis))
+            size[at, axis] *= 0.5
+            beyond = whole.low.copy()
+            beyond[at, axis] += size[at, axis]
+            halves = (
+                _Parts(whole.cell, low, size, _mixed(whole.key + prime))
+                for low, prime in ((whole.low, OCTAVE_PRIME), (beyond, SEED_PRIME))
+            )
+            parts = parts[~large] + next(halves) + next(halves)
+        return parts
+
+    def _positions(self, cell: Indices, place: Floats) -> Floats:
+        """Points of cells, (n, 3)."""
+        return _between(self._nodes[self.corners[cell]].astype(float), place)
+
+    def _sides(self, parts: _Parts) -> Floats:
+        """Return what leads across parts along i and j, (2, n, 3)."""
+        ends = ([0.0, 0.5], [1.0, 0.5]), ([0.5, 0.0], [0.5, 1.0])
+        return np.array(
+            [
+                self._positions(parts.cell, parts.low + parts.size * end)
+                - self._positions(parts.cell, parts.low + parts.size * start)
+                for start, end in ends
+            ]
+        )
+
+    def _areas(self, parts: _Parts) -> Floats:
+        return norm(np.cross(*self._sides(parts)))
+
+
+def _between(corners: NDArray[np.floating], place: Floats) -> Floats:
+    """Return what lies between the corners (n, 4, ...) of cells at places (n, 2)."""
+    (i, j), at = place.T.reshape(2, -1, *[1] * (corners.ndim - 2)), np.moveaxis(corners, 1, 0)
+    low, high = (1 - i) * at[0] + i * at[1], (1 - i) * at[2] + i * at[3]
+    return np.asarray((1 - j) * low + j * high)
+
+
+def _away(view: TileView, points: Floats) -> Floats:
+    """Distances from the eye, or 1 where rays are parallel, (n,)."""
+    return np.ones(len(points)) if view.eye is None else norm(points - view.eye)
+
+
+def _pixel(view: TileView, away: Floats) -> Floats:
+    """Length that a pixel covers at distances from the eye."""
+    return 2 * view.half_height / view.pixels * away
+
+
+def _sees(view: TileView, points: Floats, reach: Floats | float) -> Bools:
+    """Which points (n, 3) are in view, or beside it as far as that is seeded."""
+    slack = reach + AROUND * view.pixels * _pixel(view, _away(view, points))
+    length = norm(view.planes[:, :3])
+    inside = points @ view.planes[:, :3].T + view.planes[:, 3] >= -slack[:, None] * length
+    return np.asarray(inside.all(axis=-1))
+
+
+def _mixed(key: Hashes) -> Hashes:
+    """Hash numbers."""
+    for factor in HASH_FACTORS:
+        key = (key ^ (key >> HASH_SHIFT)) * factor
+    return key ^ (key >> HASH_SHIFT)
+
+
+def _shares(key: Hashes) -> Floats:
+    """Numbers from 0 to 1 of hashed ones."""
+    return key / 2.0**32

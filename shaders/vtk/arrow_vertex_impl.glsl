@@ -1,0 +1,11 @@
+#ifdef FLOWTEX_TRIANGLES
+  flowtexSetCorners(flowtexCorners);
+#endif
+#ifdef FLOWTEX_PLANAR
+  const vec3 flowtexNormal = vec3(0.0, 0.0, 1.0);
+#endif
+  FlowtexStroke flowtexVertex = flowtexStroke(MCDCMatrix, vertexMC.xyz, flowtexNormal, flowtexCoordinate,
+                                              flowtexRadius, int(flowtexRibbon.x), flowtexRibbon.y);
+  gl_Position = flowtexVertex.position;
+  flowtexPlaceVSOutput = flowtexVertex.place;
+  flowtexShapeVSOutput = vec2(flowtexVertex.size, flowtexVertex.share);
