@@ -12,7 +12,6 @@ nothing of that is imported before it is needed.
 
 from __future__ import annotations
 
-import functools
 import importlib.metadata
 import importlib.util
 import json
@@ -35,6 +34,9 @@ REQUIRED = ("numpy", "scipy", "pyvista", "vtk", "h5py")
 OPTIONAL = {"trame": "app", "trame-vuetify": "app", "trame-rca": "app", "anywidget": "notebook"}
 #: Words in the names of renderers that draw with the processor.
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render", "gdi generic")
+
+#: The trials of processes, by their numbers.
+_trials: dict[int, Future[OpenGLReport]] = {}
 
 
 class OpenGLMissingError(RuntimeError):
@@ -116,17 +118,21 @@ def prefer_headless() -> None:
 def begin_trial() -> Future[OpenGLReport]:
     """Begin to try OpenGL in a second process, beside what else there is to do before drawing."""
     # A forked process has not the thread that waits for the report.
-    return _trial_of(os.getpid())
+    trial = _trials.get(os.getpid())
+    if trial is None:
+        prefer_headless()
+        trial = ThreadPoolExecutor(1, "flowtex OpenGL").submit(run_trial, TRIAL_COMMAND)
+        _trials[os.getpid()] = trial
+    return trial
 
 
-@functools.cache
-def _trial_of(process: int) -> Future[OpenGLReport]:
-    del process
+def take_report(report: OpenGLReport) -> None:
+    """Take the report of another process in place of a trial."""
     prefer_headless()
-    return ThreadPoolExecutor(1, "flowtex OpenGL").submit(run_trial, TRIAL_COMMAND)
+    _trials[os.getpid()] = trial = Future[OpenGLReport]()
+    trial.set_result(report)
 
 
-@functools.cache
 def opengl_report() -> OpenGLReport:
     """Return what a second process found, which takes about one second; the report is cached.
 

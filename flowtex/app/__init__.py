@@ -20,9 +20,30 @@ secret; :class:`Library` is what they may open. Imports run one way: ``server`` 
 
 from __future__ import annotations
 
-from flowtex.app.controllers.library import Choice, Library
-from flowtex.app.flow_app import FlowApp, serve
-from flowtex.app.server.site import ServeError
-from flowtex.app.streaming.area import FlowArea
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from flowtex.app.controllers.library import Choice, Library
+    from flowtex.app.flow_app import FlowApp, serve
+    from flowtex.app.server.site import ServeError
+    from flowtex.app.streaming.area import FlowArea
 
 __all__ = ["Choice", "FlowApp", "FlowArea", "Library", "ServeError", "serve"]
+
+#: Names are imported when they are first used: a server whose sessions are processes draws nothing.
+_HOMES = {
+    "Choice": "controllers.library",
+    "FlowApp": "flow_app",
+    "FlowArea": "streaming.area",
+    "Library": "controllers.library",
+    "ServeError": "server.site",
+    "serve": "flow_app",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    msg = f"module {__name__!r} has no attribute {name!r}"
+    raise AttributeError(msg)

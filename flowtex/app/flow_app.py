@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import fields
@@ -12,20 +10,18 @@ from typing import Any
 
 from trame.app import get_server
 
-from flowtex._util.arguments import checked_number
 from flowtex.app.controllers import Controllers
 from flowtex.app.controllers.context import Context
 from flowtex.app.controllers.library import Choice, Library
+from flowtex.app.server.local_session import MakeApp, opener
 from flowtex.app.server.notebook import NotebookPage
 from flowtex.app.server.page import PageState
-from flowtex.app.server.security import known_hosts
-from flowtex.app.server.sessions import MakeApp, usual_limit
-from flowtex.app.server.site import ServeError, run_site
+from flowtex.app.server.security import new_secret
+from flowtex.app.server.site import IDLE_MINUTES, serve_sessions
 from flowtex.app.streaming.area import FlowArea
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.app.ui.layout import build_page
-from flowtex.diagnostics import has_display
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.options import ViewOptions
@@ -33,8 +29,6 @@ from flowtex.options import ViewOptions
 #: Arguments that choose something in a file or a mesh, and those that make a mesh another field.
 CHOICE_ARGUMENTS = tuple(f.name for f in fields(Choice))
 FIELD_ARGUMENTS = ("times", "periodic", "sign_free")
-#: Minutes for which a session waits for its page.
-IDLE_MINUTES = 15.0
 
 
 class FlowApp(NotebookPage):
@@ -229,27 +223,21 @@ def serve(
     >>> import flowtex
     >>> flowtex.app.serve("runs/", port=8080, limit=12)  # doctest: +SKIP
     """
-    for name, value, low, high, expected in (
-        ("limit", 1 if limit is None else limit, 1, math.inf, "1 or more pages"),
-        ("port", port, 0, 65535, "0 to 65535"),
-        ("idle", idle, math.ulp(0.0), math.inf, "a positive number of minutes"),
-    ):
-        checked_number(name, value, low, high, expected=expected, error=ServeError)
-    site = run_site(
-        _app_maker(field, folder, options),
-        host,
-        port,
-        hosts=known_hosts(host, allow_host),
-        limit=limit or usual_limit(),
+    secret = new_secret()
+    serve_sessions(
+        opener(app_maker(field, folder, options), secret),
+        secret,
+        host=host,
+        port=port,
+        allow_host=allow_host,
+        limit=limit,
         idle=idle,
+        open_browser=open_browser,
         announce=announce,
-        open_browser=open_browser and has_display(),
     )
-    with suppress(KeyboardInterrupt, asyncio.CancelledError):
-        asyncio.run(site)
 
 
-def _app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) -> MakeApp:
+def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) -> MakeApp:
     """Return what makes an application for each page."""
     if callable(field):
         names = [*options, *(["folder"] if folder is not None else [])]

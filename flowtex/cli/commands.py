@@ -13,11 +13,13 @@ import sys
 import warnings
 from collections.abc import Sequence
 from difflib import get_close_matches
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from cyclopts import App, CycloptsError, UnknownOptionError
 
 from flowtex._util.ending import Ended, ended_by_signals
+from flowtex.cli import page
 from flowtex.cli.console import complain
 from flowtex.cli.info import info
 from flowtex.cli.options import UsageError
@@ -25,6 +27,9 @@ from flowtex.cli.pyramid import pyramid
 from flowtex.cli.serve import serve
 from flowtex.cli.write import export, movie, render
 from flowtex.errors import FieldError
+
+if TYPE_CHECKING:
+    from flowtex.app.server.session_process import HostedSession
 
 app = App(
     name="flowtex",
@@ -65,9 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     warnings.showwarning = _warn  # type: ignore[assignment]
     try:
         with ended_by_signals():
-            result = app(
-                words, exit_on_error=False, print_error=False, result_action="return_value"
-            )
+            result = _run(words)
     except KeyboardInterrupt:
         return 128 + signal.SIGINT
     except Ended as ended:
@@ -81,6 +84,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     finally:
         warnings.showwarning = print_warning
     return result if isinstance(result, int) else 0
+
+
+def _run(words: Sequence[str]) -> Any:
+    page.words.set(words)
+    return app(words, exit_on_error=False, print_error=False, result_action="return_value")
+
+
+def hosted() -> HostedSession:
+    """Return a session that runs a command, in a process of its own."""
+    from flowtex.app.server.session_process import HostedSession
+
+    warnings.showwarning = _warn  # type: ignore[assignment]
+    return HostedSession(partial(page.open_site, _run))
 
 
 def _unknown(error: UnknownOptionError) -> UsageError:

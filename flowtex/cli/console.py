@@ -53,11 +53,11 @@ def say(*parts: str | tuple[str, str], stderr: bool = False) -> None:
     terminal(stderr=stderr).print(Text.assemble(*parts), soft_wrap=True)
 
 
-def announcer(field: FlowField, host: str) -> Callable[[str], None]:
+def announcer(description: str, host: str) -> Callable[[str], None]:
     """Return a function that prints the address of a page."""
 
     def announce(address: str) -> None:
-        say(("flowtex", "bold"), f"  {describe(field)}\n")
+        say(("flowtex", "bold"), f"  {description}\n")
         # A link that is wrapped or coloured in pieces cannot be clicked.
         say("  ", (address, "cyan"), "\n")
         if host not in ("127.0.0.1", "localhost", "::1"):

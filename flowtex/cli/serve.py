@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from flowtex._util.progress import waiting
 from flowtex.cli.checks import drawing, require_app
-from flowtex.cli.console import announcer
+from flowtex.cli.console import announcer, describe
 from flowtex.cli.options import (
     FLAT,
     PAGE,
@@ -71,7 +71,7 @@ def serve(
         field = open_store(store)
         served = ServedStore(store)
         page = _page(field, title, options, f"store/{served.run}/")
-        print_address = announcer(field, at.host)
+        print_address = announcer(describe(field), at.host)
 
         def announce(address: str) -> None:
             end_waiting()

@@ -10,8 +10,8 @@ from cyclopts import Parameter
 
 from flowtex import examples
 from flowtex._util.progress import waiting
-from flowtex.cli.checks import check_lines, drawing, require_app
-from flowtex.cli.console import announcer, describe, load_field, notices
+from flowtex.cli.checks import check_lines, drawing
+from flowtex.cli.console import load_field, notices
 from flowtex.cli.options import (
     FLAT,
     SIZE,
@@ -23,6 +23,7 @@ from flowtex.cli.options import (
     arguments,
     pixels,
 )
+from flowtex.cli.page import begin, serve_library, serve_processes
 from flowtex.examples import NAMES
 
 if TYPE_CHECKING:
@@ -58,11 +59,12 @@ def demo(
     from flowtex import diagnostics
 
     diagnostics.begin_trial()
-    require_app()
+    begin()
+    diagnostics.require_opengl()
+    if serve_processes(page):
+        return 0
     from flowtex.app import Library
     from flowtex.field.source import FlowSource
-
-    diagnostics.require_opengl()
 
     def opener(name: str) -> Any:
         return lambda: FlowSource(getattr(examples, f"{name}_field")())
@@ -75,7 +77,7 @@ def demo(
         looks=FIRST_LOOKS,
     )
     zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
-    return _serve(library, page, {**options, "zoom": zoom, "focus": focus})
+    return serve_library(library, page, {**options, "zoom": zoom, "focus": focus})
 
 
 def show(
@@ -94,8 +96,9 @@ def show(
     check_lines(choice, options)
     from flowtex import diagnostics
 
+    if on_page := page is not None or not diagnostics.has_display():
+        begin()
     diagnostics.require_opengl()
-    on_page = page is not None or not diagnostics.has_display()
     together = _belong_together(files)
     if on_page or not (together or len(files) == 1) or _is_folder(files[0]):
         return _show_page(files, choice, page, options)
@@ -112,12 +115,6 @@ def _show_page(
     page: ServeFlags | None,
     options: dict[str, Any],
 ) -> int:
-    from flowtex.field.remote import prepare_readers
-
-    prepare_readers()  # while the libraries of the page are loaded
-    require_app()
-    from flowtex.app import Library
-
     if not files:
         msg = "there is no file to show; name one, or a folder, or try `flowtex demo`"
         raise UsageError(msg)
@@ -125,19 +122,22 @@ def _show_page(
         if name in options:
             msg = f"--{name} is for pictures and windows; the page has its own, under {group}"
             raise UsageError(msg)
+    if serve_processes(page):
+        return 0
+    from flowtex.app import Library
     from flowtex.pyramid.others import has_parts
 
     if len(files) == 1 and has_parts(files[0]):
-        return _serve(Library.of(load_field(files, choice)), page, options)
+        return serve_library(Library.of(load_field(files, choice)), page, options)
     one = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))
     if one and (library := _earth_library(files, choice)) is not None:
-        return _serve(library, page, {**options, **choice})
+        return serve_library(library, page, {**options, **choice})
     if one and any(name in choice for name in FIELD_OPTIONS):
-        return _serve(Library.of(load_field(files, choice)), page, options)
+        return serve_library(Library.of(load_field(files, choice)), page, options)
     if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
         msg = f"--{misplaced[0].replace('_', '-')} goes with one file, not with several or a folder"
         raise UsageError(msg)
-    return _serve(Library.of(*files), page, {**options, **choice})
+    return serve_library(Library.of(*files), page, {**options, **choice})
 
 
 def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | None:
@@ -180,35 +180,3 @@ def _belong_together(files: Sequence[Path]) -> bool:
     from flowtex.field.datasets.files import belong_together, dataset_paths
 
     return len(files) > 1 and bool(dataset_paths(files)) and belong_together(files)
-
-
-def _serve(library: Library, page: ServeFlags | None, options: dict[str, Any]) -> int:
-    from flowtex.app import serve
-    from flowtex.app.flow_app import first_choice
-    from flowtex.options import Appearance
-    from flowtex.scene import Scene
-
-    page = page or ServeFlags()
-    with waiting(f"Reading {library.names[0]}"):
-        field = library.field(*first_choice(library, options))
-    look = {name: options[name] for name in vars(Appearance()) if name in options}
-    Scene.of(field, **look).close()  # raises errors before a page asks
-    with waiting(f"Tracing {describe(field)}") as end_waiting:
-        print_address = announcer(field, page.host)
-
-        def announce(address: str) -> None:
-            end_waiting()
-            print_address(address)
-
-        serve(
-            library,
-            host=page.host,
-            port=page.port,
-            allow_host=page.allow_host,
-            limit=page.limit,
-            idle=page.idle,
-            open_browser=page.browser,
-            announce=announce,
-            **options,
-        )
-    return 0

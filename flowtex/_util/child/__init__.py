@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from flowtex._util.child.forkserver import FORKS
 from flowtex._util.child.supervisor import Child, ChildError, prepare
 
-__all__ = ["Child", "ChildError", "prepare"]
+__all__ = ["FORKS", "Child", "ChildError", "prepare"]

@@ -52,24 +52,30 @@ class ForkServer:
             env={"OPENBLAS_NUM_THREADS": "1", **os.environ},
         )
         other.close()
-        self._owner = os.getpid()
-        self.close = weakref.finalize(self, _close, self._control, self._process)
+        self._owner, self._lost = os.getpid(), False
+        self.close = weakref.finalize(self, _close, self._control, self._process, self._owner)
 
     @property
     def alive(self) -> bool:
-        """Whether it can be asked: it has not ended, and was started by this very process."""
-        return self._owner == os.getpid() and self._process.poll() is None
+        """Whether it can be asked, as far as is known; one that was forked from an owner may."""
+        owned = self._owner == os.getpid()
+        return not self._lost and (not owned or self._process.poll() is None)
 
-    def start(self, entry: str, memory: int, pipes: tuple[int, int, int]) -> None:
+    def start(self, entry: str, memory: int, pipes: tuple[int, int, int], *, silent: bool) -> None:
         """Fork a child, with the pipes of its requests, its answers and its status."""
-        text = json.dumps({"entry": entry, "memory": memory}).encode()
-        socket.send_fds(self._control, [text], list(pipes))
+        text = json.dumps({"entry": entry, "memory": memory, "silent": silent}).encode()
+        try:
+            socket.send_fds(self._control, [text], list(pipes))
+        except OSError:
+            self._lost = True
+            raise
 
 
-def _close(control: socket.socket, process: subprocess.Popen[bytes]) -> None:
+def _close(control: socket.socket, process: subprocess.Popen[bytes], owner: int) -> None:
     control.close()
-    process.kill()  # it may be loading libraries; its children end with it
-    process.wait()
+    if os.getpid() == owner:
+        process.kill()  # it may be loading libraries; its children end with it
+        process.wait()
 
 
 def fork_server(preload: tuple[str, ...]) -> ForkServer:
@@ -82,11 +88,17 @@ def fork_server(preload: tuple[str, ...]) -> ForkServer:
 
 
 def main(control: int, preload: list[str]) -> NoReturn:
-    """Load modules, and fork children, until the other end of the control socket is closed."""
+    """Load modules, and fork children, until the other end of the control socket is closed.
+
+    ``"module:function"`` calls a function as well.
+    """
     server = _Server(socket.socket(fileno=control))
-    for module in preload:
+    for entry in preload:
+        module, _, function = entry.partition(":")
         with suppress(Exception):
-            import_module(module)
+            loaded = import_module(module)
+            if function:
+                getattr(loaded, function)()
         server.run(once=True)
     # Collections do not touch, and so copy, what children share.
     gc.collect()
@@ -162,7 +174,7 @@ class _Server:
             self._control.close()
             for pipe in (self._wakes, status, *self._children.values()):
                 os.close(pipe)
-            settle(start["memory"])
+            settle(start["memory"], silent=start["silent"])
             serve(start["entry"], os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
             code = 0
         finally:

@@ -70,7 +70,7 @@ class Child:
     without arguments. That takes a value of JSON, and returns one with a list of arrays.
     ``preload`` are modules that a child that is forked has at once, and ``memory`` bytes that it
     may take, where the system has a limit (not on macOS and Windows); by default a share of what is
-    available.
+    available. A child that is not ``silent`` has the standard error of this process.
     """
 
     def __init__(
@@ -80,11 +80,12 @@ class Child:
         preload: tuple[str, ...] = (),
         memory: int | None = None,
         forks: bool = FORKS,
+        silent: bool = True,
     ) -> None:
         #: Bytes that it may take.
         self.memory = int(MEMORY_SHARE * available_bytes()) if memory is None else memory
         start = _forked if forks else _spawned
-        self._process = start(entry, self.memory, preload)
+        self._process = start(entry, self.memory, preload, silent)
         self._answers: SimpleQueue[_Received] = SimpleQueue()
         self._asking, self._writing = threading.Lock(), threading.Lock()
         self._numbers = itertools.count(1)
@@ -220,7 +221,7 @@ def _end(process: _Process) -> None:
         process.requests.close()
 
 
-def _forked(entry: str, memory: int, preload: tuple[str, ...]) -> _Process:
+def _forked(entry: str, memory: int, preload: tuple[str, ...], silent: bool) -> _Process:  # noqa: FBT001
     """Let the fork server start a child."""
     requests, answers, status = os.pipe(), os.pipe(), os.pipe()
     pipes = requests[0], answers[1], status[1]
@@ -228,9 +229,9 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...]) -> _Process:
         fcntl.fcntl(answers[1], fcntl.F_SETPIPE_SZ, PIPE_BYTES)
     try:
         try:
-            fork_server(preload).start(entry, memory, pipes)
+            fork_server(preload).start(entry, memory, pipes, silent=silent)
         except OSError:  # it has died since
-            fork_server(preload).start(entry, memory, pipes)
+            fork_server(preload).start(entry, memory, pipes, silent=silent)
     finally:
         for pipe in pipes:
             os.close(pipe)
@@ -249,13 +250,13 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...]) -> _Process:
     )
 
 
-def _spawned(entry: str, memory: int, _preload: tuple[str, ...]) -> _Process:
+def _spawned(entry: str, memory: int, _preload: tuple[str, ...], silent: bool) -> _Process:  # noqa: FBT001
     """Start a child from nothing."""
     process = subprocess.Popen(
-        command(spawned, entry=entry, memory=memory),
+        command(spawned, entry=entry, memory=memory, silent=silent),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL if silent else None,
         start_new_session=True,
     )
     requests, answers = process.stdin, process.stdout

@@ -16,7 +16,7 @@ import time
 from collections.abc import AsyncIterable, Awaitable, Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 from urllib.parse import quote
 
 from aiohttp import web
@@ -75,6 +75,11 @@ class Routes:
         application = getattr(web_server, "app", None)
         if application is not None:
             add_route(application, {self.token: self}.get)
+
+    async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
+        """Answer a request for a file, or one that brings a file."""
+        brings = request.method == "POST"
+        return await (self.receive(name, request) if brings else self.answer(name))
 
     def give(self, name: str, content: Give) -> str:
         """Hand out a file, in place of an earlier one of that name; return its address.
@@ -171,23 +176,26 @@ class Routes:
         return web.Response(body=body, headers=headers)
 
 
-def add_route(application: web.Application, find: Callable[[str], Routes | None]) -> None:
-    """Serve files below ``/flowtex`` of a web application; ``find`` has the routes of a token."""
+class Handler(Protocol):
+    """What answers requests for files, below a ``token`` that cannot be guessed."""
 
-    async def handler(request: web.Request) -> web.StreamResponse:
-        routes = find(request.match_info["token"])
-        if routes is None:
+    token: str
+
+    async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
+        """Answer a request for a file, or one that brings a file."""
+
+
+def add_route(application: web.Application, find: Callable[[str], Handler | None]) -> None:
+    """Serve files below ``/flowtex`` of a web application; ``find`` has the handler of a token."""
+
+    async def respond(request: web.Request) -> web.StreamResponse:
+        handler = find(request.match_info["token"])
+        if handler is None:
             raise web.HTTPNotFound
-        return await routes.answer(request.match_info["name"])
+        return await handler.respond(request.match_info["name"], request)
 
-    async def receiver(request: web.Request) -> web.StreamResponse:
-        routes = find(request.match_info["token"])
-        if routes is None:
-            raise web.HTTPNotFound
-        return await routes.receive(request.match_info["name"], request)
-
-    application.router.add_get("/flowtex/{token}/{name}", handler)
-    application.router.add_post("/flowtex/{token}/{name}", receiver)
+    application.router.add_get("/flowtex/{token}/{name}", respond)
+    application.router.add_post("/flowtex/{token}/{name}", respond)
 
 
 class Downloads:

@@ -19,6 +19,7 @@ from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
 
+from flowtex.app.server.local_session import LocalSession
 from flowtex.app.server.page import start_task
 from flowtex.app.server.security import ANY, LOCAL, new_secret
 from flowtex.app.server.sessions import Sessions
@@ -131,14 +132,17 @@ class _Served:
         # Who made the application closes it.
         borrowed_app = SimpleNamespace(server=app.server, stream=app.stream, close=lambda: None)
         sessions = Sessions(
-            lambda _: borrowed_app, self._secret, limit=1, idle=float("inf"), shared=True
+            lambda: LocalSession.open(borrowed_app, self._secret),
+            limit=1,
+            idle=float("inf"),
+            shared=True,
         )
         self._hosts = set(LOCAL)
         self._site = Site(sessions, self._secret, hosts=self._hosts, framed=True)
-        self._task = start_task(self._start(borrowed_app), FAILURE)
+        self._task = start_task(self._start(), FAILURE)
 
-    async def _start(self, borrowed_app: Any) -> None:
-        await self._site.prepare(borrowed_app)
+    async def _start(self) -> None:
+        await self._site.prepare()
         await self._site.listen(self._socket)
 
     def address(self, proxy: str | None) -> str:

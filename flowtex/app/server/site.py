@@ -18,26 +18,37 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import math
 import os
 import signal
 import socket as sockets
 import webbrowser
-from collections.abc import Awaitable, Callable, Container
+from collections.abc import Awaitable, Callable, Container, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from aiohttp import web
 
+from flowtex._util.arguments import checked_number
 from flowtex._util.ending import SIGNALS, Ended, announce_end
 from flowtex.app.server.bounded_log import bounded_log
 from flowtex.app.server.connections import LimitedServer, keep
 from flowtex.app.server.files import add_route
-from flowtex.app.server.security import FAULT, LOCAL, guard, is_same, new_secret
-from flowtex.app.server.sessions import ClosedError, FullError, MakeApp, Sessions
+from flowtex.app.server.security import FAULT, LOCAL, guard, is_same, known_hosts
+from flowtex.app.server.sessions import (
+    ClosedError,
+    FullError,
+    OpenSession,
+    Sessions,
+    usual_limit,
+)
+from flowtex.diagnostics import has_display
 from flowtex.errors import FieldError
 
 DOOR = Path(__file__).parents[1] / "ui" / "static" / "door.html"
+#: Minutes for which a session waits for its page.
+IDLE_MINUTES = 15.0
 #: Bytes of what the door sends, at most.
 REQUEST_BYTES = 4096
 
@@ -94,9 +105,9 @@ class Site:
         self._server: LimitedServer | None = None
         self._sweep: asyncio.Task[None] | None = None
 
-    async def prepare(self, app: Any = None) -> None:
-        """Make the first session, with an application that there is already if any."""
-        application = self._application(await self.sessions.prepare(app))
+    async def prepare(self) -> None:
+        """Open the first session."""
+        application = self._application(await self.sessions.prepare())
         self._server = LimitedServer(application)
 
     async def listen(self, where: sockets.socket | tuple[str, int] = ("127.0.0.1", 0)) -> None:
@@ -203,33 +214,46 @@ def _answer(status: int, **values: str) -> web.Response:
     return web.json_response(values, status=status, headers={"Cache-Control": "no-store"})
 
 
-async def run_site(
-    make_app: MakeApp,
+def serve_sessions(
+    open_session: OpenSession,
+    secret: str,
+    *,
     host: str,
     port: int,
-    *,
-    hosts: Container[str],
-    limit: int,
-    idle: float,
-    announce: Callable[[str], None],
+    allow_host: Iterable[str] = (),
+    limit: int | None = None,
+    idle: float = IDLE_MINUTES,
     open_browser: bool,
+    announce: Callable[[str], None],
 ) -> None:
-    """Serve pages until the task is cancelled; :func:`flowtex.app.serve` has the parameters."""
-    secret = new_secret()
-    site = Site(Sessions(make_app, secret, limit=limit, idle=idle), secret, hosts=hosts)
+    """Serve sessions until Ctrl-C; :func:`flowtex.app.serve` has the arguments and the errors."""
+    for name, value, low, high, expected in (
+        ("limit", 1 if limit is None else limit, 1, math.inf, "1 or more pages"),
+        ("port", port, 0, 65535, "0 to 65535"),
+        ("idle", idle, math.ulp(0.0), math.inf, "a positive number of minutes"),
+    ):
+        checked_number(name, value, low, high, expected=expected, error=ServeError)
+    hosts = known_hosts(host, allow_host)
 
-    async def listen() -> int:
-        await site.prepare()
-        await site.listen((host, port))
-        return site.port
+    async def serve() -> None:
+        sessions = Sessions(open_session, limit=limit or usual_limit(), idle=idle)
+        site = Site(sessions, secret, hosts=hosts)
 
-    await serve_until_ended(
-        listen,
-        site.stop,
-        (host, port, f"?secret={secret}"),
-        announce=announce,
-        open_browser=open_browser,
-    )
+        async def listen() -> int:
+            await site.prepare()
+            await site.listen((host, port))
+            return site.port
+
+        await serve_until_ended(
+            listen,
+            site.stop,
+            (host, port, f"?secret={secret}"),
+            announce=announce,
+            open_browser=open_browser and has_display(),
+        )
+
+    with suppress(KeyboardInterrupt, asyncio.CancelledError):
+        asyncio.run(serve())
 
 
 async def serve_until_ended(

@@ -29,6 +29,8 @@ from flowtex.app.streaming.painter import MOVING_S, PLAYING_S, ViewPainter, view
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 
+#: Seconds in which a page that is opened is answered, before anything is drawn for it.
+ANSWER_S = 0.05
 #: Seconds without a change after which the full picture is drawn.
 REST_S = 0.12
 #: Pictures in a second, at most.
@@ -157,7 +159,9 @@ class FrameStream:
                 loop.call_soon_threadsafe(self._tile_ready)
 
         self._viewport.load_in_background(notify)
-        # The shader is built for the first picture: better now, while a browser starts.
+        # The shader is built for the first picture: better now, while a browser starts, that has
+        # its answer first.
+        await asyncio.sleep(ANSWER_S)
         with self._log_faults():
             self._viewport.draw(16, 16)
         while True:

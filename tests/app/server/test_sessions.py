@@ -29,6 +29,7 @@ from flowtex import FlowField
 from flowtex.app import FlowApp, ServeError, serve
 from flowtex.app.server import sessions
 from flowtex.app.server.files import Routes
+from flowtex.app.server.local_session import opener
 from flowtex.app.server.security import new_secret
 from flowtex.app.server.sessions import Sessions, usual_limit
 from flowtex.app.server.site import Site
@@ -84,7 +85,7 @@ async def place(
     make: Callable[[Any], Any] = Plain, *, limit: int = 4, idle: float = 10.0
 ) -> AsyncIterator[Place]:
     secret = new_secret()
-    site = Site(Sessions(make, secret, limit=limit, idle=idle), secret)
+    site = Site(Sessions(opener(make, secret), limit=limit, idle=idle), secret)
     await site.prepare()
     await site.listen()
     async with aiohttp.ClientSession() as http:

@@ -1,0 +1,164 @@
+"""A session in this process: an application on a trame server of its own.
+
+Sessions share nothing that can be changed: each has a trame server, a state, a window, and
+settings of its own; only fields and their traces are shared, which are never written again. trame
+starts nothing that listens: its generic end point takes messages from whoever brings them, and
+the web server that all pages share (:mod:`flowtex.app.server.site`) brings them. trame itself
+would keep the server of a session that has ended for ever.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import wslink.server
+from aiohttp import WSMsgType, web
+from trame.app import get_server
+from trame.app.core import AVAILABLE_SERVERS
+from trame_client.widgets.core import HTML_CTX
+from trame_server.protocol import CoreServer
+
+from flowtex.app.server.files import Routes
+from flowtex.app.server.messages import LimitedMessages, restrict
+from flowtex.app.server.sessions import OpenSession, Session
+
+#: Makes an application on a trame server. An application has ``server``, ``stream`` (a
+#: :class:`~flowtex.app.streaming.stream.FrameStream`) and ``close()``.
+MakeApp = Callable[[Any], Any]
+
+#: What the page shows when its session has ended.
+ENDED = Path(__file__).parents[1] / "ui" / "static" / "ended.html"
+
+_count = itertools.count(1)
+
+
+def opener(make_app: MakeApp, secret: str) -> OpenSession:
+    """Return what opens sessions in this process; a connection has to know the secret."""
+
+    async def open_session() -> Session:
+        server = get_server(f"flowtex-session-{next(_count)}")
+        try:
+            app = make_app(server)
+        except BaseException:
+            AVAILABLE_SERVERS.pop(server.name, None)
+            raise
+        return await LocalSession.open(app, secret)
+
+    return open_session
+
+
+class LocalSession(Session):
+    """One application, and the end point of its trame server."""
+
+    def __init__(self, app: Any) -> None:
+        super().__init__(Routes.of(app.server))
+        self.app = app
+        self._endpoint: Any = None
+        self._task: asyncio.Task[None] | None = None
+
+    @classmethod
+    async def open(cls, app: Any, secret: str) -> LocalSession:
+        """Start the trame server of an application."""
+        session = cls(app)
+        try:
+            await session._start(secret)
+        except BaseException:
+            await session.end()
+            raise
+        return session
+
+    async def _start(self, secret: str) -> None:
+        server = self.app.server
+        web_servers: list[Any] = []
+        self.app.stream.watched = lambda: self.connected
+        server.state.trame__template_error = ENDED.read_text(encoding="utf-8")
+        # Defaults of trame's own command line reach it without showing up in a list of processes.
+        server.cli.set_defaults(authKey=secret)
+        server.controller.on_server_bind.add(web_servers.append)
+        with _quiet_trame():
+            self._task = server.start(
+                exec_mode="task",
+                backend="generic",
+                port=0,
+                timeout=0,
+                thread=True,
+                open_browser=False,
+                show_connection_info=False,
+                disable_logging=True,
+            )
+        await server.ready
+        self._endpoint = web_servers[0].ws
+        restrict(self._endpoint)
+        self.static = web_servers[0].config["static"]
+
+    async def carry(self, socket: web.WebSocketResponse) -> None:
+        """Carry messages between a page and its application until one of them ends."""
+
+        async def send(is_binary: bool, content: Any) -> None:  # noqa: FBT001 wslink's call
+            with suppress(ConnectionError):  # the page has gone, which the loop below is told
+                await (socket.send_bytes if is_binary else socket.send_str)(content)
+
+        link = await self._endpoint.connect()
+        # trame-rca's object for all areas of a page, where there is one.
+        areas, _ = self._endpoint.functionMap.get("trame.rca.size", (None, None))
+        server = self.app.server
+        self._endpoint.unchunkers[link.client_id] = LimitedMessages(
+            server.state, getattr(areas, "_area_adapters", ())
+        )
+        link.on_message(send)
+        try:
+            async for message in socket:
+                if message.type == WSMsgType.BINARY:
+                    await link.send(True, message)
+                elif message.type == WSMsgType.TEXT:
+                    msg = "a text came; expected bytes"
+                    raise ValueError(msg)
+        finally:
+            # wslink's endpoint forgets the connection, but not what it has gathered for it.
+            await self._endpoint.onClose(link.client_id)
+            self._endpoint.authentified_client_ids.discard(link.client_id)
+            await link.close()
+
+    async def end(self) -> None:
+        """Close the connection and the application, and forget the trame server."""
+        Routes.of(self.app.server).close()
+        await self.disconnect()
+        try:
+            self.app.close()
+        finally:
+            await self._stop()
+
+    async def _stop(self) -> None:
+        server = self.app.server
+        await server.stop()
+        if self._task is not None:
+            await self._task
+        AVAILABLE_SERVERS.pop(server.name, None)
+        # Each library keeps the server that it used last.
+        if CoreServer.server is server:
+            CoreServer.server = None
+            wslink.server.ws_server = None
+        if getattr(HTML_CTX, "_server", None) is server:
+            HTML_CTX._server = None
+
+
+@contextmanager
+def _quiet_trame() -> Iterator[None]:
+    """Keep trame from reading this program's arguments, and from printing on its own."""
+    ours = {"TRAME_ARGS": "", "WSLINK_READY_MSG": ""}
+    before = {name: os.environ.get(name) for name in ours}
+    os.environ.update(ours)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

@@ -1,0 +1,212 @@
+"""A session in a process of its own, as the server sees it and as it runs there.
+
+The process is forked from one that has loaded the libraries, and listens on a socket without a
+file, at a name that the system chooses. The server in front keeps addresses, secrets and limits,
+and hands on messages and files. A crash ends one page; its memory is limited, and the system
+shares the cores among processes.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import socket as sockets
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, NoReturn
+
+import aiohttp
+from aiohttp import WSMsgType, web
+from yarl import URL
+
+from flowtex._util.child import Child, ChildError
+from flowtex._util.progress import Stopped, check, stoppable
+from flowtex.app.server.files import CHUNK_BYTES
+from flowtex.app.server.sessions import OpenSession, Session
+from flowtex.errors import FieldError
+
+#: Seconds within which a session opens, and ends once it was asked to.
+OPENING_S, ENDING_S = 600.0, 5.0
+#: Seconds between two looks whether a session is to end.
+CHECK_S = 0.05
+#: Headers of a request, and of an answer, that are handed on.
+ASKED = ("Content-Type", "Content-Length", "Range", "If-Range")
+ANSWERED = (
+    *("Content-Type", "Content-Length", "Content-Range", "Content-Disposition"),
+    *("Accept-Ranges", "Cache-Control", "ETag", "Last-Modified", "Connection"),
+)
+
+
+def process_opener(
+    entry: str, preload: tuple[str, ...], request: dict[str, Any], told: Callable[[Any], None]
+) -> OpenSession:
+    """Return what opens sessions in processes of their own.
+
+    Parameters
+    ----------
+    entry, preload
+        As :class:`flowtex._util.child.Child` has them; the entry makes a :class:`HostedSession`.
+    request
+        What that is asked to open; ``first`` is added, true until a session is open.
+    told
+        Called with what the first session says of itself.
+    """
+    first = True
+
+    async def open_session() -> Session:
+        nonlocal first
+        child = Child(entry, preload=preload, silent=False)
+        try:
+            about, _ = await asyncio.to_thread(
+                child.request, {"open": {**request, "first": first}}, timeout=OPENING_S
+            )
+        except ChildError as error:
+            child.close()
+            raise _opening_error(error) from error
+        if first:
+            told(about["description"])
+        first = False
+        return ProcessSession(child, about)
+
+    return open_session
+
+
+def _opening_error(error: ChildError) -> Exception:
+    if error.kind == "FieldError":
+        return FieldError(str(error))
+    if error.kind:
+        return RuntimeError(f"{error.kind}: {error}\n{error.trace}")
+    return FieldError(f"the process of the page {error}")
+
+
+class ProcessSession(Session):
+    """A session in another process."""
+
+    def __init__(self, child: Child, about: dict[str, Any]) -> None:
+        self._http = aiohttp.ClientSession(
+            "http://localhost",
+            connector=aiohttp.UnixConnector(f"\0{about['name']}", limit=0),
+            timeout=aiohttp.ClientTimeout(),
+            auto_decompress=False,
+        )
+        super().__init__(_Files(about["files"], self._http), about["token"])
+        self.static = about["static"]
+        self._child = child
+        self._ending = False
+        loop = asyncio.get_running_loop()
+        threading.Thread(target=self._run, args=(loop,), name="session", daemon=True).start()
+
+    def _run(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Have the other process run, and hear of its end."""
+        with stoppable(lambda: self._ending), suppress(Stopped):
+            try:
+                self._child.request({"run": True}, timeout=math.inf)
+            except ChildError as error:
+                if not self._ending:
+                    with suppress(RuntimeError):  # the server has ended
+                        loop.call_soon_threadsafe(self._fall, str(error))
+
+    def _fall(self, how: str) -> None:
+        self.lost(f"its process {how}")
+        self._closing = asyncio.ensure_future(self.end())
+
+    async def carry(self, socket: web.WebSocketResponse) -> None:
+        """Carry messages between a page and the process until one of them ends."""
+        address = f"/page/{self.token}/ws"
+        async with self._http.ws_connect(address, max_msg_size=0, autoclose=False) as there:
+
+            async def answer() -> None:
+                with suppress(ConnectionError):
+                    async for message in there:
+                        await socket.send_bytes(message.data)
+                await socket.close(code=there.close_code or aiohttp.WSCloseCode.GOING_AWAY)
+
+            answering = asyncio.ensure_future(answer())
+            try:
+                async for message in socket:
+                    if message.type == WSMsgType.BINARY:
+                        await there.send_bytes(message.data)
+                    elif message.type == WSMsgType.TEXT:
+                        msg = "a text came; expected bytes"
+                        raise ValueError(msg)
+            except ConnectionError:  # the process has ended the connection, or itself
+                await answering
+            finally:
+                answering.cancel()
+
+    async def end(self) -> None:
+        """Close the connection, and end the process."""
+        self._ending = True
+        await self.disconnect()
+        await self._http.close()
+        with suppress(ChildError, TimeoutError):
+            async with asyncio.timeout(ENDING_S):
+                await asyncio.to_thread(self._child.request, {"end": True}, timeout=ENDING_S)
+        self._child.close()
+
+
+class _Files:
+    """The files of a session in another process."""
+
+    def __init__(self, token: str, http: aiohttp.ClientSession) -> None:
+        self.token, self._http = token, http
+
+    async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
+        """Hand on a request for a file, or one that brings a file."""
+        del name
+        async with self._http.request(
+            request.method,
+            URL(request.raw_path, encoded=True),
+            headers={key: request.headers[key] for key in ASKED if key in request.headers},
+            data=request.content if request.body_exists else None,
+        ) as answer:
+            headers = {key: answer.headers[key] for key in ANSWERED if key in answer.headers}
+            response = web.StreamResponse(status=answer.status, headers=headers)
+            await response.prepare(request)
+            async for chunk in answer.content.iter_chunked(CHUNK_BYTES):
+                await response.write(chunk)
+            await response.write_eof()
+        return response
+
+
+class HostedSession:
+    """A session as its own process has it: answers what :class:`ProcessSession` asks.
+
+    Parameters
+    ----------
+    open_site
+        Called with a request; returns a site with one session, and a description of it.
+    """
+
+    def __init__(self, open_site: Callable[[dict[str, Any]], tuple[Any, Any]]) -> None:
+        self._open_site = open_site
+        self._loop = asyncio.new_event_loop()
+        asyncio.set_event_loop(self._loop)
+        self._site: Any = None
+
+    def __call__(self, request: dict[str, Any]) -> tuple[Any, tuple[()]]:
+        """Answer a request."""
+        if "open" in request:
+            self._site, description = self._open_site(request["open"])
+            return {**self._loop.run_until_complete(self._open()), "description": description}, ()
+        self._loop.run_until_complete(self._run() if "run" in request else self._site.stop())
+        return None, ()
+
+    async def _open(self) -> dict[str, Any]:
+        socket = sockets.socket(sockets.AF_UNIX, sockets.SOCK_STREAM)
+        socket.bind("")  # the system chooses a name
+        await self._site.prepare()
+        await self._site.listen(socket)
+        (session,) = self._site.sessions
+        return {
+            "name": socket.getsockname()[1:].decode(),
+            "token": session.token,
+            "files": session.routes.token,
+            "static": session.static,
+        }
+
+    async def _run(self) -> NoReturn:
+        while True:
+            check()
+            await asyncio.sleep(CHECK_S)

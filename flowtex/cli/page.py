@@ -1,0 +1,123 @@
+"""The page of ``flowtex show`` and ``flowtex demo``.
+
+Where the system forks, each session is a process that runs the same command, up to the point where
+it would serve: there it opens one session, for the process in front.
+"""
+
+from __future__ import annotations
+
+import io
+import secrets
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext, redirect_stderr
+from contextvars import ContextVar
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from flowtex import diagnostics
+from flowtex._util.child import FORKS, prepare
+from flowtex._util.progress import waiting
+from flowtex.cli.checks import require_app
+from flowtex.cli.console import announcer, describe
+from flowtex.cli.options import ServeFlags
+
+if TYPE_CHECKING:
+    from flowtex.app import Library
+    from flowtex.app.server.site import Site
+
+#: What makes the session of a process that was forked, and modules that it has at once.
+ENTRY = "flowtex.cli.commands:hosted"
+PRELOAD = (
+    *("flowtex.cli.commands", "flowtex.cli.show", "flowtex.app.flow_app", "trame.widgets.vuetify3"),
+    *("trame_client.module.vue3", "trame_vuetify.module.v3", "vtkmodules.vtkInteractionWidgets"),
+    *("scipy.interpolate", "flowtex.field.remote:prepare_readers", "xarray", "cf_xarray"),
+    *("netCDF4", "pyproj", "dask.array"),
+)
+
+#: The words of the command that runs.
+words: ContextVar[Sequence[str]] = ContextVar("words", default=())
+#: Called with what a page shows, in a process that is a session.
+_host: ContextVar[Callable[[Any, str], None] | None] = ContextVar("host", default=None)
+
+
+def begin() -> None:
+    """Load the libraries of the page in the background, where it is served by processes."""
+    require_app()
+    if FORKS and _host.get() is None:
+        prepare(PRELOAD)
+
+
+def serve_processes(page: ServeFlags | None) -> bool:
+    """Serve the page of the command that runs; whether that was done by processes."""
+    if not FORKS or _host.get() is not None:
+        return False
+    from flowtex.app.server.session_process import process_opener
+    from flowtex.app.server.site import serve_sessions
+
+    page, secret, said = page or ServeFlags(), secrets.token_urlsafe(24), list[str]()
+    report = asdict(diagnostics.require_opengl())
+    request = {"words": list(words.get()), "secret": secret, "opengl": report}
+    serve_sessions(
+        process_opener(ENTRY, PRELOAD, request, said.append),
+        secret,
+        **_place(page),
+        announce=lambda address: announcer(said[0], page.host)(address),
+    )
+    return True
+
+
+def serve_library(library: Library, page: ServeFlags | None, options: dict[str, Any]) -> int:
+    """Serve flows as a page, or, in a process that is a session, have it show them."""
+    from flowtex.app.flow_app import app_maker, first_choice, serve
+    from flowtex.options import Appearance
+    from flowtex.scene import Scene
+
+    page = page or ServeFlags()
+    with waiting(f"Reading {library.names[0]}"):
+        field = library.field(*first_choice(library, options))
+    look = {name: options[name] for name in vars(Appearance()) if name in options}
+    Scene.of(field, **look).close()  # raises errors before a page asks
+    if (host := _host.get()) is not None:
+        host(app_maker(library, None, options), describe(field))
+        return 0
+    with waiting(f"Tracing {describe(field)}") as end_waiting:
+        print_address = announcer(describe(field), page.host)
+
+        def announce(address: str) -> None:
+            end_waiting()
+            print_address(address)
+
+        serve(library, **_place(page), announce=announce, **options)
+    return 0
+
+
+def _place(page: ServeFlags) -> dict[str, Any]:
+    return {
+        "host": page.host,
+        "port": page.port,
+        "allow_host": page.allow_host,
+        "limit": page.limit,
+        "idle": page.idle,
+        "open_browser": page.browser,
+    }
+
+
+def open_site(run: Callable[[Sequence[str]], Any], request: dict[str, Any]) -> tuple[Site, str]:
+    """Return a site with the session that a command makes, and a description of what it shows."""
+    from flowtex.app.server.local_session import opener
+    from flowtex.app.server.sessions import Sessions
+    from flowtex.app.server.site import Site
+
+    diagnostics.take_report(diagnostics.OpenGLReport(**request["opengl"]))
+    made: list[tuple[Any, str]] = []
+    token = _host.set(lambda make_app, description: made.append((make_app, description)))
+    try:
+        # What is to be said of the data is said once.
+        with nullcontext() if request["first"] else redirect_stderr(io.StringIO()):
+            run(request["words"])
+    finally:
+        _host.reset(token)
+    ((make_app, description),) = made
+    secret = request["secret"]
+    site = Site(Sessions(opener(make_app, secret), limit=1, idle=float("inf")), secret)
+    return site, description
