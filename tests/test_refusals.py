@@ -196,8 +196,9 @@ BUILT_IN = {"ValueError", "TypeError", "KeyError", "IndexError", "OverflowError"
 PROTOCOLS = {
     # Messages between processes, and of pages.
     "_util/child/messages.py: ValueError",
-    "app/server/messages.py: ValueError",
-    "app/server/sessions.py: ValueError",
+    "app/server/sessions/local.py: ValueError",
+    "app/server/sessions/messages.py: ValueError",
+    "app/server/sessions/process.py: ValueError",
     "app/server/site.py: ValueError",
     "field/remote/packing.py: ValueError",
     "field/steps.py: IndexError",  # of sequences

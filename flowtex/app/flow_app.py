@@ -13,10 +13,10 @@ from trame.app import get_server
 from flowtex.app.controllers import Controllers
 from flowtex.app.controllers.context import Context
 from flowtex.app.controllers.library import Choice, Library
-from flowtex.app.server.local_session import MakeApp, opener
 from flowtex.app.server.notebook import NotebookPage
 from flowtex.app.server.page import PageState
 from flowtex.app.server.security import new_secret
+from flowtex.app.server.sessions.local import MakeApp, opener
 from flowtex.app.server.site import IDLE_MINUTES, serve_sessions
 from flowtex.app.streaming.area import FlowArea
 from flowtex.app.streaming.stream import FrameStream

@@ -29,7 +29,7 @@ from flowtex.cli.write import export, movie, render
 from flowtex.errors import FieldError
 
 if TYPE_CHECKING:
-    from flowtex.app.server.session_process import HostedSession
+    from flowtex.app.server.sessions.process import HostedSession
 
 app = App(
     name="flowtex",
@@ -93,7 +93,7 @@ def _run(words: Sequence[str]) -> Any:
 
 def hosted() -> HostedSession:
     """Return a session that runs a command, in a process of its own."""
-    from flowtex.app.server.session_process import HostedSession
+    from flowtex.app.server.sessions.process import HostedSession
 
     warnings.showwarning = _warn  # type: ignore[assignment]
     return HostedSession(partial(page.open_site, _run))

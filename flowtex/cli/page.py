@@ -7,9 +7,10 @@ it would serve: there it opens one session, for the process in front.
 from __future__ import annotations
 
 import io
-import secrets
+import math
+import sys
 from collections.abc import Callable, Sequence
-from contextlib import nullcontext, redirect_stderr
+from contextlib import redirect_stderr
 from contextvars import ContextVar
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
@@ -28,10 +29,10 @@ if TYPE_CHECKING:
 #: What makes the session of a process that was forked, and modules that it has at once.
 ENTRY = "flowtex.cli.commands:hosted"
 PRELOAD = (
+    "flowtex.field.remote:prepare_readers",  # sessions share what reads files for them
     *("flowtex.cli.commands", "flowtex.cli.show", "flowtex.app.flow_app", "trame.widgets.vuetify3"),
     *("trame_client.module.vue3", "trame_vuetify.module.v3", "vtkmodules.vtkInteractionWidgets"),
-    *("scipy.interpolate", "flowtex.field.remote:prepare_readers", "xarray", "cf_xarray"),
-    *("netCDF4", "pyproj", "dask.array"),
+    *("scipy.interpolate", "xarray", "cf_xarray", "netCDF4", "pyproj", "dask.array"),
 )
 
 #: The words of the command that runs.
@@ -51,18 +52,23 @@ def serve_processes(page: ServeFlags | None) -> bool:
     """Serve the page of the command that runs; whether that was done by processes."""
     if not FORKS or _host.get() is not None:
         return False
-    from flowtex.app.server.session_process import process_opener
+    from flowtex.app.server.security import new_secret
+    from flowtex.app.server.sessions.process import process_opener
     from flowtex.app.server.site import serve_sessions
 
-    page, secret, said = page or ServeFlags(), secrets.token_urlsafe(24), list[str]()
+    page, secret = page or ServeFlags(), new_secret()
     report = asdict(diagnostics.require_opengl())
     request = {"words": list(words.get()), "secret": secret, "opengl": report}
-    serve_sessions(
-        process_opener(ENTRY, PRELOAD, request, said.append),
-        secret,
-        **_place(page),
-        announce=lambda address: announcer(said[0], page.host)(address),
-    )
+    first: dict[str, str] = {}
+    with waiting("Opening the page") as end_waiting:
+
+        def announce(address: str) -> None:
+            end_waiting()
+            sys.stderr.write(first["notices"])
+            announcer(first["description"], page.host)(address)
+
+        open_session = process_opener(ENTRY, PRELOAD, request, first.update)
+        serve_sessions(open_session, secret, **_place(page), announce=announce)
     return True
 
 
@@ -102,22 +108,22 @@ def _place(page: ServeFlags) -> dict[str, Any]:
     }
 
 
-def open_site(run: Callable[[Sequence[str]], Any], request: dict[str, Any]) -> tuple[Site, str]:
-    """Return a site with the session that a command makes, and a description of what it shows."""
-    from flowtex.app.server.local_session import opener
-    from flowtex.app.server.sessions import Sessions
+def open_site(
+    run: Callable[[Sequence[str]], Any], request: dict[str, Any]
+) -> tuple[Site, dict[str, str]]:
+    """Return a site with the session that a command makes, and what is to be said of it."""
+    from flowtex.app.server.sessions.local import opener
+    from flowtex.app.server.sessions.registry import Sessions
     from flowtex.app.server.site import Site
 
     diagnostics.take_report(diagnostics.OpenGLReport(**request["opengl"]))
     made: list[tuple[Any, str]] = []
     token = _host.set(lambda make_app, description: made.append((make_app, description)))
     try:
-        # What is to be said of the data is said once.
-        with nullcontext() if request["first"] else redirect_stderr(io.StringIO()):
+        with redirect_stderr(io.StringIO()) as notices:
             run(request["words"])
     finally:
         _host.reset(token)
-    ((make_app, description),) = made
-    secret = request["secret"]
-    site = Site(Sessions(opener(make_app, secret), limit=1, idle=float("inf")), secret)
-    return site, description
+    ((make_app, description),), secret = made, request["secret"]
+    site = Site(Sessions(opener(make_app, secret), limit=1, idle=math.inf), secret)
+    return site, {"description": description, "notices": notices.getvalue()}

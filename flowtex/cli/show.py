@@ -99,8 +99,7 @@ def show(
     if on_page := page is not None or not diagnostics.has_display():
         begin()
     diagnostics.require_opengl()
-    together = _belong_together(files)
-    if on_page or not (together or len(files) == 1) or _is_folder(files[0]):
+    if on_page or not (len(files) == 1 or _belong_together(files)) or _is_folder(files[0]):
         return _show_page(files, choice, page, options)
     field = load_field(files, choice)
     from flowtex import show as show_window

@@ -309,9 +309,10 @@ def test_a_port_out_of_range_is_told(run: Run) -> None:
 def test_the_terminal_says_what_takes_long(
     run: Run, gyre: Path, monkeypatch: pytest.MonkeyPatch, opengl: object
 ) -> None:
-    app = pytest.importorskip("flowtex.app")
+    app = pytest.importorskip("flowtex.app.flow_app")
     monkeypatch.setenv("FORCE_COLOR", "1")  # to rich a terminal
     monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setattr("flowtex.cli.page.FORKS", False)
     monkeypatch.setattr(app, "serve", lambda _, announce, **__: announce("http://here"))
     code, out, err = run("show", gyre, "--no-browser")
     assert code == 0

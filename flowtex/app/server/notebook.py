@@ -19,10 +19,10 @@ from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
 
-from flowtex.app.server.local_session import LocalSession
 from flowtex.app.server.page import start_task
 from flowtex.app.server.security import ANY, LOCAL, new_secret
-from flowtex.app.server.sessions import Sessions
+from flowtex.app.server.sessions.local import LocalSession
+from flowtex.app.server.sessions.registry import Sessions
 from flowtex.app.server.site import Site
 
 #: Height of a frame, in CSS pixels.

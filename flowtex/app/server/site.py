@@ -36,7 +36,7 @@ from flowtex.app.server.bounded_log import bounded_log
 from flowtex.app.server.connections import LimitedServer, keep
 from flowtex.app.server.files import add_route
 from flowtex.app.server.security import FAULT, LOCAL, guard, is_same, known_hosts
-from flowtex.app.server.sessions import (
+from flowtex.app.server.sessions.registry import (
     ClosedError,
     FullError,
     OpenSession,

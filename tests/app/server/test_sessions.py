@@ -27,11 +27,11 @@ from watching import Watch, count, difference, zoom_of
 
 from flowtex import FlowField
 from flowtex.app import FlowApp, ServeError, serve
-from flowtex.app.server import sessions
 from flowtex.app.server.files import Routes
-from flowtex.app.server.local_session import opener
 from flowtex.app.server.security import new_secret
-from flowtex.app.server.sessions import Sessions, usual_limit
+from flowtex.app.server.sessions import registry as sessions
+from flowtex.app.server.sessions.local import LocalSession, opener
+from flowtex.app.server.sessions.registry import Sessions, usual_limit
 from flowtex.app.server.site import Site
 from flowtex.errors import FieldError
 
@@ -76,7 +76,7 @@ class Place:
 
     def app(self, token: str) -> Any:
         found = self.site.sessions.get(token)
-        assert found is not None
+        assert isinstance(found, LocalSession)
         return found.app
 
 
@@ -461,7 +461,7 @@ def test_what_cannot_be_served_is_told() -> None:
 def test_pages_are_as_many_as_memory_has_room_for(
     monkeypatch: pytest.MonkeyPatch, free: int, pages: int
 ) -> None:
-    monkeypatch.setattr("flowtex.app.server.sessions.available_bytes", lambda: free)
+    monkeypatch.setattr("flowtex.app.server.sessions.registry.available_bytes", lambda: free)
     assert usual_limit() == pages
 
 

@@ -25,15 +25,15 @@ from trame_client.widgets.core import HTML_CTX
 from trame_server.protocol import CoreServer
 
 from flowtex.app.server.files import Routes
-from flowtex.app.server.messages import LimitedMessages, restrict
-from flowtex.app.server.sessions import OpenSession, Session
+from flowtex.app.server.sessions.messages import LimitedMessages, restrict
+from flowtex.app.server.sessions.registry import OpenSession, Session
 
 #: Makes an application on a trame server. An application has ``server``, ``stream`` (a
 #: :class:`~flowtex.app.streaming.stream.FrameStream`) and ``close()``.
 MakeApp = Callable[[Any], Any]
 
 #: What the page shows when its session has ended.
-ENDED = Path(__file__).parents[1] / "ui" / "static" / "ended.html"
+ENDED = Path(__file__).parents[2] / "ui" / "static" / "ended.html"
 
 _count = itertools.count(1)
 

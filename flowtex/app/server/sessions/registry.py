@@ -5,9 +5,9 @@ its page for some minutes, so that a page that is loaded again comes back to its
 it ends, and with it its window, its tasks and its trame server, or the process that it is.
 
 What ``flowtex show`` and ``flowtex demo`` serve is a process for each session, where the system
-can fork (:mod:`flowtex.app.server.session_process`): a crash ends one page, and pages draw on all
+can fork (:mod:`flowtex.app.server.sessions.process`): a crash ends one page, and pages draw on all
 cores. A notebook, a script, and other systems have all sessions in their own process
-(:mod:`flowtex.app.server.local_session`); fields and their traces are shared there.
+(:mod:`flowtex.app.server.sessions.local`); fields and their traces are shared there.
 """
 
 from __future__ import annotations

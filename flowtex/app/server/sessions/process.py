@@ -23,7 +23,7 @@ from yarl import URL
 from flowtex._util.child import Child, ChildError
 from flowtex._util.progress import Stopped, check, stoppable
 from flowtex.app.server.files import CHUNK_BYTES
-from flowtex.app.server.sessions import OpenSession, Session
+from flowtex.app.server.sessions.registry import OpenSession, Session
 from flowtex.errors import FieldError
 
 #: Seconds within which a session opens, and ends once it was asked to.
@@ -39,7 +39,7 @@ ANSWERED = (
 
 
 def process_opener(
-    entry: str, preload: tuple[str, ...], request: dict[str, Any], told: Callable[[Any], None]
+    entry: str, preload: tuple[str, ...], request: dict[str, Any], opened: Callable[[Any], None]
 ) -> OpenSession:
     """Return what opens sessions in processes of their own.
 
@@ -48,25 +48,19 @@ def process_opener(
     entry, preload
         As :class:`flowtex._util.child.Child` has them; the entry makes a :class:`HostedSession`.
     request
-        What that is asked to open; ``first`` is added, true until a session is open.
-    told
-        Called with what the first session says of itself.
+        What that is asked to open.
+    opened
+        Called with what is said of each session.
     """
-    first = True
 
     async def open_session() -> Session:
-        nonlocal first
         child = Child(entry, preload=preload, silent=False)
         try:
-            about, _ = await asyncio.to_thread(
-                child.request, {"open": {**request, "first": first}}, timeout=OPENING_S
-            )
+            about, _ = await asyncio.to_thread(child.request, {"open": request}, timeout=OPENING_S)
         except ChildError as error:
             child.close()
             raise _opening_error(error) from error
-        if first:
-            told(about["description"])
-        first = False
+        opened(about["said"])
         return ProcessSession(child, about)
 
     return open_session
@@ -176,7 +170,7 @@ class HostedSession:
     Parameters
     ----------
     open_site
-        Called with a request; returns a site with one session, and a description of it.
+        Called with a request; returns a site with one session, and what is said of it.
     """
 
     def __init__(self, open_site: Callable[[dict[str, Any]], tuple[Any, Any]]) -> None:
@@ -188,8 +182,8 @@ class HostedSession:
     def __call__(self, request: dict[str, Any]) -> tuple[Any, tuple[()]]:
         """Answer a request."""
         if "open" in request:
-            self._site, description = self._open_site(request["open"])
-            return {**self._loop.run_until_complete(self._open()), "description": description}, ()
+            self._site, said = self._open_site(request["open"])
+            return {**self._loop.run_until_complete(self._open()), "said": said}, ()
         self._loop.run_until_complete(self._run() if "run" in request else self._site.stop())
         return None, ()
 
