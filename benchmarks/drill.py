@@ -29,7 +29,7 @@ from pathlib import Path
 import aiohttp
 from rich.console import Console
 from rich.table import Table
-from soak import HIGH, WIDE, User, memory, threads
+from soak import HIGH, WIDE, User, children, descendants, memory, threads
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests" / "hostile"))
@@ -47,20 +47,12 @@ FOLDER_BYTES, FILES_OF_A_PAGE = 256_000_000, 8
 SLOW_CLIENTS, SLOW_S = 700, 60.0
 #: Seconds between two acts of a person, between two killed processes, and rows of the table.
 ACT_S, KILL_S, ROWS = (2.0, 10.0), 15.0, 6
+#: In the command of what reads files, and of the process that it is forked from.
+READER = "flowtex.field.remote.reader"
 #: What the table counts.
 COUNTED = ("taken", "refused", "killed", "slow")
 #: Part of the time after which the disk is full, and for which it is.
 FULL_FROM, FULL_FOR = 0.4, 0.1
-
-
-def descendants(process: int) -> list[int]:
-    """Return the processes that a process has started, those that they started, and so on."""
-    found: list[int] = []
-    for tasks in Path(f"/proc/{process}/task").glob("*/children"):
-        with contextlib.suppress(OSError):
-            for child in map(int, tasks.read_text(encoding="utf-8").split()):
-                found += [child, *descendants(child)]
-    return found
 
 
 def broken_files(chance: random.Random) -> Iterator[tuple[str, bytes]]:
@@ -86,6 +78,13 @@ def broken_files(chance: random.Random) -> Iterator[tuple[str, bytes]]:
             for _ in range(chance.randrange(1, 20)):
                 content[chance.randrange(len(content))] ^= 1 << chance.randrange(8)
         yield name, bytes(content)
+
+
+def command(process: int) -> str:
+    """Return the command of a process."""
+    with contextlib.suppress(OSError):
+        return Path(f"/proc/{process}/cmdline").read_text(encoding="utf-8", errors="replace")
+    return ""
 
 
 class Log:
@@ -199,10 +198,13 @@ class Drill:
                     writer.close()
 
     async def _kill(self) -> None:
-        """Kill processes that the server has started."""
+        """Kill processes that the server has started, but for the sessions."""
+        process = self.served.process.pid
         while True:
             await asyncio.sleep(KILL_S)
-            if found := descendants(self.served.process.pid):
+            found = [child for child in descendants(process) if READER in command(child)]
+            # What sessions are forked from is started again, and they live on.
+            if found := found + children(process):
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(self._chance.choice(found), signal.SIGKILL)
                     self.counts["killed"] += 1

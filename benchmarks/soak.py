@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import argparse
 import asyncio
-import os
 import random
 import re
 import signal
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -116,24 +116,42 @@ class User:
 
 
 def memory(process: int) -> int:
-    """Bytes that a process holds in memory."""
-    pages = int(Path(f"/proc/{process}/statm").read_text(encoding="utf-8").split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE")
+    """Bytes that a process holds in memory; of what it shares, its part."""
+    with suppress(OSError):
+        text = Path(f"/proc/{process}/smaps_rollup").read_text(encoding="utf-8")
+        return 1024 * int(text.partition("\nPss:")[2].split()[0])
+    return 0
 
 
 def threads(process: int) -> int:
     """Return the number of threads of a process."""
-    return len(list(Path(f"/proc/{process}/task").iterdir()))
+    with suppress(OSError):
+        return len(list(Path(f"/proc/{process}/task").iterdir()))
+    return 0
 
 
-def children(process: int) -> list[str]:
+def children(process: int) -> list[int]:
     """Return the processes that a process has started."""
-    found = Path(f"/proc/{process}/task/{process}/children").read_text(encoding="utf-8")
-    return found.split()
+    found: list[int] = []
+    for tasks in Path(f"/proc/{process}/task").glob("*/children"):
+        with suppress(OSError):
+            found += map(int, tasks.read_text(encoding="utf-8").split())
+    return found
 
 
-async def use(served: Served, count: int) -> tuple[int, int]:
-    """Use a page, and return the growth of memory and of the number of threads."""
+def descendants(process: int) -> list[int]:
+    """Return the processes that a process has started, those that they started, and so on."""
+    return [one for child in children(process) for one in (child, *descendants(child))]
+
+
+def taken(process: int) -> tuple[int, int, int]:
+    """Return memory, threads and the number of a process and of those that it started."""
+    family = [process, *descendants(process)]
+    return sum(map(memory, family)), sum(map(threads, family)), len(family)
+
+
+async def use(served: Served, count: int) -> list[int]:
+    """Use a page, and return how much more memory, threads and processes there are then."""
     process = served.process.pid
     async with aiohttp.ClientSession() as http:
         status, said = await enter(http, served.bare, served.secret)
@@ -145,15 +163,15 @@ async def use(served: Served, count: int) -> tuple[int, int]:
         for _ in range(WARM):
             await user.act()
         await user.stop()
-        before = memory(process), threads(process)
+        before = taken(process)
         for _ in range(count):
             await user.act()
         await user.stop()
         if link.get("problem"):
             raise SystemExit(link.get("problem"))
-        after = memory(process), threads(process)
+        after = taken(process)
         await link.close()
-    return after[0] - before[0], after[1] - before[1]
+    return [new - old for new, old in zip(after, before, strict=True)]
 
 
 def main() -> None:
@@ -163,13 +181,12 @@ def main() -> None:
     given = parser.parse_args()
     served = start("demo", "--example", "double_gyre", "--samples", "9")
     try:
-        grown, more = asyncio.run(use(served, given.count))
-        left = children(served.process.pid)
+        grown, more, processes = asyncio.run(use(served, given.count))
     finally:
         said = served.end(signal.SIGTERM)
     table = Table("interactions", "memory", "threads", "processes", "end", title="Use of one page")
     end = f"{served.process.returncode}{', with a traceback' * ('Traceback' in said)}"
-    table.add_row(str(given.count), f"{grown / 1e6:+.1f} MB", f"{more:+d}", str(len(left)), end)
+    table.add_row(str(given.count), f"{grown / 1e6:+.1f} MB", f"{more:+d}", f"{processes:+d}", end)
     Console().print(table)
 
 

@@ -180,7 +180,8 @@ def serve(
     """Show a flow on a page, until Ctrl-C.
 
     Each browser tab that opens the address has a state of its own: camera, settings and time are
-    nobody else's. Fields and their traces are shared.
+    nobody else's. Fields and their traces are shared, in this one process; the command
+    ``flowtex show`` has a process for each tab.
 
     Parameters
     ----------

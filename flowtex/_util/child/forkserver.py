@@ -61,9 +61,9 @@ class ForkServer:
         owned = self._owner == os.getpid()
         return not self._lost and (not owned or self._process.poll() is None)
 
-    def start(self, entry: str, memory: int, pipes: tuple[int, int, int], *, silent: bool) -> None:
+    def start(self, entry: str, memory: int, pipes: tuple[int, int, int], *, lasting: bool) -> None:
         """Fork a child, with the pipes of its requests, its answers and its status."""
-        text = json.dumps({"entry": entry, "memory": memory, "silent": silent}).encode()
+        text = json.dumps({"entry": entry, "memory": memory, "lasting": lasting}).encode()
         try:
             socket.send_fds(self._control, [text], list(pipes))
         except OSError:
@@ -168,13 +168,14 @@ class _Server:
     ) -> NoReturn:
         code = 1
         try:
-            ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+            if not start["lasting"]:
+                ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
             signal.set_wakeup_fd(-1)
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
             self._control.close()
             for pipe in (self._wakes, status, *self._children.values()):
                 os.close(pipe)
-            settle(start["memory"], silent=start["silent"])
+            settle(start["memory"], lasting=start["lasting"])
             serve(start["entry"], os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
             code = 0
         finally:

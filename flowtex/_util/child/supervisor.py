@@ -70,7 +70,8 @@ class Child:
     without arguments. That takes a value of JSON, and returns one with a list of arrays.
     ``preload`` are modules that a child that is forked has at once, and ``memory`` bytes that it
     may take, where the system has a limit (not on macOS and Windows); by default a share of what is
-    available. A child that is not ``silent`` has the standard error of this process.
+    available. A ``lasting`` child goes on when the process that it was forked from dies, and has
+    the standard error of this process.
     """
 
     def __init__(
@@ -80,12 +81,12 @@ class Child:
         preload: tuple[str, ...] = (),
         memory: int | None = None,
         forks: bool = FORKS,
-        silent: bool = True,
+        lasting: bool = False,
     ) -> None:
         #: Bytes that it may take.
         self.memory = int(MEMORY_SHARE * available_bytes()) if memory is None else memory
         start = _forked if forks else _spawned
-        self._process = start(entry, self.memory, preload, silent)
+        self._process = start(entry, self.memory, preload, lasting)
         self._answers: SimpleQueue[_Received] = SimpleQueue()
         self._asking, self._writing = threading.Lock(), threading.Lock()
         self._numbers = itertools.count(1)
@@ -221,7 +222,7 @@ def _end(process: _Process) -> None:
         process.requests.close()
 
 
-def _forked(entry: str, memory: int, preload: tuple[str, ...], silent: bool) -> _Process:  # noqa: FBT001
+def _forked(entry: str, memory: int, preload: tuple[str, ...], lasting: bool) -> _Process:  # noqa: FBT001
     """Let the fork server start a child."""
     requests, answers, status = os.pipe(), os.pipe(), os.pipe()
     pipes = requests[0], answers[1], status[1]
@@ -229,9 +230,9 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], silent: bool) -> 
         fcntl.fcntl(answers[1], fcntl.F_SETPIPE_SZ, PIPE_BYTES)
     try:
         try:
-            fork_server(preload).start(entry, memory, pipes, silent=silent)
+            fork_server(preload).start(entry, memory, pipes, lasting=lasting)
         except OSError:  # it has died since
-            fork_server(preload).start(entry, memory, pipes, silent=silent)
+            fork_server(preload).start(entry, memory, pipes, lasting=lasting)
     finally:
         for pipe in pipes:
             os.close(pipe)
@@ -250,13 +251,13 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], silent: bool) -> 
     )
 
 
-def _spawned(entry: str, memory: int, _preload: tuple[str, ...], silent: bool) -> _Process:  # noqa: FBT001
+def _spawned(entry: str, memory: int, _preload: tuple[str, ...], lasting: bool) -> _Process:  # noqa: FBT001
     """Start a child from nothing."""
     process = subprocess.Popen(
-        command(spawned, entry=entry, memory=memory, silent=silent),
+        command(spawned, entry=entry, memory=memory, lasting=lasting),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL if silent else None,
+        stderr=None if lasting else subprocess.DEVNULL,
         start_new_session=True,
     )
     requests, answers = process.stdin, process.stdout

@@ -41,20 +41,20 @@ def command(function: Callable[..., Any], **arguments: Any) -> list[str]:
     return [sys.executable, "-I", "-c", _PROGRAM, start]
 
 
-def spawned(entry: str, memory: int, silent: bool) -> None:  # noqa: FBT001 by name alone
+def spawned(entry: str, memory: int, lasting: bool) -> None:  # noqa: FBT001 by name alone
     """Answer the requests that come on the standard input, in a process of its own."""
     reads, writes = os.dup(0), os.dup(1)
-    settle(memory, silent=silent)
+    settle(memory, lasting=lasting)
     serve(entry, os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
 
 
-def settle(memory: int, *, silent: bool) -> None:
+def settle(memory: int, *, lasting: bool) -> None:
     """Limit the memory of this process, and be the first to go where it runs out.
 
-    Nothing is read or printed, but on the standard error where it is not to be silent.
+    Nothing is read or printed; what lasts may print on the standard error.
     """
     device = os.open(os.devnull, os.O_RDWR)
-    for standard in (0, 1, 2) if silent else (0, 1):  # what C libraries print is for nobody
+    for standard in (0, 1) if lasting else (0, 1, 2):  # what C libraries print is for nobody
         os.dup2(device, standard)
     with suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text(OOM_SCORE, encoding="utf-8")

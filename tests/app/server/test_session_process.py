@@ -105,6 +105,21 @@ def test_a_crash_ends_one_page() -> None:
     run(story())
 
 
+def test_sessions_outlive_what_they_were_forked_from() -> None:
+    async def story() -> None:
+        async with place() as here:
+            one, link = await here.link()
+            forked = Path(f"/proc/{link.get('pid')}/stat").read_text(encoding="utf-8")
+            os.kill(int(forked.split()[3]), signal.SIGKILL)
+            other, second = await here.link()
+            await link.set(value=5)
+            assert other != one and second.get("value") == 1
+            pids = [each.get("pid") for each in (link, second)]
+        await until(lambda: not any(map(lives, pids)))
+
+    run(story())
+
+
 def test_files_are_handed_on() -> None:
     async def story() -> None:
         async with place() as here:

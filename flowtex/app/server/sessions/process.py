@@ -54,7 +54,7 @@ def process_opener(
     """
 
     async def open_session() -> Session:
-        child = Child(entry, preload=preload, silent=False)
+        child = Child(entry, preload=preload, lasting=True)
         try:
             about, _ = await asyncio.to_thread(child.request, {"open": request}, timeout=OPENING_S)
         except ChildError as error:
