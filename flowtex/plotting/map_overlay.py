@@ -46,8 +46,8 @@ class Part(NamedTuple):
 #: How much nearer than the surface lines are, and how much farther land, as a share of the
 #: distance: more than what a surface comes nearer over the width of a line when seen aslant.
 LINES_NEARER, LAND_FARTHER = 1e-2, 2e-4
-#: How much farther the globe is: coarse triangles sink by up to a quarter of a pixel.
-GLOBE_FARTHER = 5e-3
+#: Pixels by which the globe is lower: coarse triangles sink by up to as many.
+GLOBE_LOWER_PX = 0.5
 #: Nearest that the front of the globe is drawn, as a share of the farthest.
 NEAREST = 1e-3
 #: Cells along a meridian of the globe below the surface.
@@ -142,7 +142,7 @@ class MapOverlay:
         if self._radius is not None:
             around, along = 2 * GLOBE_CELLS, GLOBE_CELLS
             globe = pv.Sphere(radius=self._radius, theta_resolution=around, phi_resolution=along)
-            meshes.append((globe, -GLOBE_FARTHER))
+            meshes.append((globe, 0.0))
         for mesh, nearer in meshes:
             if self._field.surface.on_globe:
                 mesh.point_data.active_normals = mesh.points / np.linalg.norm(
@@ -212,6 +212,16 @@ class MapOverlay:
                     part.actor.mapper.dataset = mesh
                 uniforms.SetUniformf("flowtexRadius", 0.5 * part.width * pixel)
                 uniforms.SetUniform4f("flowtexViewport", viewport)
+            elif not part.nearer and self._radius is not None:
+                part.actor.SetScale(1 - GLOBE_LOWER_PX * self._horizon_pixel() / self._radius)
+
+    def _horizon_pixel(self) -> float:
+        """Length that a pixel covers on the horizon, the farthest that is seen of the globe."""
+        view, eye = self._surface.view, self._surface.view.eye
+        if not eye[3]:
+            return view.pixel
+        away = np.sqrt(max(float(eye[:3] @ eye[:3]) - (self._radius or 0.0) ** 2, 0.0))
+        return view.pixel * float(away / np.linalg.norm(eye[:3] - view.focus))
 
     def _include_globe(self, camera: Any) -> None:
         """Let the camera see the globe, which is farther than the flow and has no bounds."""

@@ -27,8 +27,9 @@ from flowtex.tiles import BLOCK_CELLS, block_places
 MAX_ERROR_PIXELS = 0.05
 #: What counts of an error of the outline, a quarter of a pixel across it; and of one along the
 #: surface, half a pixel: noise is looked up where a point lies, and only paths belong to a
-#: place that is off by this error. Or two pixels where fragments correct their place.
-OUTLINE_SHARE, SLIDE_SHARE, PLACED_SHARE = 0.2, 0.1, 0.025
+#: place that is off by this error. Where fragments correct their place it may be two pixels along
+#: the surface and half of one across it, which the outline of a curved one is off by at most.
+OUTLINE_SHARE, SLIDE_SHARE, PLACED_SHARE, HEIGHT_SHARE = 0.2, 0.1, 0.025, 0.1
 #: Error of a colour, as a share of the range of the colour map.
 MAX_COLOUR_ERROR = 1 / 100
 #: Longest side of a triangle, in heights of the view: single precision interpolates across it.
@@ -61,9 +62,8 @@ class MeshLevels:
         Cells that are drawn, (J - 1, I - 1).
     periodic
         Whether the first line of nodes lies where the last one does, along j and i.
-
-    slide
-        What counts of an error along the surface, from 0 to 1.
+    slide, height
+        What counts of an error along the surface and across it, from 0 to 1.
 
     Attributes
     ----------
@@ -82,9 +82,10 @@ class MeshLevels:
         cells: Bools,
         periodic: tuple[bool, bool] = (False, False),
         slide: float = SLIDE_SHARE,
+        height: float = 1.0,
     ) -> None:
         rows, columns = points.shape[:2]
-        self._slide = slide
+        self._slide, self._height = slide, height
         self._shape = (rows, columns)
         self._cells, self._periodic = cells, periodic
         self._rows, self._columns = (_Blocks.of(n) for n in self._shape)
@@ -99,10 +100,10 @@ class MeshLevels:
         """Return the levels of what a texture set draws, by fragments that correct their place."""
         geometry = textures.grid
         # A noise that lies on the nodes moves with them.
-        slide = SLIDE_SHARE if textures.paper is None else 1.0
+        shares = (SLIDE_SHARE if textures.paper is None else 1.0, 1.0)
         if placed:
-            slide = PLACED_SHARE
-        return cls(geometry.points, geometry.cells, geometry.periodic, slide)
+            shares = (PLACED_SHARE, HEIGHT_SHARE)
+        return cls(geometry.points, geometry.cells, geometry.periodic, *shares)
 
     def set_colours(self, *colours: Floats) -> None:
         """Count the errors of values that are interpolated between the nodes as well.
@@ -244,7 +245,8 @@ class MeshLevels:
         if directions is None or not size.size:
             return size[None]
         both = np.zeros((2, *size.shape))
-        np.maximum(np.abs(dot(off, directions[0])), self._slide * size, out=both[0])
+        height = self._height * np.abs(dot(off, directions[0]))
+        np.maximum(height, self._slide * size, out=both[0])
         if border is not None:
             ends = (slice(None),) * border + ([0, -1],)
             along = dot(off[ends], directions[1 + border][ends])

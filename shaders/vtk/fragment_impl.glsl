@@ -1,10 +1,7 @@
 #ifdef FLOWTEX_TRIANGLES
   flowtexSetCorners(flowtexCornersVSOutput);
 #endif
-  vec2 flowtexPlaced = flowtexCoordinateVSOutput;
-#ifdef FLOWTEX_PLACED
-  flowtexPlaced = flowtexPlace(flowtexPlaced, flowtexPositionVSOutput.xy);
-#endif
+  flowtexPlaced = flowtexCoordinateVSOutput;
 #if defined(FLOWTEX_PAPER)
   float flowtexTextured = flowtexValue(flowtexPlaced, flowtexNoiseVSOutput);
 #elif defined(FLOWTEX_PLANAR)

@@ -13,8 +13,8 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObje
 
 from flowtex._util.array_types import AnyArray
 
-#: OpenGL's numbers of internal formats, in half precision, by channels; and of two in single.
-FORMATS, TWO_SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, 0x8230
+#: OpenGL's numbers of internal formats by channels, in half precision and in single.
+FORMATS, SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, {2: 0x8230, 3: 0x8815}
 #: OpenGL's number of numbers in half precision.
 HALF_FLOAT = 0x140B
 
@@ -23,9 +23,9 @@ class GPUTexture:
     """One texture array with its mip levels; an image is an array of one layer.
 
     Of VTK's textures from memory the arrays alone get mip levels. The texels (layers, H, W,
-    channels), with 1, 2 or 4 channels, are stored in half precision; 2 may be in ``single``. There
-    are so many mip levels beside the finest, or all of them; ``repeat`` says whether the texture
-    goes around along (v, u).
+    channels), with 1, 2 or 4 channels, are stored in half precision; 2 or 3 may be in ``single``.
+    There are so many mip levels beside the finest, or all of them; ``repeat`` says whether the
+    texture goes around along (v, u).
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class GPUTexture:
         # Left as it is, VTK's greatest level is 0, and there is no other level.
         target.SetMaxLevel(whole if self._levels is None else self._levels)
         if texels.dtype == np.float32:
-            target.SetInternalFormat(TWO_SINGLE)
+            target.SetInternalFormat(SINGLE[channels])
         else:
             target.SetInternalFormat(FORMATS[channels])
             # VTK has no name for half precision, and takes what was set for that of its own names.

@@ -23,7 +23,7 @@ import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from flowtex._util.array_types import Floats, Halves, Ints
+from flowtex._util.array_types import Floats, Floats32, Halves, Ints
 from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import TileView
@@ -219,7 +219,7 @@ class FlowLayer:
         values = uniforms(self._textures, self._settings, self.view)
         above, before = self._textures.geometry.padding
         values["u_padding"] = float(before), float(above)
-        values["u_anchor"] = float(self.view.anchor[0]), float(self.view.anchor[1])
+        values["u_anchor"] = tuple(float(c) for c in self.view.anchor)
         values["u_mapped"] = self._colours is not None
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
@@ -248,9 +248,7 @@ class FlowLayer:
         loaders |= {
             "u_shares": lambda: GPUTexture(colours.shares(geometry) if colours else none, levels=0),
             "u_colours": lambda: GPUTexture(colours.colours() if colours else none, levels=0),
-            "u_nodes": lambda: GPUTexture(
-                np.nan_to_num(geometry.position[None, ..., :2]), levels=0, single=True
-            ),
+            "u_nodes": lambda: GPUTexture(_nodes(self._textures.grid), levels=0, single=True),
         }
         if paper is not None:
             loaders["u_noiseImage"] = partial(
@@ -384,8 +382,14 @@ _last: weakref.WeakKeyDictionary[Any, weakref.ref[FlowLayer]] = weakref.WeakKeyD
 
 def corrects_places(textures: TextureSet) -> bool:
     """Whether the shader of a texture set corrects the places of fragments between the nodes."""
-    geometry = textures.geometry
-    return isinstance(geometry, SurfaceGeometry) and geometry.planar and textures.paper is None
+    return isinstance(textures.geometry, SurfaceGeometry) and textures.paper is None
+
+
+def _nodes(geometry: SurfaceGeometry) -> Floats32:
+    """Positions of the nodes and normals, (2, J, I, 3), or positions in a plane, (1, J, I, 2)."""
+    if geometry.planar:
+        return np.nan_to_num(geometry.position[None, ..., :2])
+    return np.nan_to_num(np.stack([geometry.position, geometry.normal]))
 
 
 def _is_more(needed: int | None, there: int | None) -> bool:
