@@ -117,6 +117,8 @@ def _nemo_places(pair: Pair, cells: tuple[str, str], datasets: Sequence[Any]) ->
     names = {str(n) for ds in datasets for n in ds.variables}
     if "glamt" in names and "gphit" in names and "glamu" in names:
         of_t = next(ds for ds in datasets if "glamt" in ds.variables)
+        if not set(cells) <= set(of_t["glamt"].dims):  # of another model
+            return None
         return find_places(of_t["glamt"], cells, [of_t[["glamt", "gphit"]]])
     if own[0] is own[1] and pair.u.name != "vozocrtx":
         return None

@@ -119,7 +119,14 @@ def _directions(p: Floats, axis: int) -> Floats:
 def _size(dim: str, array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> int:
     if dim in array.sizes:
         return int(array.sizes[dim])
-    return int(next(ds.sizes[dim] for ds in datasets if dim in ds.sizes))
+    for ds in datasets:
+        if dim in ds.sizes:
+            return int(ds.sizes[dim])
+    msg = (
+        f"{array.name!r} has the dimensions {', '.join(map(str, array.dims))}; expected "
+        f"{dim!r} among them, as the velocity has; give the files of one model alone"
+    )
+    raise FieldError(msg)
 
 
 def _pairs(

@@ -80,6 +80,14 @@ def test_a_staggered_grid_may_be_turned(kind: str, turn: float) -> None:
     assert errors[1] < 0.3 * errors[0]
 
 
+def test_coordinates_of_another_model_do_not_count() -> None:
+    zeros = (("y", "x"), np.zeros((3, 4)))
+    nemo = xr.Dataset({"glamt": zeros, "gphit": zeros, "glamu": zeros})
+    alone = FlowField.from_xarray(c_grid("roms"), globe=True)
+    together = FlowField.from_xarray([nemo, *c_grid("roms")], globe=True)
+    np.testing.assert_array_equal(together.points, alone.points)
+
+
 def test_a_flat_map_has_the_paths_of_particles() -> None:
     """A particle that moves on the Earth moves along its place on the map."""
     lon, lat = np.linspace(20.0, 40.0, 21), np.linspace(30.0, 60.0, 31)
