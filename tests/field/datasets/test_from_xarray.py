@@ -83,8 +83,10 @@ def test_a_staggered_grid_may_be_turned(kind: str, turn: float) -> None:
 def test_coordinates_of_another_model_do_not_count() -> None:
     zeros = (("y", "x"), np.zeros((3, 4)))
     nemo = xr.Dataset({"glamt": zeros, "gphit": zeros, "glamu": zeros})
-    alone = FlowField.from_xarray(c_grid("roms"), globe=True)
-    together = FlowField.from_xarray([nemo, *c_grid("roms")], globe=True)
+    with pytest.warns(DatasetNotice):
+        alone = FlowField.from_xarray(c_grid("roms"), globe=True)
+    with pytest.warns(DatasetNotice):
+        together = FlowField.from_xarray([nemo, *c_grid("roms")], globe=True)
     np.testing.assert_array_equal(together.points, alone.points)
 
 
