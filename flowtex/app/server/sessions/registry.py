@@ -287,6 +287,5 @@ class Sessions:
         self._ready, self._closed = None, True
         # No page waits for another one, which may be asleep.
         await asyncio.gather(*(session.disconnect() for session in self))
-        while self._by_token:
-            await self._end(next(iter(self._by_token)))
+        await asyncio.gather(*map(self._end, list(self._by_token)))
         gc.collect()
