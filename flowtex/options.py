@@ -174,7 +174,7 @@ class FieldOptions:
         if not isinstance(place, (str, Path)) or Path(place).is_file():
             return None  # which loads nothing
         from flowtex.pyramid import is_store, open_store
-        from flowtex.pyramid.others import has_parts
+        from flowtex.pyramid.source import has_parts
 
         if not has_parts(place):
             return None

@@ -28,11 +28,13 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     from flowtex.field.datasets.files import dataset_paths
     from flowtex.field.io.summary import describe
     from flowtex.pyramid import is_store
-    from flowtex.pyramid.others import has_parts
+    from flowtex.pyramid.places import is_remote, place_text
+    from flowtex.pyramid.source import has_parts
 
     console, options = terminal(), arguments(flow)
     if len(files) == 1 and has_parts(files[0]):
-        console.print(Text(str(files[0]), "bold"), soft_wrap=True)
+        name = place_text(files[0]) if is_remote(files[0]) else str(files[0])
+        console.print(Text(name, "bold"), soft_wrap=True)
         if is_store(files[0]):
             console.print(_store_table(files[0]))
         console.print(_field_table(load_field(files, options)))

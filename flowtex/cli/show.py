@@ -124,7 +124,7 @@ def _show_page(
     if serve_processes(page):
         return 0
     from flowtex.app import Library
-    from flowtex.pyramid.others import has_parts
+    from flowtex.pyramid.source import has_parts
 
     if len(files) == 1 and has_parts(files[0]):
         return serve_library(Library.of(load_field(files, choice)), page, options)

@@ -8,15 +8,18 @@ the nodes, are kept as they came.
 from __future__ import annotations
 
 import asyncio
+import json
 import math
 import re
 import weakref
 import zlib
+from collections.abc import AsyncIterator, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from zarr import AsyncArray
 from zarr.codecs import BloscCodec, GzipCodec, ShardingCodec
+from zarr.core.buffer import default_buffer_prototype
 from zarr.storage import WrapperStore
 
 from flowtex._util.cache import ByteCache
@@ -29,6 +32,11 @@ CACHE_BYTES = 200_000_000
 #: Files for a browser are read once, to check them.
 _FILES = re.compile(r"^\d+/(flow|values|surface)/c/")
 _CHUNK = re.compile(r"/c(/\d+)+$")
+#: What arrays of a velocity are called for the most part.
+KNOWN_NAMES = (
+    *("u", "v", "U", "V", "u10", "v10", "uo", "vo", "ua", "va", "ugos", "vgos"),
+    *("water_u", "water_v", "uwnd", "vwnd"),
+)
 #: Parameters of the Blosc codec.
 BLOSC_NAMES = ("typesize", "cname", "clevel", "shuffle", "blocksize")
 #: The window of zlib for data with the header and the check sum of gzip.
@@ -45,14 +53,13 @@ class _Piece:
 
 
 class Objects(WrapperStore[Any]):
-    """A store of Zarr's to read a pyramid from; errors are each a :class:`ReadFault`.
+    """A store of Zarr's to read a pyramid from; errors are each a :class:`ReadFault`."""
 
-    One of others may be ``sparse``: it leaves chunks out that have nothing but the fill value.
-    """
+    #: Whether chunks may be left out that have nothing but the fill value.
+    sparse = False
 
-    def __init__(self, store: Any, *, sparse: bool = False) -> None:
+    def __init__(self, store: Any) -> None:
         super().__init__(store)
-        self._sparse = sparse
         self._kept: ByteCache[Any, _Piece] = ByteCache(CACHE_BYTES)
         self._gates: weakref.WeakValueDictionary[Any, asyncio.Lock] = weakref.WeakValueDictionary()
         self._reads = asyncio.Semaphore(MOST_READS)
@@ -84,10 +91,61 @@ class Objects(WrapperStore[Any]):
                         return None
                     msg = f"{key} {fault_words(error)}"
                     raise ReadFault(msg) from None
-        if result is None and not self._sparse and _CHUNK.search(key):
+        if result is None and not self.sparse and _CHUNK.search(key):
             msg = f"{key} is missing"
             raise ReadFault(msg, missing=True)
         return result
+
+
+class OthersObjects(Objects):
+    """A store of others; on the web, where nothing is listed, arrays are found by their names."""
+
+    sparse = True
+
+    def __init__(self, store: Any, names: tuple[str, ...] = ()) -> None:
+        super().__init__(store)
+        self._names = names
+
+    def __reduce__(self) -> Any:
+        """Give what another process makes it of."""
+        return OthersObjects, (self._store, self._names)
+
+    async def list_dir(self, prefix: str) -> AsyncIterator[str]:
+        """Give what is in a group: its levels, or the velocity with what lies along its axes."""
+        try:
+            listed = [name async for name in self._store.list_dir(prefix)]
+        except Exception:
+            listed = await self._found(prefix.strip("/"))
+        for name in listed:
+            yield name
+
+    async def _found(self, group: str) -> list[str]:
+        levels = level_names((await self._told(group)).get("attributes", {}))
+        some = await self._present(group, levels or (*self._names, *KNOWN_NAMES))
+        beside = {str(name) for one in some.values() for name in one.get("dimension_names") or ()}
+        return list(some | await self._present(group, beside - {*some}))
+
+    async def _present(self, group: str, names: Iterable[str]) -> dict[str, dict[str, Any]]:
+        told = await asyncio.gather(*(self._told(f"{group}/{name}") for name in names))
+        return {name: one for name, one in zip(names, told, strict=True) if one}
+
+    async def _told(self, path: str) -> dict[str, Any]:
+        """Return the metadata of a group or an array; nothing where there is none."""
+        key = f"{path}/zarr.json".lstrip("/")
+        buffer = await self.get(key, default_buffer_prototype())
+        told = {} if buffer is None else json.loads(buffer.to_bytes())
+        return told if isinstance(told, dict) else {}
+
+
+def level_names(attributes: Mapping[str, Any]) -> list[str]:
+    """Return the paths of levels, as ndpyramid and the convention of zarr-conventions tell them."""
+    told = attributes.get("multiscales")
+    if isinstance(told, list):  # of the former there is one in a list
+        told = told[0] if told else {}
+    if not isinstance(told, dict):
+        return []
+    levels = [*told.get("layout", []), *told.get("datasets", [])]
+    return [str(one.get("asset", one.get("path"))) for one in levels if isinstance(one, dict)]
 
 
 class _BoundedGzip(GzipCodec):

@@ -7,7 +7,6 @@ many nodes, or picked from the lines of a finer level where no level of theirs i
 
 from __future__ import annotations
 
-import json
 import math
 import warnings
 from collections.abc import Callable, Mapping
@@ -18,29 +17,15 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex._util.extras import import_extra
 from flowtex._util.notices import Notice, notify
 from flowtex.field import FlowField
-from flowtex.field.datasets.pairs import find_pairs
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
 from flowtex.field.steps import LazySteps, Nodes
-from flowtex.pyramid.places import (
-    PyramidError,
-    ReadFault,
-    fault_words,
-    is_remote,
-    is_store,
-    place_text,
-    store_at,
-)
-from flowtex.pyramid.source import RegionSource
+from flowtex.pyramid.places import PyramidError, ReadFault, fault_words
+from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at
 from flowtex.tiles.pyramid import ROOT_NODES, level_lines, root_level
 
-#: Nodes up to which a dataset is opened as a whole.
-WHOLE_NODES = 2_000_000
-#: Metadata of groups and arrays, of Zarr's formats 3 and 2.
-GROUPS, ARRAYS = ("zarr.json", ".zattrs"), ("*/zarr.json", "*/.zarray")
 #: Nodes of a level may be so many times as far apart as those that are drawn.
 WIDER = 1.5
 #: Bytes of a chunk, and nodes of the coarsest level, from which on somebody waits for them.
@@ -49,31 +34,9 @@ SLOW_BYTES, SLOW_NODES = 8_000_000, 16 * ROOT_NODES
 KEPT_BYTES = 64_000_000
 
 
-def has_parts(place: Any) -> bool:
-    """Whether there is a store of which parts are drawn, ours or that of others; any URL is one."""
-    if not isinstance(place, (str, Path)) or is_store(place):
-        return isinstance(place, (str, Path))
-    if is_remote(place):
-        return True
-    folder = Path(place_text(place))
-    told = [_json(folder / name) for name in GROUPS]
-    if any("multiscales" in one.get("attributes", one) for one in told):
-        return True
-    shapes = (_json(file).get("shape", []) for name in ARRAYS for file in folder.glob(name))
-    return any(len(shape) > 1 and math.prod(shape[-2:]) > WHOLE_NODES for shape in shapes)
-
-
-def _json(path: Path) -> dict[str, Any]:
-    try:
-        told = json.loads(path.read_bytes())
-    except (OSError, ValueError):
-        return {}
-    return told if isinstance(told, dict) else {}
-
-
 def levels_of_others(place: str, options: Mapping[str, Any]) -> OtherLevels | FlowField:
     """Open a store of others; one that is small, or on curved lines, is a whole field."""
-    datasets = _datasets(place)
+    datasets = datasets_at(place, options)
     named = {"name": Path(place).stem, **options}
     arrays = read_datasets(datasets[0], regions=True, **named)
     if not isinstance(arrays, Regions):
@@ -87,51 +50,6 @@ def levels_of_others(place: str, options: Mapping[str, Any]) -> OtherLevels | Fl
     return OtherLevels(place, [finest, *map(RegionSource, others)])
 
 
-def _datasets(place: str) -> list[Any]:
-    """Return the datasets of a place that have a velocity, the finest first."""
-    from flowtex.pyramid.objects import Objects
-
-    xarray = import_extra("xarray", "xarray")
-    zarr = import_extra("zarr", "store")
-    try:
-        store = Objects(store_at(place), sparse=True)
-        attributes = zarr.open_group(store, mode="r").attrs
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # of metadata that lie apart
-            groups = xarray.open_groups(store, engine="zarr", decode_timedelta=False)
-    except (PyramidError, ModuleNotFoundError):
-        raise
-    except Exception as error:
-        words = str(error) if isinstance(error, ReadFault) else fault_words(error)
-        msg = (
-            f"{place} holds no pyramid that can be read ({words}); make one with "
-            "flowtex.pyramid.build, or name a Zarr group of xarray's, with consolidated metadata "
-            "on the web, as by zarr.consolidate_metadata"
-        )
-        raise PyramidError(msg) from None
-    names = [name.strip("/") for name in _level_names(attributes.get("multiscales"))]
-    known = {name.strip("/"): dataset for name, dataset in groups.items()}
-    chosen = [known[name] for name in names if name in known] or list(known.values())
-    found = [one for one in chosen if find_pairs([one])]
-    if not found:
-        msg = (
-            f"{place} holds no pyramid, and no velocity; expected two variables such as u and v in "
-            "each level"
-        )
-        raise PyramidError(msg)
-    return sorted(found, key=lambda one: -max(array.size for array in one.values()))
-
-
-def _level_names(told: Any) -> list[str]:
-    """Return the paths of levels, as ndpyramid and the convention of zarr-conventions tell them."""
-    if isinstance(told, list):  # of the former there is one in a list
-        told = told[0] if told else {}
-    if not isinstance(told, dict):
-        return []
-    levels = [*told.get("layout", []), *told.get("datasets", [])]
-    return [str(one.get("asset", one.get("path"))) for one in levels if isinstance(one, dict)]
-
-
 class OtherLevels:
     """The levels of a store of others, the finest first, read as those of ours are."""
 
@@ -141,6 +59,7 @@ class OtherLevels:
         finest = sources[0]
         self.template, nodes = finest.field, finest.shape
         self.about: dict[str, Any] = {
+            "place": place,
             "nodes": list(nodes),
             "depth": root_level(nodes),
             "periods": finest.periods,
@@ -152,7 +71,7 @@ class OtherLevels:
 
     def _slow(self) -> list[str]:
         """Return what takes long in a store, with what helps."""
-        build = "flowtex.pyramid.build makes a store without this"
+        build = f"`flowtex pyramid {self.place} -o flow.zarr` makes a store without this"
         component, shape = self._regions[0].components[0], self._regions[-1].lines.shape
         chunks = component.encoding.get("chunks") or component.shape
         nbytes = math.prod(chunks) * component.dtype.itemsize

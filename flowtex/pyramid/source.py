@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import math
 import os
-from collections.abc import Iterator, Sequence
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,18 +15,33 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.cache import digest
+from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.files import dataset_paths
+from flowtex.field.datasets.pairs import find_pairs
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
 from flowtex.field.io.arrays import FieldArrays
 from flowtex.field.io.files import errors_of, read_files
 from flowtex.field.steps import LazySteps, Nodes
-from flowtex.pyramid.places import is_store
+from flowtex.pyramid.places import (
+    PyramidError,
+    ReadFault,
+    fault_words,
+    is_remote,
+    is_store,
+    place_text,
+    store_at,
+)
 from flowtex.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
+
+#: Nodes up to which a dataset is opened as a whole.
+WHOLE_NODES = 2_000_000
+#: Metadata of groups and arrays, of Zarr's formats 3 and 2.
+GROUPS, ARRAYS = ("zarr.json", ".zattrs"), ("*/zarr.json", "*/.zarray")
 
 
 class Source:
@@ -201,10 +219,17 @@ def source_of(given: Any, **options: Any) -> Source:
     if is_dataset(given):
         return _source_from(read_datasets(given, regions=True, **options))
     one: str | Path | Sequence[str | Path] = given
-    with errors_of(one):
-        source = _source_from(read_files(one, regions=True, **options))
+    if isinstance(one, (str, Path)) and has_parts(one):
+        place = place_text(one)
+        finest, *_ = datasets_at(place, options)
+        source = _source_from(read_datasets(finest, regions=True, name=Path(place).stem, **options))
+        paths = [] if is_remote(one) else [Path(place)]
+    else:
+        with errors_of(one):
+            source = _source_from(read_files(one, regions=True, **options))
+        paths = dataset_paths(one)
     if isinstance(source, RegionSource):
-        source.files, source.choice = dataset_paths(one), repr(sorted(options.items()))
+        source.files, source.choice = paths, repr(sorted(options.items()))
     return source
 
 
@@ -212,3 +237,62 @@ def _source_from(arrays: FieldArrays | Regions) -> Source:
     if isinstance(arrays, Regions):
         return RegionSource(arrays)
     return FieldSource(FlowField.of(arrays))
+
+
+def has_parts(place: Any) -> bool:
+    """Whether there is a store of which parts are drawn, ours or that of others; any URL is one."""
+    if not isinstance(place, (str, Path)) or is_store(place):
+        return isinstance(place, (str, Path))
+    if is_remote(place):
+        return True
+    folder = Path(place_text(place))
+    told = [_json(folder / name) for name in GROUPS]
+    if any("multiscales" in one.get("attributes", one) for one in told):
+        return True
+    shapes = (_json(file).get("shape", []) for name in ARRAYS for file in folder.glob(name))
+    return any(len(shape) > 1 and math.prod(shape[-2:]) > WHOLE_NODES for shape in shapes)
+
+
+def _json(path: Path) -> dict[str, Any]:
+    try:
+        told = json.loads(path.read_bytes())
+    except (OSError, ValueError):
+        return {}
+    return told if isinstance(told, dict) else {}
+
+
+def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
+    """Return the datasets of a store of others that have a velocity, the finest first."""
+    from flowtex.pyramid.objects import OthersObjects, level_names
+
+    xarray = import_extra("xarray", "xarray")
+    zarr = import_extra("zarr", "store")
+    own = {str(options[name]) for name in "uv" if options.get(name)}
+    try:
+        store = OthersObjects(store_at(place), tuple(own))
+        attributes = zarr.open_group(store, mode="r").attrs
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # of metadata that lie apart
+            groups = xarray.open_groups(store, engine="zarr", decode_timedelta=False)
+    except (PyramidError, ModuleNotFoundError):
+        raise
+    except Exception as error:
+        words = str(error) if isinstance(error, ReadFault) else fault_words(error)
+        msg = (
+            f"{place} holds no pyramid that can be read ({words}); make one with "
+            "flowtex.pyramid.build, or name a Zarr group of xarray's, with consolidated metadata "
+            "on the web, as by zarr.consolidate_metadata"
+        )
+        raise PyramidError(msg) from None
+    names = [name.strip("/") for name in level_names(attributes)]
+    known = {name.strip("/"): dataset for name, dataset in groups.items()}
+    chosen = [known[name] for name in names if name in known] or list(known.values())
+    found = [one for one in chosen if (own and own <= {*one}) or find_pairs([one])]
+    if not found:
+        msg = (
+            f"{place} holds no pyramid, and no velocity; expected two variables such as u and v in "
+            "each level, or their names, and on the web consolidated metadata, as by "
+            "zarr.consolidate_metadata"
+        )
+        raise PyramidError(msg)
+    return sorted(found, key=lambda one: -max(array.size for array in one.values()))

@@ -123,9 +123,11 @@ def _stored(view: WebView) -> StoredPyramid:
         raise FieldError(msg)
     pyramid = pyramid or shared_pyramid(scene.field, scene.settings.parameter, scene.lines)
     if not isinstance(pyramid, StoredPyramid) or "fingerprint" not in pyramid.about:
+        place = pyramid.about["place"] if isinstance(pyramid, StoredPyramid) else "FILE"
         msg = (
-            "store is given, and the flow is not read from one of flowtex; build it with "
-            "flowtex.pyramid.build, and export the store, or leave store out"
+            "store is given, and the flow is not read from one of flowtex, which alone has tiles "
+            f"for browsers. `flowtex pyramid {place} -o flow.zarr` builds it: export that, or "
+            "leave store out for a page with as many levels as it has room for"
         )
         raise FieldError(msg)
     own = pyramid.about

@@ -16,7 +16,7 @@ from flowtex._util.notices import Notice
 from flowtex.cli import main
 from flowtex.errors import FieldError
 from flowtex.pyramid import is_store, open_store
-from flowtex.pyramid.others import has_parts
+from flowtex.pyramid.source import has_parts
 from flowtex.tiles import TileKey, shared_pyramid
 
 zarr = pytest.importorskip("zarr")
@@ -34,7 +34,8 @@ TOLD: dict[str, Any] = {
 def _small(small_tiles: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 500)
-        patch.setattr("flowtex.pyramid.others.WHOLE_NODES", 1000)
+        for module in ("others", "source"):
+            patch.setattr(f"flowtex.pyramid.{module}.WHOLE_NODES", 1000)
         yield
 
 
@@ -54,16 +55,19 @@ def dataset(*, earth: bool = False) -> Any:
     )
 
 
-def write(place: Path, told: Any, *, reverse: bool = False, **options: Any) -> None:
-    """Write three levels; those of ndpyramid begin with the coarsest one."""
-    finest, factors = dataset(**options), [1, 2, 4]
+def write(
+    place: Path, told: Any, *, reverse: bool = False, consolidated: bool = True, **names: str
+) -> None:
+    """Write three levels; those of ndpyramid begin with the coarsest one, topozarr's lie apart."""
+    finest, factors = dataset().rename(names), [1, 2, 4]
     for n, factor in enumerate(reversed(factors) if reverse else factors):
         one = finest.coarsen(dict.fromkeys(finest.dims, factor)).mean()
-        chunks = {name: {"chunks": (16, 16)} for name in "uv"}
+        chunks = {name: {"chunks": (16, 16)} for name in finest.data_vars}
         one.to_zarr(place, group=str(n), encoding=chunks, consolidated=False, zarr_format=3)
     zarr.open_group(place, mode="r+").attrs["multiscales"] = told
-    with pytest.warns(UserWarning, match="Consolidated metadata"):
-        zarr.consolidate_metadata(place)
+    if consolidated:
+        with pytest.warns(UserWarning, match="Consolidated metadata"):
+            zarr.consolidate_metadata(place)
 
 
 @pytest.fixture(scope="module")
@@ -121,9 +125,47 @@ def test_pictures_pages_and_the_shell(
     away = pictures[0].astype(float) - pictures[1]
     assert np.sqrt(np.mean(away**2)) < 3 and pictures[1].std() > 10
     assert 'data-part="{&quot;name&quot;: &quot;tile/0/' in page.path.read_text()
-    assert f"{COLUMNS} × {ROWS} nodes" in capsys.readouterr().out
-    with pytest.raises(FieldError, match="not read from one of flowtex"):
+    said = capsys.readouterr().out
+    assert f"{COLUMNS} × {ROWS} nodes" in said and url in said
+    with pytest.raises(FieldError) as told:
         flowtex.export(store, tmp_path / "b.html", store="./flow.zarr")
+    assert f"`flowtex pyramid {store} -o flow.zarr` builds it: export that" in str(told.value)
+
+
+@pytest.mark.parametrize("name", TOLD)
+def test_a_store_is_built_from_what_lies_on_the_web(
+    stores: dict[str, Path], tmp_path: Path, name: str
+) -> None:
+    place = tmp_path / "flow.zarr"
+    with range_server(stores[name].parent) as server:
+        url = server.address + stores[name].name
+        assert main(["pyramid", url, "-o", str(place)]) == 0
+        assert main(["export", str(place), "-o", str(tmp_path / "a.html"), "--store", url]) == 0
+    own = FlowField.from_xarray(dataset())
+    stored, known = (
+        shared_pyramid(one, "arclength", "streamlines") for one in (open_store(place), own)
+    )
+    for level in range(3):
+        some, others = stored.at_level(level), known.at_level(level)
+        assert np.allclose(some.velocity[0], others.velocity[0], atol=1e-3)
+
+
+@pytest.mark.parametrize("names", [None, ("speed_x", "speed_y")])
+def test_metadata_may_lie_apart_where_nothing_is_listed(
+    tmp_path: Path, names: tuple[str, str] | None
+) -> None:
+    u, v = names or ("u", "v")
+    write(tmp_path / "a.zarr", TOLD["convention"], consolidated=False, u=u, v=v)
+    with range_server(tmp_path) as server:
+        chosen = {} if names is None else {"u": u, "v": v}
+        field = open_store(server.address + "a.zarr", **chosen)
+        if names is not None:
+            with pytest.raises(FieldError, match=r"or their names, .*zarr.consolidate_metadata"):
+                open_store(server.address + "a.zarr")
+    stored = shared_pyramid(field, "arclength", "streamlines")
+    assert stored.nodes == (ROWS, COLUMNS) and stored.depth == 2
+    own = shared_pyramid(FlowField.from_xarray(dataset()), "arclength", "streamlines")
+    assert np.allclose(stored.at_level(1).points, own.at_level(1).points)
 
 
 def test_a_map_and_one_level_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

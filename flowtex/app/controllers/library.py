@@ -31,7 +31,7 @@ from flowtex.field.remote import open_remote, prepare_readers
 from flowtex.field.source import FlowSource, Source
 from flowtex.options import FieldOptions
 from flowtex.pyramid import open_store
-from flowtex.pyramid.others import has_parts
+from flowtex.pyramid.source import has_parts
 from flowtex.scene import drawn_store
 from flowtex.settings import Settings
 from flowtex.tiles import Pyramid
