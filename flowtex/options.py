@@ -39,6 +39,9 @@ from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.pairs import two_names
 from flowtex.settings import TABLE, Settings, SettingsError, setting
 
+if TYPE_CHECKING:
+    from flowtex.rendering.webgl.bodies import Bodies
+
 #: Colour of a surface that is coloured by nothing: a grey that can go darker and lighter.
 PLAIN_COLOR = "#a0a0a0"
 #: Colour where there is no value, as in PyVista.
@@ -364,12 +367,13 @@ class ViewOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Arguments of one call, sorted by what they are for."""
+    """Arguments of one call, sorted by what they are for; ``bodies`` stand beside the flow."""
 
     field: FieldOptions
     appearance: Appearance
     view: ViewOptions
     settings: Mapping[str, Any]
+    bodies: Bodies | None = None
 
     def make_settings(self, **defaults: Any) -> Settings:
         """Return all settings; an image has its colours alone, unless it is asked to be mixed."""

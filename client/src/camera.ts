@@ -31,6 +31,8 @@ export interface Surface {
   extent: number;
   center: number[];
   frame: number[];
+  /** How far what stands beside it reaches from its center. */
+  reach?: number;
 }
 
 /** How far a camera may go: CameraLimits of flowtex/camera.py. */
@@ -355,7 +357,7 @@ export function projection(surface: Surface, camera: Camera, anchor: Vector): nu
   const local = (point: number[]) => subtract(toFrame(frame, subtract(point, center)), anchor);
   const focus = local(state.focal_point);
   const middle = scale(anchor, -1);
-  const radius = 0.51 * extent;
+  const radius = Math.max(0.51 * extent, surface.reach ?? 0);
   const m = new Array<number>(16).fill(0);
   const half = state.parallel ? state.parallel_scale : tangent(state.view_angle);
   const rows = [right.map((c) => c / half / aspect), up.map((c) => c / half)];

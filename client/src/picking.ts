@@ -44,6 +44,7 @@ export function pickedPoint(context: PickContext, x: number, y: number): Found |
   const matrix = atPixel(whole, [x, y], [canvas.width, canvas.height]);
   const [before, after, between] = moment;
   const bits = graphics.numbers(() => {
+    layers[0].scene.bodies.hide(matrix, anchor);
     layers.forEach(({ scene }, n) => {
       graphics.programs.use(program, { u_matrix: matrix, u_between: between, u_part: n });
       scene.draw(before, after, anchor, false);

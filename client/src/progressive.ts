@@ -222,13 +222,14 @@ export class ProgressiveRenderer {
     return true;
   }
 
-  /** Put the lines of a map on the picture: all its pixels are theirs, in drafts as well. */
+  /** Put the lines of a map, and labels, on the picture: all its pixels are theirs, in drafts as well. */
   private drawLines(shown: Moment): void {
     const { front, frontPen, graphics } = this;
     const { scene, camera, ratio } = this.viewer;
     const { width, height } = this.canvas;
-    if (!scene?.earth.lines.length || !camera || !frontPen) return;
-    const { earth } = scene;
+    if (!scene || !camera || !frontPen) return;
+    const { earth, bodies } = scene;
+    if (!earth.lines.length && !bodies.labels.length) return;
     const { state, aspect } = camera;
     const look = JSON.stringify([state, aspect, width, height, earth.lines, earth.version]);
     if (look !== this.frontLook) {
@@ -242,6 +243,7 @@ export class ProgressiveRenderer {
         const top = canvas.height - height;
         frontPen.drawImage(canvas, 0, top, width, height, 0, 0, width, height);
       });
+      bodies.drawLabels(frontPen, { camera, anchor, width, height, ratio });
       this.frontLook = look;
     }
     this.pen?.drawImage(front, 0, 0);
@@ -339,10 +341,15 @@ export class ProgressiveRenderer {
     const draft = samples !== viewer.settings.samples || height !== this.canvas.height;
     const around: EarthView = { camera, anchor: view.anchor, width, height, ratio: viewer.ratio };
     scene.earth.drawGround(around);
-    for (const layer of this.layers) {
-      graphics.programs.use(program, this.values(layer, camera, view, samples, draft));
-      layer.draw(shown[0], shown[1], view.anchor, true);
-    }
+    const { bodies } = scene;
+    bodies.draw(around, "opaque");
+    bodies.seeThrough(() => {
+      for (const layer of this.layers) {
+        graphics.programs.use(program, this.values(layer, scene, camera, view, samples, draft));
+        layer.draw(shown[0], shown[1], view.anchor, true);
+      }
+    });
+    bodies.draw(around, "clear");
     if (smooth) graphics.copySmooth(width, rows);
     // Reading a pixel waits until everything is drawn.
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
@@ -351,6 +358,7 @@ export class ProgressiveRenderer {
   /** All uniforms of a picture. */
   private values(
     { header, parts }: Scene,
+    { bodies }: Scene,
     camera: Camera,
     view: ViewState,
     samples: number,
@@ -366,7 +374,7 @@ export class ProgressiveRenderer {
       u_colour: header.colour,
       u_lit: header.lighting,
       u_ground: header.background,
-      u_opacity: header.opacity,
+      u_opacity: bodies.areBehind ? 1 : header.opacity,
       u_toEye: toFrame(header.geometry.frame, scale(camera.axes[2], -1)),
     };
   }

@@ -141,6 +141,23 @@ export interface Earth extends Record<EarthLines, boolean> {
   strokes: Stroke[];
 }
 
+/** What stands beside the flow: flowtex/rendering/webgl/bodies.py. */
+export interface BodiesHeader {
+  /** Meshes, by the first of their triangles and pieces of lines among those of all, and the numbers of these. */
+  runs: {
+    faces: [first: number, count: number];
+    pieces: [first: number, count: number];
+    /** Whether something is seen through it. */
+    clear: boolean;
+    width: number;
+    ambient: number;
+    diffuse: number;
+  }[];
+  labels: { text: string; position: number[]; size: number; color: number[]; plate: number[] }[];
+  /** Ways to distant lights; to the right, upwards and towards the eye of those that turn with the camera. */
+  lights: { way: number[]; color: number[]; turns: boolean }[];
+}
+
 /** The date at time 0 in ISO 8601, or the dates of all steps in a calendar of its own. */
 export interface Dates {
   start: string | null;
@@ -225,7 +242,7 @@ export interface PoleHeader {
 
 type ShaderName =
   "vertex" | "fragment" | "pick" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment"
-  | "fullVertex" | "probe";
+  | "bodyVertex" | "bodyFragment" | "fullVertex" | "probe";
 /** Those of a client that traces. */
 type TraceShaderName = "trace" | "layers";
 
@@ -304,6 +321,7 @@ export interface Header {
   timeShift?: number | null;
   /** Null for a flow that is elsewhere. */
   earth: Earth | null;
+  bodies: BodiesHeader | null;
   /** Null where the whole surface is here. */
   pyramid: PyramidHeader | null;
   store?: StoreHeader;

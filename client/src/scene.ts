@@ -1,5 +1,6 @@
 // The buffers and textures of one scene, made of its parts when they are first drawn.
 
+import { Bodies, BODY_PARTS } from "./bodies.ts";
 import type { Graphics, Resource } from "./context.ts";
 import { EarthLayer } from "./earthlayer.ts";
 import { makeLayers, sendLayer, type LayersSize } from "./layers.ts";
@@ -49,6 +50,7 @@ export class Scene {
   readonly header: Header;
   readonly parts: Map<string, Part>;
   readonly earth: EarthLayer;
+  readonly bodies: Bodies;
   anchor: Vector = [0, 0, 0];
   private readonly resources = new Map<string, Resource>();
   private scalarSteps = "";
@@ -64,6 +66,7 @@ export class Scene {
     this.header = header;
     this.parts = parts;
     this.earth = new EarthLayer(graphics, header, parts);
+    this.bodies = new Bodies(graphics, header, parts);
   }
 
   /** Names of the parts that a moment needs and that are not there. */
@@ -72,6 +75,7 @@ export class Scene {
     const { trace } = slices;
     const names = ["mesh", ...(trace?.parts ?? ["position", ...(geometry.planar ? [] : ["normal"])])];
     if (pyramid) names.push("places");
+    if (this.header.bodies?.runs.length) names.push(...BODY_PARTS);
     if (geometry.triangles) names.push("triangles", "blocks");
     for (const step of new Set([before, after])) {
       if (trace) names.push(...flowsOf(this.header, step).map((n) => `flow/${n}`));
@@ -199,6 +203,7 @@ export class Scene {
     if (USERS[kind]?.includes("index")) this.meshLevels = this.drawn = null;
     const sliced = ["slices", "extra", "flow"].includes(kind);
     if (!sliced && kind !== "scalars") this.earth.forget(name);
+    if (BODY_PARTS.includes(kind)) this.bodies.dispose();
     for (const user of sliced ? [`slices/${step}`] : (USERS[kind] ?? [])) this.drop(user);
     if (SOURCES.includes(kind)) this.dropSlices(NaN, NaN);
     this.drop("array");
@@ -218,6 +223,7 @@ export class Scene {
     for (const name of [...this.resources.keys()]) this.drop(name);
     this.stopTracing();
     this.earth.dispose();
+    this.bodies.dispose();
   }
 
   /** What some parts are known by on the whole page; nothing where one of them has no digest. */

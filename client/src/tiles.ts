@@ -140,7 +140,8 @@ export class Tiles {
       const own = JSON.parse(new TextDecoder().decode(part.data)) as TileHeader | null;
       tile.scene?.dispose();
       tile.ranges = own?.ranges;
-      tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null }, tile.parts);
+      if (own) own.geometry.reach = header.geometry.reach;
+      tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null, bodies: null }, tile.parts);
       this.giveMap(tile);
       this.giveLimits(tile);
     } else tile.scene?.forget(part.name);

@@ -18,6 +18,7 @@ const LAYERS = [
   "context",
   "heldparts samples",
   "earthlayer",
+  "bodies",
   "scene",
   "tiles",
   "picking pointpath pixelsum progressive options",

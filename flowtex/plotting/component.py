@@ -6,15 +6,22 @@ that asks for ``plotter.flowtex``.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
 import pyvista as pv
 
+from flowtex.errors import FieldError
+from flowtex.field import FlowField
 from flowtex.options import Appearance, FieldOptions, accepts_options
+from flowtex.plotting.bodies import read_bodies
 from flowtex.plotting.handle import FlowHandle
-from flowtex.plotting.vtk_camera import look
+from flowtex.plotting.vtk_camera import look, read_camera
+from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.scene import Scene
+from flowtex.textures.images import as_image
 
 __all__ = ["FlowHandle", "FlowtexComponent"]
 
@@ -104,6 +111,48 @@ class FlowtexComponent:
         if reset_camera or (reset_camera is None and first):
             look(self._plotter, scene.whole)
         return handle
+
+    def for_browser(self) -> tuple[FlowField, dict[str, Any], Bodies]:
+        """Return the first flow, arguments by which it looks the same, and what stands beside it.
+
+        What a browser is not handed is warned of. Raises a FieldError where there is no flow.
+        """
+        if not self._handles:
+            msg = (
+                "there is no flow texture on this plotter; add one with plotter.flowtex.add(mesh), "
+                "or choose another jupyter_backend"
+            )
+            raise FieldError(msg)
+        shown = self._handles[0]
+        bodies, left_out = read_bodies(self._plotter, shown)
+        if not np.allclose(shown.actor.user_matrix, np.eye(4)) or any(shown.actor.position):
+            left_out.append("the flow's own place")
+        if left_out:
+            warnings.warn(
+                f"a browser is handed one flow with meshes and labels; left out: "
+                f"{', '.join(left_out)}. Another jupyter_backend, such as 'trame', draws them",
+                stacklevel=2,
+            )
+        return shown.field, self._look_of(shown), bodies
+
+    def _look_of(self, handle: FlowHandle) -> dict[str, Any]:
+        """Return the arguments of a view that looks the same."""
+        mapper, prop, image = handle.actor.mapper, handle.actor.prop, handle.scene.image
+        name = handle.scene.scalar_name
+        colours: dict[str, Any] = {"scalars": False, "color": prop.color}
+        if name is not None:
+            table = np.asarray(mapper.lookup_table.values)
+            colours = {"scalars": name, "cmap": table, "clim": tuple(mapper.scalar_range)}
+        return {
+            **dict(handle.settings),
+            **colours,
+            "image": None if image is None else as_image(image),
+            "lighting": bool(prop.lighting),
+            "opacity": float(prop.opacity),
+            "show_scalar_bar": bool(self._plotter.scalar_bars),
+            "background": self._plotter.background_color,
+            "camera": read_camera(self._plotter.camera),
+        }
 
     def __iter__(self) -> Iterator[FlowHandle]:
         """Give the handles that have not been removed."""

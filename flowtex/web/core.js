@@ -120,14 +120,14 @@ frame},camera,x,y){let[start,along]=camera.ray(x,y),normal=fromFrame(frame,[0,0,
 center,start),normal)/dot2(along,normal))}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.
 extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){
 let{state,aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
-toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=.51*extent,
-m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([right.map(c=>c/half/aspect),
-up.map(c=>c/half)].forEach((row2,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row2[n];m[12+k]=-dot2(row2,focus)}),state.parallel){
-for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}let eye=local(state.position),
-depth=dot2(subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(depth-radius,.001*far),a=(far+
-near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=ahead[n];return m[15]=-dot2(
-ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];for(let n=0;n<4;n+=1)m[4*n]=
-(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
+toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=Math.max(.51*
+extent,surface.reach??0),m=new Array(16).fill(0),half=state.parallel?state.parallel_scale:tangent(state.view_angle);if([
+right.map(c=>c/half/aspect),up.map(c=>c/half)].forEach((row2,k)=>{for(let n=0;n<3;n+=1)m[4*n+k]=row2[n];m[12+k]=-dot2(row2,
+focus)}),state.parallel){for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]/radius;return m[14]=-dot2(ahead,middle)/radius,m[15]=1,m}
+let eye=local(state.position),depth=dot2(subtract2(middle,eye),ahead),far=Math.max(depth+radius,.001*radius),near=Math.max(
+depth-radius,.001*far),a=(far+near)/(far-near),b=-2*far*near/(far-near);for(let n=0;n<3;n+=1)m[4*n+2]=ahead[n]*a,m[4*n+3]=
+ahead[n];return m[15]=-dot2(ahead,eye),m[14]=m[15]*a+b,m}function atPixel(matrix,[x,y],[width,height]){let m=[...matrix];
+for(let n=0;n<4;n+=1)m[4*n]=(m[4*n]-x*m[4*n+3])*width,m[4*n+1]=(m[4*n+1]-y*m[4*n+3])*height;return m}var PIXEL_COST=8,DRAFT_SAMPLES=9,COARSEST_SCALE=.2,DRAFT_SPACING=1.4,MOVING_MS=55,PLAYING_MS=125,CLEAR_SCALE=.5,FEWEST_ROWS=4,
 LONGEST_STRIP_MS=150,FIRST_PRICE_MS=4e-5,CARD_PRICE_MS=2e-6;function quality(price,fixed,pixels,samples,budget){let room=Math.
 max(budget-fixed,Math.min(fixed/2,budget),2)/price;if(pixels*(samples+PIXEL_COST)<=room)return{scale:1,samples};let fewer=Math.
 min(DRAFT_SAMPLES,samples),scale3=Math.sqrt(room/(fewer+PIXEL_COST)/pixels);return scale3<1?{scale:Math.max(scale3,COARSEST_SCALE),
@@ -668,22 +668,22 @@ this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return
 let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
 end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,[program]=layers[0].
 scene.pickers,whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,[x,y],[canvas.width,canvas.height]),[
-before,after,between2]=moment,bits=graphics.numbers(()=>{layers.forEach(({scene},n)=>{graphics.programs.use(program,{u_matrix:matrix,
-u_between:between2,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])return null;let[u,v2]=new Float32Array(
-bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,place=geometry.triangles?placeIn(bits[3]-1,u,v2):placeAmong(
-geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.scene,camera,corners,x,y),index=geometry.triangles?
-place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(layer.scene,moment,corners)},layer,place}}
-function placeAmong({rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(share*size-.5-before,0,nodes-
-1);return[at(u,columns,shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[i,j]){let{pyramid,geometry,mesh}=header,
-[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(
-n+tile*side,level,nodes);return[at(i,column,columns),at(j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{
-data}=scene.part("position"),{frame,center}=scene.header.geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+
-k])),about=add(fromFrame(frame,local),center),[start,along]=camera.ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,
-start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){let{header,parts}=scene,
-{scalars}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({name,steps,number}));
-for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.
-data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+between2*(after[n]-before[n]);
-values[each.name]=interpolated(corners,value)}return values}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+before,after,between2]=moment,bits=graphics.numbers(()=>{layers[0].scene.bodies.hide(matrix,anchor),layers.forEach(({scene},n)=>{
+graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
+return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,place=geometry.
+triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.
+scene,camera,corners,x,y),index=geometry.triangles?place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(
+layer.scene,moment,corners)},layer,place}}function placeAmong({rows,columns,shape:shape2},u,v2){let at=(share,{size,before},nodes)=>clamp(
+share*size-.5-before,0,nodes-1);return[at(u,columns,shape2[1]),at(v2,rows,shape2[0])]}function wholeIndex(header,{key},[
+i,j]){let{pyramid,geometry,mesh}=header,[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
+tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
+j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
+geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
+ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){
+let{header,parts}=scene,{scalars}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({
+name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.
+map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+
+between2*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
 subtract2(view.eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2?"ramp":s.kernel,kernel=signFree&&
 chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[
@@ -1262,26 +1262,27 @@ rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fix
 height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);
 let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=
 rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(shown),!0)}drawLines(shown){
-let{front,frontPen,graphics}=this,{scene,camera,ratio}=this.viewer,{width,height}=this.canvas;if(!scene?.earth.lines.length||
-!camera||!frontPen)return;let{earth}=scene,{state,aspect}=camera,look=JSON.stringify([state,aspect,width,height,earth.lines,
-earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;canvas.width<width&&
-(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,front.height=height,earth.drawLines(
-{camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,height,0,0,width,
-height)}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.
-canvas.height,this.isCoarse=!1,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&
-!player.playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,
-{scene,camera}=this.viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.
-state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(
-geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,
-now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||
-player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
-now()-started,pixels=region.width*region.rows,factor=this.factor(samples),fixed=region.rows<region.height?this.fixed.strip:
-this.fixed.draft;program.price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.
-layers.reduce((sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.
-warm&&share<ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row2={width,height,top:0,rows:1},[w,h]=[width,height].
-map(n=>Math.max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row2,1),this.triangles=triangles;
-let fixed=[row2,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(program,shown,
-region,1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){
+let{front,frontPen,graphics}=this,{scene,camera,ratio}=this.viewer,{width,height}=this.canvas;if(!scene||!camera||!frontPen)
+return;let{earth,bodies}=scene;if(!earth.lines.length&&!bodies.labels.length)return;let{state,aspect}=camera,look=JSON.stringify(
+[state,aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),
+{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,
+front.height=height,earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(
+canvas,0,top,width,height,0,0,width,height)}),bodies.drawLabels(frontPen,{camera,anchor,width,height,ratio}),this.frontLook=
+look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.isCoarse=
+!1,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.playing&&(this.
+lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{scene,camera}=this.
+viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;
+let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),
+[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,
+this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies?motionFactor(
+samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.now()-started,pixels=region.
+width*region.rows,factor=this.factor(samples),fixed=region.rows<region.height?this.fixed.strip:this.fixed.draft;program.
+price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.layers.reduce(
+(sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.warm&&share<
+ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row2={width,height,top:0,rows:1},[w,h]=[width,height].map(n=>Math.
+max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row2,1),this.triangles=triangles;let fixed=[
+row2,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(program,shown,region,
+1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){
 let{graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
 view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
 canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
@@ -1289,16 +1290,64 @@ gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.S
 width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.
 header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
 samples||height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(
-around2);for(let layer of this.layers)graphics.programs.use(program,this.values(layer,camera,view,samples,draft)),layer.
-draw(shown[0],shown[1],view.anchor,!0);smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,
-new Uint8Array(4))}values({header,parts},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.
-shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):
-{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.
-lighting,u_ground:header.background,u_opacity:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
--1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
-graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,
-coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
-[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var PLACE2=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
+around2);let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.
+use(program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),bodies.draw(
+around2,"clear"),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}values({
+header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.shape??null;return{
+...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(
+header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.
+background,u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){
+if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;
+if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,
+coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,
+0,first,w,rows,0,to,width,rows*height/h)}};var BODY_PARTS=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],LIGHTS=8,[ENDS_BYTES,COLOURS_BYTES]=[
+24,8],BEHIND=[1,2],PLATE_MARGIN=.2;function atEnds(values,pieces,size){let Type=values.constructor,ends=new Type(size*pieces.
+length);for(let n=0;n<pieces.length;n+=1)for(let k=0;k<size;k+=1)ends[size*n+k]=values[size*pieces[n]+k];return ends}function lightUniforms({
+geometry,bodies},camera){let[right,up,ahead]=camera.axes,lights=(bodies?.lights??[]).slice(0,LIGHTS),ways=lights.map(({way,
+turns})=>{let turned=add(add(scale2(right,way[0]),up,way[1]),ahead,-way[2]);return toFrame(geometry.frame,turns?turned:way)}),
+padded=vectors=>Float32Array.from({length:3*LIGHTS},(_,n)=>vectors.flat()[n]??0);return{u_lightWays:padded(ways),u_lightColours:padded(
+lights.map(({color})=>color))}}var Bodies=class{graphics;header;parts;drawn=null;constructor(graphics,header,parts){this.
+graphics=graphics,this.header=header,this.parts=parts}get labels(){return this.header.bodies?.labels??[]}get runs(){let{
+bodies}=this.header;return bodies&&BODY_PARTS.every(name=>this.parts.has(name))?bodies.runs:[]}get areBehind(){return this.
+runs.length>0&&this.header.opacity<1}get programs(){let{programs}=this.graphics,{bodyVertex,bodyFragment,lineVertex,lineFragment}=this.
+header.shaders;return[programs.get(bodyVertex,bodyFragment),programs.get(lineVertex,lineFragment,"FLOWTEX_BODY"),programs.
+get(bodyVertex,bodyFragment,"FLOWTEX_HIDING")]}get isReady(){return!this.runs.length||this.programs.every(({ready})=>ready)}dispose(){
+let{drawn,graphics}=this;if(drawn){for(let buffer of drawn.buffers)graphics.free("Buffer",buffer);graphics.free("VertexA\
+rray",drawn.faces),graphics.free("VertexArray",drawn.pieces),this.drawn=null}}seeThrough(draw){if(!this.runs.length)return draw();
+let gl=this.graphics.context;gl.enable(gl.POLYGON_OFFSET_FILL),gl.polygonOffset(BEHIND[0],BEHIND[0]),this.areBehind&&(gl.
+enable(gl.BLEND),gl.blendColor(0,0,0,this.header.opacity),gl.blendFuncSeparate(gl.CONSTANT_ALPHA,gl.ONE_MINUS_CONSTANT_ALPHA,
+gl.ZERO,gl.ONE)),draw(),gl.disable(gl.BLEND),gl.disable(gl.POLYGON_OFFSET_FILL)}draw({camera,anchor,width,height,ratio},kind){
+let isClear=kind==="clear",runs=this.runs.filter(({clear})=>clear===isClear);if(!runs.length)return;let{header,graphics}=this,
+{geometry}=header,gl=graphics.context,[faces,pieces]=this.programs,drawn=this.drawn??=this.make(),matrix=projection(geometry,
+camera,anchor),[x,y,z,w]=camera.eye,eye=toFrame(geometry.frame,subtract2([x,y,z],scale2(geometry.center,w)));isClear&&(gl.
+enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),gl.depthMask(!1)),graphics.programs.
+use(faces,{u_matrix:matrix,u_anchor:anchor,u_eye:[...subtract2(eye,scale2(anchor,w)),w],...lightUniforms(header,camera)}),
+gl.bindVertexArray(drawn.faces),gl.enable(gl.POLYGON_OFFSET_FILL),gl.polygonOffset(BEHIND[1],BEHIND[1]);for(let{faces:[first,
+count2],ambient,diffuse}of runs)count2&&(graphics.programs.use(faces,{u_ambient:ambient,u_diffuse:diffuse}),gl.drawElements(
+gl.TRIANGLES,3*count2,gl.UNSIGNED_INT,12*first));gl.disable(gl.POLYGON_OFFSET_FILL);let around2={u_matrix:matrix,u_anchor:anchor,
+u_picture:[width,height],u_horizon:[0,0,0,1]};graphics.programs.use(pieces,around2),gl.bindVertexArray(drawn.pieces);for(let{
+pieces:[first,count2],width:thickness}of runs)if(count2){graphics.programs.use(pieces,{u_width:thickness*ratio});for(let[
+buffer,size,type,bytes,at]of[[drawn.ends,3,gl.FLOAT,ENDS_BYTES,0],[drawn.colours,4,gl.UNSIGNED_BYTE,COLOURS_BYTES,2]]){gl.
+bindBuffer(gl.ARRAY_BUFFER,buffer);for(let end of[0,1])gl.vertexAttribPointer(at+end,size,type,size===4,bytes,bytes*(first+
+end/2))}gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count2)}gl.bindVertexArray(null),gl.depthMask(!0),gl.disable(gl.BLEND)}hide(matrix,anchor){
+let{runs,drawn,graphics}=this;if(!runs.length||!drawn)return;let gl=graphics.context;graphics.programs.use(this.programs[2],
+{u_matrix:matrix,u_anchor:anchor}),gl.bindVertexArray(drawn.faces);for(let{faces:[first,count2],clear}of runs)clear||gl.
+drawElements(gl.TRIANGLES,3*count2,gl.UNSIGNED_INT,12*first);gl.bindVertexArray(null)}drawLabels(pen,{camera,anchor,width,
+height,ratio}){let{geometry}=this.header,m=projection(geometry,camera,anchor);for(let{text,position,size,color,plate}of this.
+labels){let p=subtract2(toFrame(geometry.frame,subtract2(position,geometry.center)),anchor),[x,y,,w]=[0,1,2,3].map(k=>m[k]*
+p[0]+m[4+k]*p[1]+m[8+k]*p[2]+m[12+k]);if(w<=0)continue;let[left,bottom]=[(.5+.5*x/w)*width,(.5-.5*y/w)*height],letters=size*
+ratio,margin=PLATE_MARGIN*letters;pen.font=`600 ${letters}px system-ui, sans-serif`,pen.textBaseline="middle";let[wide,high]=[
+pen.measureText(text).width+2*margin,letters+2*margin];pen.fillStyle=css(plate),pen.beginPath(),pen.roundRect(left,bottom-
+high,wide,high,margin),pen.fill(),pen.fillStyle=css(color),pen.fillText(text,left+margin,bottom-.5*high)}}make(){let{graphics,
+parts}=this,gl=graphics.context,[points,normals,colours,corners,pieces]=BODY_PARTS.map(name=>parts.get(name)?.data??[]),
+array=()=>{let made=graphics.counted(gl.createVertexArray());return gl.bindVertexArray(made),made},buffer=(data,target=gl.
+ARRAY_BUFFER)=>{let made=graphics.counted(gl.createBuffer());return gl.bindBuffer(target,made),gl.bufferData(target,data,
+gl.STATIC_DRAW),made},faces=array(),buffers=[[points,3,gl.FLOAT],[normals,3,gl.BYTE],[colours,4,gl.UNSIGNED_BYTE]].map(([
+data,size,type],n)=>{let made=buffer(data);return gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,type,type!==
+gl.FLOAT,0,0),made});buffers.push(buffer(corners,gl.ELEMENT_ARRAY_BUFFER));let lines=array(),ends=buffer(atEnds(points,pieces,
+3)),paints=buffer(atEnds(colours,pieces,4));for(let n=0;n<4;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(n,
+1);return gl.bindVertexArray(null),{faces,pieces:lines,ends,colours:paints,buffers:[...buffers,ends,paints]}}};function css([
+r,g,b,opacity=1]){return`rgb(${[r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var PLACE2=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
@@ -1345,11 +1394,12 @@ Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coar
 n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,
 values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
-alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;anchor=[
+alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;bodies;anchor=[
 0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts){
-this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts)}missing(before,after){
-let{geometry,slices,scalars,paper,pyramid}=this.header,{trace}=slices,names=["mesh",...trace?.parts??["position",...geometry.
-planar?[]:["normal"]]];pyramid&&names.push("places"),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
+this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),this.bodies=
+new Bodies(graphics,header,parts)}missing(before,after){let{geometry,slices,scalars,paper,pyramid}=this.header,{trace}=slices,
+names=["mesh",...trace?.parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&names.push("places"),this.header.
+bodies?.runs.length&&names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
 [before,after]))trace?names.push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===
 2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cma\
 p"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(
@@ -1376,39 +1426,39 @@ missing(steps[0],steps[steps.length-1]).length&&(!this.header.slices.trace||this
 tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.
 parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,
 step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=this.drawn=null);let sliced=["slices","extra","fl\
-ow"].includes(kind);!sliced&&kind!=="scalars"&&this.earth.forget(name);for(let user of sliced?[`slices/${step}`]:USERS[kind]??
-[])this.drop(user);SOURCES.includes(kind)&&this.dropSlices(NaN,NaN),this.drop("array")}drop(name){let resource=this.resources.
-get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.
-object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);
-this.stopTracing(),this.earth.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(name)?this.part(name).
-digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){let own=this.
-resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?
-graphics.common.get(whole):void 0,object=shared2?.object??graphics.counted(make()),resource=shared2??{kind,object,count:0,
-key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared2||(resource.count=fill(object)||0),
-whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
-let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
-target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
-fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.
-meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape:shape2,periodic}=geometry,parts={blocks:this.
-part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape:shape2,periodic,...parts},
-mesh)}cornersAt(place){let{triangles,shape:shape2}=this.header.geometry;return triangles?cornersOf(this.part("triangles").
-data,place):cornersAt(shape2,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
-return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String(
-[drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.
-every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.header;return slices.trace?
-[...this.resources.keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.
-columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,
-steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==
-this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=
-anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("\
-array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,scalars,paper}=this.
-header,{shape:shape2,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
-key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape2,
-[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
-null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("p\
-osition").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(
-nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.map(
-name=>this.part(name).data);return vertices(shares(steps,scalars,shape2[0]*shape2[1]),2)},colour=key([...new Set(painted)],
+ow"].includes(kind);!sliced&&kind!=="scalars"&&this.earth.forget(name),BODY_PARTS.includes(kind)&&this.bodies.dispose();
+for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);SOURCES.includes(kind)&&this.dropSlices(NaN,NaN),
+this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.users-=
+1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){
+for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.dispose(),this.bodies.dispose()}key(names,...rest){
+let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify(
+[digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,
+whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?graphics.common.get(whole):void 0,object=shared2?.object??graphics.
+counted(make()),resource=shared2??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,
+resource),shared2||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
+let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
+bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
+take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.
+header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape:shape2,
+periodic}=geometry,parts={blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels(
+{shape:shape2,periodic,...parts},mesh)}cornersAt(place){let{triangles,shape:shape2}=this.header.geometry;return triangles?
+cornersOf(this.part("triangles").data,place):cornersAt(shape2,place)}levels(sight){return{levels:this.mesh().levels(sight),
+shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;
+drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop(
+"array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.
+header;return slices.trace?[...this.resources.keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.
+count*geometry.rows.size*geometry.columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){
+let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","arra\
+y"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.
+scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();
+gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,
+{geometry,scalars,paper}=this.header,{shape:shape2,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,
+joins:new Int8Array},key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,
+joins),drawn=key(["cells","mesh","blocks"],shape2,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.
+triangles?this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
+positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
+vertexNormals(nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
+map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape2[0]*shape2[1]),2)},colour=key([...new Set(painted)],
 shape2,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape2,rows,columns,corners?.length]),place=()=>corners?
 vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
 Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
@@ -1473,31 +1523,31 @@ root.header.scalars.name}`}dispose(){this.isOver=!0;for(let name of[...this.tile
 let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.name==="mes\
 h"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.
 get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().
-decode(part.data));tile.scene?.dispose(),tile.ranges=own?.ranges,tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null},
-tile.parts),this.giveMap(tile),this.giveLimits(tile)}else tile.scene?.forget(part.name);let{names,steps}=this.chosen;this.
-missing=this.missing.filter(missing=>!this.isHere(missing,steps));let shown=cover(this.chosen.choices,other=>this.isHere(
-other,steps));String([...shown.keys()])!==names&&this.host.refine()}recolour(colours={}){let{mesh,scalars}=this.root.header,
-{steps}=this.chosen;for(let tile of this.tiles.values()){let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.
-assign(header,{mesh:narrowed(mesh,tile.scalars,scalars)},colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);
-for(let name of["scalars","mesh"])scene.forget(name);if((steps.length?scene.scalarParts(steps[0],steps[steps.length-1]):
-[]).every(name=>parts.has(name))&&(scalars.log===tile.scalars.log||scalars.name===null))continue;let others=[...parts.keys()].
-filter(name=>name.startsWith("scalars/"));for(let name of others)this.release(tile,name)}}emptyTile(){let{scalars}=this.
-root.header;return{parts:new Map,scene:void 0,scalars,used:this.count}}giveLimits(tile){let{mesh,scalars}=this.root.header;
-if(tile.scalars=scalars,!tile.scene)return;let range=tile.ranges?.[scalars.name??""],from=range&&{...scalars,low:range[0],
-high:range[1],log:!1};tile.scene.header.mesh=from?narrowed(this.limits,from,scalars):mesh}giveMap({scene,parts}){let map=this.
-root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange([before,after]){let{camera,canvas}=this.
-host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(camera,steps),layers=[{scene:this.root,
-key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.keys()){let scene=this.tiles.get(name)?.
-scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.sight(canvas.height),parts=layers.
-map(({scene,key},n)=>{let{levels,shape:shape2}=scene.levels(sight);for(let finer of shown.get(names[n])??[])this.hide(levels,
-shape2[1],finer,names[n]);let{pyramid}=this.root.header,[row2,column]=key.slice(1).map(at=>at*(pyramid?.tileBlocks??0)<<
-key[0]);return{step:key[0],row:row2,column,shape:shape2,levels}});return this.layers=layers,this.setTriangles(names,parts),
-layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row2,column,size]=this.pyramid?.finerPart(keyOf(finer),
-above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/columns);j+=1)levels.fill(-1,j*columns+column,j*columns+
-Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[names[n],levels]));if(drawn===
-this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,mesh,pyramid}=this.root.
-header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.triangles?[]:join(parts,blocks,
-geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){
+decode(part.data));tile.scene?.dispose(),tile.ranges=own?.ranges,own&&(own.geometry.reach=header.geometry.reach),tile.scene=
+own&&new Scene(graphics,{...header,...own,pyramid:null,bodies:null},tile.parts),this.giveMap(tile),this.giveLimits(tile)}else
+tile.scene?.forget(part.name);let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,
+steps));let shown=cover(this.chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.
+refine()}recolour(colours={}){let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.tiles.values()){
+let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.scalars,scalars)},
+colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);for(let name of["scalars","mesh"])scene.forget(name);if((steps.
+length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))&&(scalars.log===tile.scalars.log||
+scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.startsWith("scalars/"));for(let name of others)
+this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{parts:new Map,scene:void 0,scalars,used:this.count}}giveLimits(tile){
+let{mesh,scalars}=this.root.header;if(tile.scalars=scalars,!tile.scene)return;let range=tile.ranges?.[scalars.name??""],
+from=range&&{...scalars,low:range[0],high:range[1],log:!1};tile.scene.header.mesh=from?narrowed(this.limits,from,scalars):
+mesh}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange([
+before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(
+camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.
+keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.
+sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape:shape2}=scene.levels(sight);for(let finer of shown.
+get(names[n])??[])this.hide(levels,shape2[1],finer,names[n]);let{pyramid}=this.root.header,[row2,column]=key.slice(1).map(
+at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row:row2,column,shape:shape2,levels}});return this.layers=layers,
+this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row2,column,size]=this.
+pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/columns);j+=1)levels.fill(
+-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[
+names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,
+mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.triangles?
+[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){
 let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
 pyramid,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),planes:camera.
 planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.tiles.
@@ -1615,18 +1665,19 @@ return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1
 length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);
 this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)return;if(program.
 error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||
-!this.scene?.earth.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,shown,until);this.
-root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.scene.
-pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){
-let{player,options}=this,isMade=steps=>(this.next=steps,options.streamed?!0:!this.missing(steps).length&&!!this.scene?.make(
-steps,now));this.next=[],this.isPainted=!1,!(!player.playing||!player.advance(now,isMade))&&(player.varies?options.onTime?.(
-player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
-let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let anchor=scene?.
-anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},shown,density)}get canPick(){
-let{scene,graphics}=this;return!!scene&&!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){
-return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
-let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
-view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+!this.scene?.earth.isReady||!this.scene.bodies.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(
+program,shown,until);this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.
+panel.clear(),this.scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||
+this.request()}advance(now){let{player,options}=this,isMade=steps=>(this.next=steps,options.streamed?!0:!this.missing(steps).
+length&&!!this.scene?.make(steps,now));this.next=[],this.isPainted=!1,!(!player.playing||!player.advance(now,isMade))&&(player.
+varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(
+!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to l\
+ook at yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},
+shown,density)}get canPick(){let{scene,graphics}=this;return!!scene&&!graphics.isLost&&!!graphics.gl&&scene.pickers.every(
+({ready})=>ready)}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&
+groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.
+canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},
+x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
 controls",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
 height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.

@@ -29,7 +29,7 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex._version import __version__
-from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+from flowtex.options import Appearance, FieldOptions, ViewOptions, accepts_options
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text
 from flowtex.tiles import Pyramid
@@ -37,7 +37,7 @@ from flowtex.web import preview
 from flowtex.web.assets import asset, client_script
 from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
 from flowtex.web.source import TileSource
-from flowtex.web.view import WebView, web_views
+from flowtex.web.view import WebView, browser_options, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75
@@ -105,7 +105,8 @@ def export(
     Parameters
     ----------
     mesh
-        What ``plotter.flowtex.add`` takes.
+        What ``plotter.flowtex.add`` takes, or a plotter that has a flow texture: the page then
+        looks as the plotter does, with the other meshes and the labels on it.
     path
         File to write, such as ``"page.html"`` or ``"flow.mjs"``; one that is there already is
         replaced, once the new one is whole.
@@ -142,8 +143,8 @@ def export(
     >>> series = flowtex.examples.cylinder_series()
     >>> flowtex.export(series, "wake.html", steps=6, scalars="vorticity")  # doctest: +SKIP
     """
-    arguments = Options.split(**options)
-    views = web_views(mesh, arguments, steps=steps)
+    shown, arguments = browser_options(mesh, **options)
+    views = web_views(shown, arguments, steps=steps)
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
         return write_page(views, path, camera=camera, title=title, store=store, announce=announce)

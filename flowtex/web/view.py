@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
@@ -11,6 +12,7 @@ from flowtex._util.colours import colour_table, rgb
 from flowtex.field import FlowField
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
 from flowtex.tiles import Pyramid
@@ -21,7 +23,8 @@ class WebView:
 
     Of the time steps so many are handed over, evenly chosen with the first and the last among
     them; paths are traced through all of them all the same. ``own`` names the settings and what of
-    the appearance are this view's alone, where it stands beside another.
+    the appearance are this view's alone, where it stands beside another. ``bodies`` are drawn with
+    the flow.
     """
 
     def __init__(
@@ -31,8 +34,9 @@ class WebView:
         background: Any = "white",
         steps: int | None = None,
         own: Collection[str] = (),
+        bodies: Bodies | None = None,
     ) -> None:
-        self.scene = scene
+        self.scene, self._bodies = scene, bodies
         self.own_settings = tuple(name for name in own if name in TABLE)
         self.own_appearance = tuple(name for name in own if name not in TABLE)
         self._times = even_steps(len(scene.field.times), steps)
@@ -71,7 +75,7 @@ class WebView:
     def _data(self, scene: Scene, pyramid: Pyramid | None = None) -> ClientData:
         textures = scene.textures
         colours = colours_of(self.scene, textures.geometry.field, self._background)
-        return ClientData(textures, colours, self._times, pyramid, traces=True)
+        return ClientData(textures, colours, self._times, pyramid, traces=True, bodies=self._bodies)
 
     def show(self, field: FlowField) -> None:
         """Show another flow in the same way; raises what :meth:`Scene.showing` does."""
@@ -134,6 +138,20 @@ def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
     return tuple(choices)
 
 
+def browser_options(mesh: Any, **options: Any) -> tuple[Any, Options]:
+    """Return what is drawn, and the arguments sorted.
+
+    Of a PyVista plotter it is the first flow texture there, as it looks and with what stands beside
+    it; arguments that are given come before those.
+    """
+    pyvista = sys.modules.get("pyvista")
+    if pyvista is None or not isinstance(mesh, pyvista.BasePlotter):
+        return mesh, Options.split(**options)
+    field, look, bodies = mesh.flowtex.for_browser()
+    given = {name: value for name, value in options.items() if value is not None}
+    return field, replace(Options.split(**{**look, **given}), bodies=bodies)
+
+
 def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:
     """Return the view of a mesh or a field, and one beside it if ``options.view`` asks for it.
 
@@ -144,10 +162,10 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
     chosen = replace(options, field=type(options.field)())
     background, changes = options.view.background, options.view.beside
     first = Scene.from_options(field, chosen)
-    views = [WebView(first, background=background, steps=steps)]
+    common: dict[str, Any] = {"background": background, "steps": steps, "bodies": options.bodies}
+    views = [WebView(first, **common)]
     if changes is not None:
-        second = first.beside(changes, chosen)
-        views.append(WebView(second, background=background, steps=steps, own=changes))
+        views.append(WebView(first.beside(changes, chosen), own=changes, **common))
     return tuple(views)
 
 

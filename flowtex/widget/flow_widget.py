@@ -20,7 +20,6 @@ from flowtex.options import (
     Appearance,
     AppearanceAttributes,
     FieldOptions,
-    Options,
     ViewOptions,
     accepts_options,
 )
@@ -29,7 +28,7 @@ from flowtex.settings import TABLE
 from flowtex.textures.images import load_image
 from flowtex.web.assets import client_module
 from flowtex.web.export import PREVIEW, page_text, write_page
-from flowtex.web.view import web_views
+from flowtex.web.view import browser_options, web_views
 from flowtex.widget.display import Displayed
 from flowtex.widget.host import Host
 from flowtex.widget.panel import make_panel
@@ -113,7 +112,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         Parameters
         ----------
         mesh
-            What ``plotter.flowtex.add`` takes.
+            What ``plotter.flowtex.add`` takes, or a plotter that has a flow texture: the widget
+            then looks as the plotter does, with the other meshes and the labels on it.
         size, bar
             As the attributes of these names.
         {options}
@@ -125,8 +125,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         FieldError, SettingsError
             When the mesh or a setting does not fit.
         """
-        arguments = Options.split(vectors=vectors, scalars=scalars, cmap=cmap, **options)
-        views = web_views(mesh, arguments)
+        chosen = {"vectors": vectors, "scalars": scalars, "cmap": cmap}
+        shown, arguments = browser_options(mesh, **chosen, **options)
+        views = web_views(shown, arguments)
         self._state_lock = threading.RLock()
         self._frame: bytes | None = None
         self._ends: list[Callable[[], None]] = []

@@ -4,6 +4,9 @@
 in vec2 flowtexPlace;
 in float flowtexSize;
 in float flowtexSeen;
+#ifdef FLOWTEX_BODY
+in vec4 flowtexColourOut;
+#endif
 
 uniform float u_width;
 uniform vec4 u_lineColour;
@@ -16,6 +19,13 @@ void main()
     discard;
   float beyond = max(max(-flowtexPlace.x, flowtexPlace.x - flowtexSize), 0.0);
   float away = length(vec2(beyond, flowtexPlace.y));
+#ifdef FLOWTEX_BODY
+  // What lies behind must not be hidden by a pixel of which it is seen.
+  if (away > 0.5 * max(u_width, 1.0))
+    discard;
+  flowtexOut = flowtexColourOut;
+  return;
+#endif
   float share = clamp(0.5 * u_width + 0.5 - away, 0.0, min(u_width, 1.0)) * u_lineColour.a;
   flowtexOut = vec4(u_lineColour.rgb * share, share);
 }

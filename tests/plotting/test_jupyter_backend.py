@@ -67,13 +67,14 @@ def test_a_widget_looks_as_the_plotter(notebook: Any) -> None:
     widget.close()
 
 
-def test_what_it_leaves_out_is_named(notebook: Any) -> None:
+def test_what_stands_beside_the_flow_comes_along(notebook: Any) -> None:
     add(notebook)
     notebook.add_mesh(pv.Sphere(), name="ball")
-    hidden = notebook.add_mesh(pv.Cube(), name="box")
-    hidden.visibility = False
-    with pytest.warns(UserWarning, match=r"leaves out: 'ball'; another jupyter_backend"):
+    notebook.add_text("words", name="words")
+    with pytest.warns(UserWarning, match=r"left out: 'words' \(vtk.*Another jupyter_backend"):
         widget = shown(notebook, jupyter_backend="flowtex")
+    [faces] = [run["faces"] for run in widget._header["bodies"]["runs"] if run["faces"][1]]
+    assert faces == [0, 1680]
     widget.close()
 
 

@@ -30,6 +30,7 @@ from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.triangle_blocks import mesh_levels_of
 from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl import velocity
+from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts, plain_list
@@ -46,6 +47,8 @@ SHADERS = {
     "lineFragment": "webgl2/line_fragment.glsl",
     "groundVertex": "webgl2/ground_vertex.glsl",
     "groundFragment": "webgl2/ground_fragment.glsl",
+    "bodyVertex": "webgl2/body_vertex.glsl",
+    "bodyFragment": "webgl2/body_fragment.glsl",
     "fullVertex": "webgl2/full_vertex.glsl",
     "probe": "webgl2/probe.glsl",
 }
@@ -137,7 +140,7 @@ class ClientData:
     ``chosen`` are the numbers of the destination times that are handed over, increasing; all are
     where it is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and
     ``finest`` is the finest level of those that are handed over. Where the client ``traces``, it is
-    handed the velocity in place of slices, if it can trace them.
+    handed the velocity in place of slices, if it can trace them. ``bodies`` stand beside it.
     """
 
     textures: TextureSet
@@ -146,6 +149,7 @@ class ClientData:
     pyramid: Pyramid | None = None
     finest: int = 0
     traces: bool = False
+    bodies: Bodies | None = None
 
     @cached_property
     def traced(self) -> bool:
@@ -247,6 +251,7 @@ class ClientData:
             "constants": client_constants(),
             "mesh": mesh_limits(),
             "earth": self._earth(),
+            "bodies": None if self.bodies is None else self.bodies.header(),
             "pyramid": None if self.pyramid is None else _pyramid(self.pyramid, self.finest),
             "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
             "table": _table(),
@@ -278,6 +283,8 @@ class ClientData:
         if self.textures.paper is not None:
             parts["step"] = half(self.textures.paper.step)
             parts["noise"] = half(self.textures.paper.noise)
+        if self.bodies is not None:
+            parts |= self.bodies.parts(geometry)
         land, tiled = colours.land is not None, self.pyramid is not None
         return {**parts, **earth_parts(geometry, has_land=land, tiled=tiled)}
 
@@ -404,6 +411,7 @@ class ClientData:
             "extent": float(geometry.extent),
             "center": plain_list(geometry.center),
             "frame": plain_list(geometry.frame),
+            "reach": 0.0 if self.bodies is None else self.bodies.reach(geometry),
         }
 
     def _speed(self) -> dict[str, Any]:

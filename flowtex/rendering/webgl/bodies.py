@@ -1,0 +1,139 @@
+"""What stands beside a flow: meshes, lines, points and labels in colours of their own.
+
+A client draws them with the flow, and hides each behind what lies before it. All meshes are in a
+few parts together; the header tells which triangles and pieces of lines are whose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from flowtex._util.array_types import Bytes, Floats, Indices
+from flowtex.rendering.webgl.protocol import Header, Parts
+from flowtex.textures.geometry import DrawnSurface
+
+#: Vertices of all meshes together, and labels, that a browser is handed at most.
+MOST_VERTICES, MOST_LABELS = 500_000, 500
+#: Greatest component of a normal in eight bits.
+NORMAL_MAX = 127
+#: By how much the depths that are seen reach beyond the farthest vertex.
+BEYOND = 1.01
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A mesh in colours of its own.
+
+    Attributes
+    ----------
+    points
+        Vertices in the mesh's own coordinates, (N, 3).
+    colours
+        Red, green, blue and opacity of each, (N, 4) uint8.
+    faces
+        Corners of triangles, (M, 3).
+    pieces
+        Ends of pieces of lines, (L, 2); both are the same vertex where it is a point.
+    normals
+        Unit normals of smooth faces, (N, 3); those of flat ones are found when they are drawn.
+    width
+        Width of lines and points in pixels.
+    ambient, diffuse
+        How much light there is everywhere, and how much faces have of the lights.
+    """
+
+    points: Floats
+    colours: Bytes
+    faces: Indices
+    pieces: Indices
+    normals: Floats | None = None
+    width: float = 1.0
+    ambient: float = 1.0
+    diffuse: float = 0.0
+
+
+@dataclass(frozen=True)
+class Label:
+    """A text at a point, in pixels of the page, on a plate unless its opacity is 0."""
+
+    text: str
+    position: tuple[float, ...]
+    size: float
+    color: tuple[float, ...]
+    plate: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Light:
+    """A distant light: the unit vector towards it, and red, green and blue.
+
+    One that ``turns`` with the camera lies to its right, upwards, and towards the eye.
+    """
+
+    way: tuple[float, ...]
+    color: tuple[float, ...]
+    turns: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """All that stands beside a flow."""
+
+    meshes: tuple[Body, ...] = ()
+    labels: tuple[Label, ...] = ()
+    lights: tuple[Light, ...] = ()
+
+    def header(self) -> Header:
+        """Return what of the header tells of them."""
+        face = piece = 0
+        runs = []
+        for body in self.meshes:
+            runs.append(
+                {
+                    "faces": [face, len(body.faces)],
+                    "pieces": [piece, len(body.pieces)],
+                    "clear": bool((body.colours[:, 3] < 255).any()),
+                    "width": float(body.width),
+                    "ambient": float(body.ambient),
+                    "diffuse": float(body.diffuse),
+                }
+            )
+            face, piece = face + len(body.faces), piece + len(body.pieces)
+        return {
+            "runs": runs,
+            "labels": [asdict(label) for label in self.labels],
+            "lights": [asdict(light) for light in self.lights],
+        }
+
+    def reach(self, geometry: DrawnSurface) -> float:
+        """Distance of the farthest vertex from the middle of a surface."""
+        away = (np.linalg.norm(b.points - geometry.center, axis=1).max() for b in self.meshes)
+        return BEYOND * float(max(away, default=0.0))
+
+    def parts(self, geometry: DrawnSurface) -> Parts:
+        """Return the arrays, in a surface's own frame."""
+        if not self.meshes:
+            return {}
+        points = np.concatenate([body.points for body in self.meshes])
+        normals = np.concatenate(
+            [np.zeros_like(b.points) if b.normals is None else b.normals for b in self.meshes]
+        )
+        ends = np.cumsum([len(body.points) for body in self.meshes])
+        faces, pieces = (
+            np.concatenate(
+                [
+                    n - len(body.points) + getattr(body, kind)
+                    for n, body in zip(ends, self.meshes, strict=True)
+                ]
+            )
+            for kind in ("faces", "pieces")
+        )
+        return {
+            "bodyPoints": ((points - geometry.center) @ geometry.frame.T).astype("<f4"),
+            "bodyNormals": np.rint(NORMAL_MAX * normals @ geometry.frame.T).astype(np.int8),
+            "bodyColours": np.concatenate([body.colours for body in self.meshes]),
+            "bodyFaces": faces.astype("<u4"),
+            "bodyPieces": pieces.astype("<u4"),
+        }
