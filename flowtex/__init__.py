@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from flowtex import examples, pyramid
     from flowtex.camera import Camera
     from flowtex.display import show
+    from flowtex.field.formula.make import formula
     from flowtex.offscreen.figure import axes, extent
     from flowtex.offscreen.movie import movie
     from flowtex.offscreen.render import render
@@ -45,6 +46,7 @@ __all__ = [
     "examples",
     "export",
     "extent",
+    "formula",
     "movie",
     "pyramid",
     "render",
@@ -63,6 +65,7 @@ _LAZY = {
     "critical_points": "trace.structure",
     "export": "web.export",
     "extent": "offscreen.figure",
+    "formula": "field.formula.make",
     "movie": "offscreen.movie",
     "render": "offscreen.render",
     "separatrices": "trace.structure",

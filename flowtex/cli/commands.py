@@ -21,6 +21,7 @@ from cyclopts import App, CycloptsError, UnknownOptionError
 from flowtex._util.ending import Ended, ended_by_signals
 from flowtex.cli import page
 from flowtex.cli.console import complain
+from flowtex.cli.formula import formula
 from flowtex.cli.info import info
 from flowtex.cli.options import UsageError
 from flowtex.cli.pyramid import pyramid
@@ -42,7 +43,7 @@ app.command("flowtex.cli.show:demo", help="Show the examples on a page in the br
 app.command(
     "flowtex.cli.show:show", help="Show files, or a folder of them, in a window or on a page."
 )
-for _command in (render, movie, export, info, pyramid, serve):
+for _command in (render, movie, export, formula, info, pyramid, serve):
     app.command(_command)
 
 

@@ -29,6 +29,7 @@ from flowtex.field.derived import (
     followed_steps,
     speed_unit,
 )
+from flowtex.field.formula import Formula
 from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
@@ -99,6 +100,8 @@ class FlowField(FieldConstructors):
         How positions follow from longitude and latitude, for a field of the Earth.
     triangles
         Numbers of the nodes at the corners of triangles, (M, 3); ``None`` on a structured surface.
+    formula
+        What the field was computed from, where :func:`flowtex.formula` made it.
 
     Examples
     --------
@@ -126,6 +129,7 @@ class FlowField(FieldConstructors):
     start: Any = None
     projection: Projection | None = None
     triangles: Indices | None = None
+    formula: Formula | None = None
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:

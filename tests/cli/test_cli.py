@@ -521,3 +521,24 @@ def test_data_of_the_earth_are_told_and_drawn(run: Run, tmp_path: Path) -> None:
     ):
         code, _, err = run("render", *files, "-o", picture, *flags, "--size", "80x60")
         assert code != 0 and words in err, err
+
+
+def test_a_formula_is_drawn_and_its_errors_speak_of_flags(run: Run, tmp_path: Path) -> None:
+    picture = tmp_path / "pendulum.png"
+    words = ("y", "-sin(x) - b*y", "--x", "-7,7", "--y", "-4,4", "-o", picture)
+    code, _, err = run("formula", *words, "--resolution", 17)
+    assert code == 2 and "b is not known, only x, y; a parameter gets --set b=1" in err
+    small = ("--resolution", 17, "--size", "80x60", "--samples", 3)
+    code, out, err = run("formula", *words, "--set", "b=0.2,0,1", *small)
+    assert code == 0 and not err and "17 ×" in out
+    assert roughness(grey(picture))[0] > 1
+    for wrong, told in {
+        ("--x", "7,-7"): "--x is (7.0, -7.0); expected two numbers, the lower one first",
+        ("--x", "7"): "--x is '7'; expected 2 numbers with commas between",
+        ("--set", "b"): "--set is 'b'; expected a parameter and its value, as b=0.2",
+        ("--set", "b=2,3,4"): "--set b is (2.0, 3.0, 4.0)",
+    }.items():
+        code, _, err = run("formula", "y", "x", *wrong, "-o", picture)
+        assert code == 2 and told in err
+    code, _, err = run("formula", "y", "t", "-o", picture)
+    assert code == 2 and "t is the time; give --times 0,10,41" in err

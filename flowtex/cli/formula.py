@@ -1,0 +1,146 @@
+"""``flowtex formula``: a flow that is typed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from cyclopts import Parameter
+
+from flowtex._util.written import UnreadableError, numbers
+from flowtex.cli.checks import check_page_file, check_picture_file, drawing, writing
+from flowtex.cli.console import describe, say
+from flowtex.cli.options import (
+    FLAT,
+    FLOW,
+    FrameFlags,
+    LookFlags,
+    SettingFlags,
+    UsageError,
+    pixels,
+)
+from flowtex.errors import FieldError
+from flowtex.field import FlowField
+
+#: What errors say in Python, and in a shell.
+_IN_SHELL = (
+    (r"a parameter gets (\w+)=1", r"a parameter gets --set \1=1"),
+    (r"times=, such as times=np\.linspace\(0, 10, 41\)", "--times 0,10,41"),
+    (r"^(x|y|u|v|surface|times|resolution) is", r"--\1 is"),
+    (r"^(\w+) is (.*value, low)", r"--set \1 is \2"),
+    (r"such as \(([^)]*), ([^),]*)\)", r"such as \1,\2"),
+)
+
+
+def _flag(text: str) -> Any:
+    return Parameter(group=FLOW, help=text, allow_leading_hyphen=True)
+
+
+_RANGE = "Ends of the coordinate, as -7,7."
+
+
+def formula(
+    *expressions: Annotated[
+        str,
+        Parameter(
+            allow_leading_hyphen=True,
+            help="The rates of x and y, such as y and -sin(x); on a surface those of u and v, or "
+            "the velocity along x, y and z. Or the name of a known formula, such as pendulum.",
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        Parameter(name=["--output", "-o"], help="Page (.html) or picture to write."),
+    ] = None,
+    x: Annotated[str | None, _flag(_RANGE)] = None,
+    y: Annotated[str | None, _flag(_RANGE)] = None,
+    u: Annotated[str | None, _flag(_RANGE)] = None,
+    v: Annotated[str | None, _flag(_RANGE)] = None,
+    set: Annotated[
+        tuple[str, ...],
+        Parameter(
+            group=FLOW,
+            negative=(),
+            help="A parameter: b=0.2, or with the ends of its slider b=0.2,0,1.",
+        ),
+    ] = (),
+    surface: Annotated[
+        str | None,
+        _flag("sphere, torus, cylinder, or x, y and z of u and v with semicolons between."),
+    ] = None,
+    times: Annotated[str | None, _flag("First and last time, and their number: 0,10,41.")] = None,
+    resolution: Annotated[
+        int | None, Parameter(group=FLOW, help="Nodes along the longer side.")
+    ] = None,
+    look: Annotated[LookFlags | None, FLAT] = None,
+    frame: Annotated[FrameFlags | None, FLAT] = None,
+    settings: Annotated[SettingFlags | None, FLAT] = None,
+) -> int:
+    """Draw a flow from a formula: as a page, as a picture, or in a window."""
+    options, frame = drawing(look, settings), frame or FrameFlags()
+    is_page = output is not None and output.suffix.lower() in (".html", ".htm")
+    if output is not None:
+        (check_page_file if is_page else check_picture_file)(output)
+    given = {"x": x, "y": y, "u": u, "v": v}
+    choice: dict[str, Any] = {n: _numbers(n, text, 2) for n, text in given.items() if text}
+    for text in set:
+        name, equals, value = text.partition("=")
+        if not equals or not name.isidentifier() or name in ("surface", "times", *given):
+            msg = f"--set is {text!r}; expected a parameter and its value, as b=0.2"
+            raise UsageError(msg)
+        ends = _numbers(f"set {name}", value, 1, 3)
+        choice[name] = ends if len(ends) > 1 else ends[0]
+    if surface:
+        choice["surface"] = tuple(surface.split(";")) if ";" in surface else surface
+    if times:
+        first, last, count = _numbers("times", times, 3)
+        choice["times"] = np.linspace(first, last, int(min(max(count, 1), 10_000)))
+    if resolution is not None:
+        choice["resolution"] = resolution
+    field = _made(expressions, choice)
+    if output is None:
+        from flowtex import show
+
+        show(field, size=pixels(frame.size), **options)
+        return 0
+    if is_page:
+        from flowtex import export
+
+        with writing(output):
+            size = export(field, output, **options).nbytes
+        told = f"{size / 1e6:.2f} MB"
+    else:
+        from PIL import Image
+
+        from flowtex import render
+        from flowtex._util.whole_file import whole_file
+
+        picture = render(field, **options, **{**vars(frame), "size": pixels(frame.size)})
+        with writing(output), whole_file(output) as file:
+            Image.fromarray(picture).save(file, Image.EXTENSION[output.suffix.lower()])
+        told = frame.size
+    say((str(output), "bold"), f"  {describe(field)}  ", (told, "dim"))
+    return 0
+
+
+def _numbers(name: str, text: str, *counts: int) -> tuple[float, ...]:
+    expected = f"{' or '.join(map(str, counts))} numbers with commas between"
+    try:
+        return numbers(*counts, expected=expected)(text)
+    except UnreadableError as error:
+        msg = f"--{name} is {text!r}; expected {error}"
+        raise UsageError(msg) from error
+
+
+def _made(expressions: tuple[str, ...], choice: dict[str, Any]) -> FlowField:
+    from flowtex.field.formula.make import formula as make
+
+    try:
+        return make(*expressions, **choice)
+    except FieldError as error:
+        text = str(error)
+        for before, after in _IN_SHELL:
+            text = re.sub(before, after, text)
+        raise UsageError(text) from error

@@ -1,0 +1,9 @@
+"""Flows from formulas: what is read of them, and the fields that they make."""
+
+from __future__ import annotations
+
+from flowtex.field.formula.flow import Formula, Parameter
+from flowtex.field.formula.grammar import FormulaError
+from flowtex.field.formula.known import KNOWN
+
+__all__ = ["KNOWN", "Formula", "FormulaError", "Parameter"]

@@ -1,0 +1,261 @@
+"""What a formula says, and its values at nodes."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.arguments import is_number, near_names
+from flowtex._util.array_types import Floats
+from flowtex.errors import FieldError
+from flowtex.field.formula.grammar import FormulaError, Tree, evaluate, parse
+from flowtex.field.formula.symbols import is_symbolic, tree_of
+
+RANGE = (-5.0, 5.0)
+#: Greatest speed and length that are known; what is beyond is blanked.
+MOST = 1e30
+#: Share of a range by which tangents look to both sides.
+TANGENT_SHARE = 1e-5
+#: Names that positions and the time have.
+VARIABLES = ("x", "y", "z", "u", "v", "t")
+_TURN = (-np.pi, np.pi)
+#: Surfaces by name: x, y and z, and the ranges of u and v.
+SURFACES: Mapping[str, tuple[tuple[str, str, str], Mapping[str, tuple[float, float]]]] = {
+    "sphere": (
+        ("cos(v)*cos(u)", "cos(v)*sin(u)", "sin(v)"),
+        {"u": _TURN, "v": (-np.pi / 2, np.pi / 2)},
+    ),
+    "torus": (
+        ("(1 + 0.4*cos(v))*cos(u)", "(1 + 0.4*cos(v))*sin(u)", "0.4*sin(v)"),
+        {"u": _TURN, "v": _TURN},
+    ),
+    "cylinder": (("cos(u)", "sin(u)", "v"), {"u": _TURN, "v": (-1.5, 1.5)}),
+}
+COMPONENTS = 3
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """The value of a parameter, and the ends of its slider.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.formula("y", "-x - b*y", b=0.2).formula.parameters["b"]
+    Parameter(value=0.2, low=0.0, high=0.4)
+    """
+
+    value: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, name: str, given: Any) -> Parameter:
+        """Return a parameter of a value, or of value, low and high."""
+        try:
+            value, *ends = map(float, (given,) if is_number(given) else given)
+            low, high = ends or (sorted((0.0, 2 * value)) if value else (-1.0, 1.0))
+        except (TypeError, ValueError, OverflowError):
+            value = low = high = np.nan
+        if not (low <= value <= high and low < high and np.isfinite(high - low)):
+            msg = (
+                f"{name} is {given!r}; expected a number, or value, low and high of a slider, such "
+                "as (0.2, 0, 1)"
+            )
+            raise FieldError(msg)
+        return cls(value, float(low), float(high))
+
+
+@dataclass(frozen=True)
+class Expression:
+    """One expression: its text, its tree where it has one, and what gives its values."""
+
+    text: str
+    tree: Tree | None
+    values: Callable[[Mapping[str, Any]], Any]
+
+    @classmethod
+    def of(cls, given: Any, names: tuple[str, ...]) -> Expression:
+        """Read a text, a number, an expression of sympy's or a function of some of the names."""
+        if isinstance(given, str) or is_number(given):
+            tree = parse(str(given), names)
+        elif is_symbolic(given):
+            tree = tree_of(given, names)
+        elif callable(given):
+            return cls._function(given, names)
+        else:
+            msg = f"an expression is {given!r}; expected a text, such as '-sin(x)', or a function"
+            raise FormulaError(msg)
+        return cls(str(given), tree, lambda values: evaluate(tree, values))
+
+    @classmethod
+    def _function(cls, given: Callable[..., Any], names: tuple[str, ...]) -> Expression:
+        text = getattr(given, "__name__", "function")
+        try:
+            wanted = tuple(inspect.signature(given).parameters)
+        except (TypeError, ValueError):
+            wanted = ("?",)
+        for name in wanted:
+            if name not in names:
+                msg = f"the function {text} takes {name}; {near_names(name, names)}"
+                raise FormulaError(msg)
+        return cls(text, None, lambda values: given(**{name: values[name] for name in wanted}))
+
+
+@dataclass(frozen=True, eq=False)
+class Formula:
+    """What a field was computed from.
+
+    Attributes
+    ----------
+    expressions
+        The rates of the two coordinates, or the three components of the velocity in space.
+    ranges
+        Ends of the two coordinates: of ``x`` and ``y``, on a surface of ``u`` and ``v``.
+    surface
+        The three expressions of a surface in space; empty on the plane.
+    parameters
+        By name.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> formula = flowtex.formula("y", "-sin(x)", x=(-7, 7)).formula
+    >>> formula.texts, formula.ranges["x"]
+    (('y', '-sin(x)'), (-7.0, 7.0))
+    """
+
+    expressions: tuple[Expression, ...]
+    ranges: Mapping[str, tuple[float, float]]
+    surface: tuple[Expression, ...]
+    parameters: Mapping[str, Parameter]
+
+    @classmethod
+    def of(
+        cls,
+        expressions: tuple[Any, ...],
+        surface: Any,
+        ranges: Mapping[str, Any],
+        parameters: Mapping[str, Any],
+        *,
+        timed: bool,
+    ) -> Formula:
+        """Read the arguments of :func:`flowtex.formula`; a FieldError tells what is wrong."""
+        places, own = _surface(surface)
+        if len(expressions) not in ((2, 3) if places else (2,)):
+            expected = (
+                "two, the rates of u and v, or three, the velocity along x, y and z"
+                if places
+                else "two, the rates of x and y"
+            )
+            msg = f"there are {len(expressions)} expressions; expected {expected}"
+            raise FieldError(msg)
+        for name, given in ranges.items():
+            if given is not None and name not in own:
+                msg = f"{name} has a range; the coordinates here are {' and '.join(own)}"
+                raise FieldError(msg)
+        if taken := [name for name in parameters if name in VARIABLES]:
+            msg = f"{taken[0]} is a coordinate or the time; give the parameter another name"
+            raise FieldError(msg)
+        known = {name: Parameter.of(name, given) for name, given in parameters.items()}
+        names = (*own, *known)
+        values = (*names, *("xyz" if places else ""), *("t" if timed else ""))
+        return cls(
+            tuple(Expression.of(each, values) for each in expressions),
+            {name: _range(name, ranges[name] or own[name]) for name in own},
+            tuple(Expression.of(each, names) for each in places),
+            known,
+        )
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The expressions as they were written."""
+        return tuple(each.text for each in self.expressions)
+
+    @property
+    def title(self) -> str:
+        """The expressions as one line."""
+        if len(self.texts) == COMPONENTS:
+            return f"({', '.join(self.texts)})"
+        return ", ".join(f"{n}' = {text}" for n, text in zip(self.ranges, self.texts, strict=True))
+
+    def coordinates(self, shape: tuple[int, int]) -> tuple[Floats, Floats]:
+        """Return the coordinates of nodes (J, I), evenly spaced."""
+        lines = [
+            np.linspace(*ends, n) for ends, n in zip(self.ranges.values(), shape[::-1], strict=True)
+        ]
+        u, v = np.meshgrid(*lines)
+        return u, v
+
+    def points(self, u: Floats, v: Floats) -> Floats:
+        """Return the positions (J, I, 2 or 3) of coordinates (J, I)."""
+        if not self.surface:
+            return np.stack([u, v], axis=-1)
+        return _values(self.surface, self._named(u, v))
+
+    def velocity(self, u: Floats, v: Floats, time: float) -> Floats:
+        """Return the velocity (J, I, 2 or 3) at coordinates (J, I), NaN where there is none."""
+        values = self._named(u, v) | {"t": time}
+        if self.surface:
+            values |= dict(zip("xyz", np.moveaxis(self.points(u, v), -1, 0), strict=True))
+        rates = _values(self.expressions, values)
+        if not self.surface or len(self.expressions) == COMPONENTS:
+            return rates
+        along = np.zeros((*u.shape, COMPONENTS))
+        for k, (low, high) in enumerate(self.ranges.values()):
+            h = TANGENT_SHARE * (high - low)
+            du, dv = (h, 0.0) if k == 0 else (0.0, h)
+            tangent = (self.points(u + du, v + dv) - self.points(u - du, v - dv)) / (2 * h)
+            along += rates[..., k, None] * tangent
+        return along
+
+    def _named(self, u: Floats, v: Floats) -> dict[str, Any]:
+        numbers = {name: each.value for name, each in self.parameters.items()}
+        return numbers | dict(zip(self.ranges, (u, v), strict=True))
+
+
+def _values(expressions: tuple[Expression, ...], values: Mapping[str, Any]) -> Floats:
+    """Return the values of expressions at nodes, side by side; NaN where there is none."""
+    shape = next(np.shape(value) for value in values.values() if np.ndim(value))
+    result = np.empty((*shape, len(expressions)))
+    with np.errstate(all="ignore"):
+        for k, each in enumerate(expressions):
+            try:
+                result[..., k] = each.values(values)
+            except (TypeError, ValueError) as error:
+                msg = f"{each.text} gives no numbers at nodes of shape {shape}: {error}"
+                raise FormulaError(msg) from error
+        result[~(np.abs(result) < MOST)] = np.nan
+    return result
+
+
+def _surface(given: Any) -> tuple[tuple[Any, ...], Mapping[str, tuple[float, float]]]:
+    """Return the expressions of a surface, and its coordinates with their usual ranges."""
+    if given is None:
+        return (), {"x": RANGE, "y": RANGE}
+    if isinstance(given, str):
+        if given in SURFACES:
+            return SURFACES[given]
+        msg = f"surface is {given!r}; {near_names(given, SURFACES)}, or give three expressions"
+        raise FieldError(msg)
+    if not isinstance(given, (tuple, list)) or len(given) != COMPONENTS:
+        msg = (
+            f"surface is {given!r}; expected x, y and z of u and v, or one of {', '.join(SURFACES)}"
+        )
+        raise FieldError(msg)
+    return tuple(given), {"u": RANGE, "v": RANGE}
+
+
+def _range(name: str, given: Any) -> tuple[float, float]:
+    try:
+        low, high = map(float, given)
+    except (TypeError, ValueError, OverflowError):
+        low = high = np.nan
+    if not (low < high and abs(low) < MOST and abs(high) < MOST):
+        msg = f"{name} is {given!r}; expected two numbers, the lower one first, such as (-7, 7)"
+        raise FieldError(msg)
+    return low, high

@@ -1,0 +1,246 @@
+"""The language of formulas: tokens, a parser by binding powers, and values in NumPy.
+
+A formula becomes a tree of plain Python: a number, a name, or a tuple of an operation and what it
+is applied to, such as ``("+", "x", ("*", 2.0, ("sin", "y")))``. Nothing else leaves this grammar,
+and nothing in it is run as code. As JSON the tree goes to the browser, where
+``client/src/formula.ts`` computes its values alike.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping
+from functools import reduce
+from typing import Any, NoReturn
+
+import numpy as np
+
+from flowtex._util.arguments import near_names
+from flowtex.errors import FieldError
+
+Tree = float | str | tuple[Any, ...]
+
+#: Operations, each with how many values it takes; those with ``None`` take two or more.
+OPERATIONS: dict[str, tuple[Any, int | None]] = {
+    "+": (np.add, None),
+    "*": (np.multiply, None),
+    "/": (np.divide, 2),
+    "^": (np.power, 2),
+    "<": (lambda a, b: np.less(a, b) * 1.0, 2),
+    ">": (lambda a, b: np.greater(a, b) * 1.0, 2),
+    "<=": (lambda a, b: np.less_equal(a, b) * 1.0, 2),
+    ">=": (lambda a, b: np.greater_equal(a, b) * 1.0, 2),
+    "neg": (np.negative, 1),
+    "sin": (np.sin, 1),
+    "cos": (np.cos, 1),
+    "tan": (np.tan, 1),
+    "asin": (np.arcsin, 1),
+    "acos": (np.arccos, 1),
+    "atan": (np.arctan, 1),
+    "atan2": (np.arctan2, 2),
+    "sinh": (np.sinh, 1),
+    "cosh": (np.cosh, 1),
+    "tanh": (np.tanh, 1),
+    "exp": (np.exp, 1),
+    "log": (np.log, 1),
+    "ln": (np.log, 1),
+    "log2": (np.log2, 1),
+    "log10": (np.log10, 1),
+    "sqrt": (np.sqrt, 1),
+    "abs": (np.abs, 1),
+    "sign": (np.sign, 1),
+    "floor": (np.floor, 1),
+    "ceil": (np.ceil, 1),
+    "hypot": (np.hypot, 2),
+    "mod": (lambda a, b: a - b * np.floor(np.divide(a, b)), 2),
+    "min": (np.minimum, None),
+    "max": (np.maximum, None),
+    "where": (lambda a, b, c: np.where(a, b, c), 3),
+}
+FUNCTIONS = tuple(name for name in OPERATIONS if name.isalnum() and name != "neg")
+CONSTANTS = {"pi": np.pi, "e": np.e}
+
+#: How tightly operators bind what is on their right; a sign binds less than a power.
+BINDING = {
+    **dict.fromkeys(("<", ">", "<=", ">="), 1),
+    **{"+": 2, "-": 2, "*": 3, "/": 3, "^": 5, "**": 5},
+}
+SIGN_BINDING = 4
+#: Letters of a formula, and parts of it that lie in one another, at most.
+MOST_LETTERS, MOST_DEPTH = 2000, 60
+
+_TOKEN = re.compile(
+    r" *(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)"
+    r"|(?P<sign>\*\*|<=|>=|[-+*/^(),<>]))"
+)
+#: Signs as they are printed.
+_PRINTED = str.maketrans({"\u2212": "-", "\u00b7": "*", "\u00d7": "*"})
+
+
+class FormulaError(FieldError):
+    """A formula that cannot be read; the text points at the place.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.formula("y", "-sin(x")
+    Traceback (most recent call last):
+    flowtex.field.formula.grammar.FormulaError: ...
+    """
+
+
+def parse(text: str, names: Collection[str]) -> Tree:
+    """Return the tree of a formula in which some names are known.
+
+    Raises
+    ------
+    FormulaError
+        When it is none; the text points at the place.
+    """
+    return _Parser(text, names).whole()
+
+
+def evaluate(tree: Tree, values: Mapping[str, Any]) -> Any:
+    """Return the value of a tree, an array where those of its names are."""
+    if isinstance(tree, str):
+        return values[tree]
+    if not isinstance(tree, tuple):
+        return tree
+    function, count = OPERATIONS[tree[0]]
+    given = [evaluate(part, values) for part in tree[1:]]
+    return function(*given) if count else reduce(function, given)
+
+
+class _Parser:
+    """Reads one formula, by the way of Pratt: each operator knows how tightly it binds."""
+
+    def __init__(self, text: str, names: Collection[str]) -> None:
+        self.text = re.sub(r"\s", " ", text).translate(_PRINTED)
+        self.names = names
+        if len(text) > MOST_LETTERS:
+            msg = f"a formula has {len(text)} letters; expected {MOST_LETTERS} at most"
+            raise FormulaError(msg)
+        #: Kind, text and place of each token; the last one is the end.
+        self.tokens: list[tuple[str, str, int]] = []
+        at, end = 0, len(self.text.rstrip())
+        while at < end:
+            match = _TOKEN.match(self.text, at)
+            if match is None:
+                at += len(self.text[at:]) - len(self.text[at:].lstrip())
+                self.fail(f"{self.text[at]!r} is no part of a formula", at)
+            kind = str(match.lastgroup)
+            self.tokens.append((kind, match[kind], match.start(kind)))
+            at = match.end()
+        self.tokens.append(("end", "", end))
+        self.next = 0
+        self.depth = 0
+
+    def fail(self, what: str, at: int | None = None) -> NoReturn:
+        at = self.tokens[self.next][2] if at is None else at
+        msg = f"{what}\n  {self.text}\n  {' ' * at}^"
+        raise FormulaError(msg)
+
+    def take(self) -> tuple[str, str, int]:
+        token = self.tokens[self.next]
+        self.next = min(self.next + 1, len(self.tokens) - 1)
+        return token
+
+    def expect(self, sign: str, instead: str) -> None:
+        kind, text, _ = self.tokens[self.next]
+        if text != sign:
+            found = "the formula ends" if kind == "end" else f"here is {text!r}"
+            self.fail(f"{found} and {instead}")
+        self.take()
+
+    def whole(self) -> Tree:
+        tree = self.expression(0)
+        kind, text, _ = self.tokens[self.next]
+        if kind == "sign":
+            self.fail(f"here is {text!r}, which nothing opens or waits for")
+        if kind != "end":
+            self.fail(f"an operator is missing before {text!r}; write * for a product")
+        return tree
+
+    def expression(self, binding: int) -> Tree:
+        """Read as far as operators bind more tightly than that."""
+        self.depth += 1
+        if self.depth > MOST_DEPTH:
+            self.fail(f"more than {MOST_DEPTH} parts lie in one another; write it more simply")
+        left = self.operand()
+        while BINDING.get(self.tokens[self.next][1], 0) > binding:
+            left = self.operation(left)
+        self.depth -= 1
+        return left
+
+    def operation(self, left: Tree) -> Tree:
+        _, sign, at = self.take()
+        if BINDING[sign] == 1 and isinstance(left, tuple) and BINDING.get(left[0]) == 1:
+            self.fail("comparisons have two sides; write (a < b)*(b < c)", at)
+        is_power = BINDING[sign] == BINDING["^"]
+        right = self.expression(BINDING[sign] - is_power)
+        if sign == "-":
+            sign, right = "+", ("neg", right)
+        if sign in ("+", "*") and isinstance(left, tuple) and left[0] == sign:
+            return self.checked((*left, right), at)
+        return self.checked(("^" if is_power else sign, left, right), at)
+
+    def checked(self, tree: tuple[Any, ...], at: int) -> Tree:
+        """Refuse operators one after the other that make too deep a tree."""
+        if _depth(tree) > MOST_DEPTH:
+            self.fail(f"more than {MOST_DEPTH} parts lie in one another; write it more simply", at)
+        return tree
+
+    def operand(self) -> Tree:
+        kind, text, at = self.take()
+        match kind, text:
+            case "number", _:
+                value = float(text)
+                if np.isinf(value):
+                    self.fail(f"{text} is too large", at)
+                return value
+            case "name", _:
+                return self.named(text, at)
+            case _, "+":
+                return self.expression(SIGN_BINDING)
+            case _, "-":
+                return self.checked(("neg", self.expression(SIGN_BINDING)), at)
+            case _, "(":
+                tree = self.expression(0)
+                self.expect(")", 'a ")" is missing')
+                return tree
+        found = "the formula ends" if kind == "end" else f"here is {text!r}"
+        return self.fail(f"{found} and a number, a name or a ( is missing", at)
+
+    def named(self, name: str, at: int) -> Tree:
+        is_called = self.tokens[self.next][1] == "("
+        if name in self.names and not is_called:
+            return name
+        if name in FUNCTIONS:
+            return self.call(name, at)
+        if is_called:
+            if name in (*self.names, *CONSTANTS):
+                self.fail(f"{name} is no function; write {name}*( for a product", at)
+            self.fail(f"there is no function {name!r}; {near_names(name, FUNCTIONS)}", at)
+        if name in CONSTANTS:
+            return CONSTANTS[name]
+        if name == "t":
+            self.fail("t is the time; give times=, such as times=np.linspace(0, 10, 41)", at)
+        known = ", ".join(sorted(self.names))
+        return self.fail(f"{name} is not known, only {known}; a parameter gets {name}=1", at)
+
+    def call(self, name: str, at: int) -> Tree:
+        count = OPERATIONS[name][1]
+        self.expect("(", f"{name} is a function; write {name}(x)")
+        given = [self.expression(0)]
+        while self.tokens[self.next][1] == ",":
+            self.take()
+            given.append(self.expression(0))
+        self.expect(")", f'a ")" of {name} is missing')
+        if len(given) != count if count else len(given) < 2:
+            expected = count or "two or more"
+            self.fail(f"{name} has {len(given)} values between its brackets, not {expected}", at)
+        return self.checked((name, *given), at)
+
+
+def _depth(tree: Tree) -> int:
+    return 1 + max(map(_depth, tree[1:])) if isinstance(tree, tuple) else 0

@@ -1,0 +1,165 @@
+"""A flow from a formula."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flowtex._util.arguments import checked_array, checked_count, near_names
+from flowtex._util.array_types import Bools, Floats
+from flowtex.errors import FieldError
+from flowtex.field.field import FlowField
+from flowtex.field.formula.flow import Formula
+from flowtex.field.formula.known import KNOWN
+
+#: Nodes along the longer side of a plane, and of a surface, around whose poles paths take long.
+NODES, SURFACE_NODES = 257, 129
+#: Nodes along the shorter side at least; the most that may be asked for.
+LEAST_NODES, MOST_NODES = 33, 10_000
+#: Share of the size of a surface within which places are the same.
+SAME_PLACE = 1e-9
+#: Letters of a caption.
+MOST_TITLE = 60
+
+
+def formula(
+    *expressions: Any,
+    x: tuple[float, float] | None = None,
+    y: tuple[float, float] | None = None,
+    u: tuple[float, float] | None = None,
+    v: tuple[float, float] | None = None,
+    surface: Any = None,
+    times: ArrayLike | None = None,
+    resolution: int | None = None,
+    name: str = "",
+    **parameters: Any,
+) -> FlowField:
+    """Make a flow from a formula.
+
+    Parameters
+    ----------
+    expressions
+        The rates of x and y, such as ``"y", "-sin(x) - b*y"``. On a surface, the rates of u and v,
+        or three, the velocity along x, y and z, of which the part along the surface is drawn. Each
+        is a text, an expression of sympy's, or a function of NumPy arrays that takes some of the
+        names, such as ``lambda x, y: -np.sin(x)``. Or the name of a known formula alone:
+        ``"pendulum"``, ``"van_der_pol"``, ``"lotka_volterra"``, ``"duffing"``, ``"dipole"``,
+        ``"saddle_node"``.
+    x, y
+        Ends of the plane that is drawn, (-5, 5) by default.
+    u, v
+        Ends of the coordinates of a surface.
+    surface
+        ``"sphere"``, whose u and v are longitude and latitude, ``"torus"``, ``"cylinder"``, or
+        three expressions of u and v, the position along x, y and z.
+    times
+        Times of the steps, (T,), where the formula has the time ``t``.
+    resolution
+        Nodes along the longer side of the grid on which the formula is computed: 257, on a surface
+        129 by default.
+    name
+        Word for captions; the expressions by default.
+    parameters
+        Value of each other name in the expressions; or value, low and high, which a slider has.
+
+    Returns
+    -------
+    FlowField
+        Whose ``formula`` keeps expressions, ranges and parameters. Nodes where the formula has no
+        value, such as ``1/x`` at 0, are blank.
+
+    Raises
+    ------
+    FormulaError
+        When an expression is none; the text points at the place.
+    FieldError
+        When ranges, parameters or times do not fit.
+
+    Notes
+    -----
+    A text is read by a grammar and never run as code. It has ``+ - * / ^`` (or ``**``), numbers,
+    names, ``pi`` and ``e``; the functions sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh,
+    exp, log (ln), log2, log10, sqrt, abs, sign, floor, ceil, hypot, mod, min and max; and
+    ``where(x < 0, a, b)`` with ``<``, ``>``, ``<=``, ``>=``.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.formula("y", "-sin(x) - b*y", x=(-7, 7), y=(-4, 4), b=0.2)
+    >>> field.shape
+    (147, 257)
+    """
+    if len(expressions) == 1:
+        name = name or str(expressions[0]).replace("_", " ")
+        expressions, known = _known(expressions[0])
+        x, y = x or known.pop("x"), y or known.pop("y")
+        parameters = {**{k: p for k, p in known.items() if k not in ("x", "y")}, **parameters}
+    steps = None if times is None else _times(times)
+    ranges = {"x": x, "y": y, "u": u, "v": v}
+    made = Formula.of(expressions, surface, ranges, parameters, timed=steps is not None)
+    expected = f"2 to {MOST_NODES:,} nodes"
+    usual = SURFACE_NODES if made.surface else NODES
+    count = usual if resolution is None else resolution
+    count = checked_count("resolution", count, 2, MOST_NODES, expected=expected)
+    shape = (count, count)
+    if not made.surface:
+        width, height = (high - low for low, high in made.ranges.values())
+        rows, columns = (
+            max(round((count - 1) * side / max(width, height)) + 1, min(count, LEAST_NODES))
+            for side in (height, width)
+        )
+        shape = (rows, columns)
+    coordinates = made.coordinates(shape)
+    moments = [0.0] if steps is None else steps
+    velocity = np.stack([made.velocity(*coordinates, float(t)) for t in moments])
+    points = made.points(*coordinates)
+    whole = np.concatenate([*velocity, points], axis=-1)
+    gaps: Bools = np.isnan(whole).any(axis=-1)
+    if (gaps[1:, 1:] | gaps[1:, :-1] | gaps[:-1, 1:] | gaps[:-1, :-1]).all():
+        msg = f"{made.title} has a value in no cell of the grid; choose other ranges"
+        raise FieldError(msg)
+    title = made.title if len(made.title) <= MOST_TITLE else made.title[:MOST_TITLE] + "…"
+    field = FlowField.from_arrays(
+        points,
+        velocity,
+        times=steps,
+        periodic=_closed(points) if made.surface else "",
+        name=name or title,
+    )
+    result = replace(field, formula=made)
+    result.__dict__["surface"] = field.surface
+    return result
+
+
+def _known(name: Any) -> tuple[tuple[str, str], dict[str, Any]]:
+    if not isinstance(name, str) or name not in KNOWN:
+        near = (
+            near_names(name, KNOWN) if isinstance(name, str) else f"there are: {', '.join(KNOWN)}"
+        )
+        msg = f"there is one expression, {name!r}, which names no known formula; {near}"
+        raise FieldError(msg)
+    expressions, known = KNOWN[name]
+    return expressions, dict(known)
+
+
+def _times(times: ArrayLike) -> Any:
+    values = checked_array("times", times, expected="times that increase, such as [0, 1, 2]")
+    if (
+        values.ndim != 1
+        or len(values) < 1
+        or not np.isfinite(values).all()
+        or (np.diff(values) <= 0).any()
+    ):
+        msg = f"times is {times!r}; expected times that increase, such as [0, 1, 2]"
+        raise FieldError(msg)
+    return values
+
+
+def _closed(points: Floats) -> str:
+    """Return the axes whose first line of nodes (J, I) is the last one too."""
+    size = np.ptp(points, axis=(0, 1)).max() * SAME_PLACE
+    ends = {"j": points[-1] - points[0], "i": points[:, -1] - points[:, 0]}
+    return "".join(axis for axis, away in ends.items() if np.abs(away).max() < size)

@@ -1,0 +1,69 @@
+"""Expressions of sympy as trees, node by node; sympy is not loaded for it, and no text is read."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from functools import reduce
+from typing import Any
+
+from flowtex.field.formula.grammar import FUNCTIONS, MOST_DEPTH, FormulaError, Tree
+
+#: Classes of sympy that are operations here, where the names differ.
+_NAMES = {
+    "Add": "+",
+    "Mul": "*",
+    "Pow": "^",
+    "StrictLessThan": "<",
+    "StrictGreaterThan": ">",
+    "LessThan": "<=",
+    "GreaterThan": ">=",
+    "ceiling": "ceil",
+}
+
+
+def is_symbolic(expression: Any) -> bool:
+    """Whether this is an expression of sympy's."""
+    return type(expression).__module__.startswith("sympy.") and hasattr(expression, "args")
+
+
+def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
+    """Return the tree of an expression in which some names are known.
+
+    Raises
+    ------
+    FormulaError
+        When there is more in it than formulas have.
+    """
+    kind = type(expression).__name__
+    if depth > MOST_DEPTH:
+        msg = f"more than {MOST_DEPTH} parts of {kind} lie in one another; write it more simply"
+        raise FormulaError(msg)
+    if kind in ("Symbol", "Dummy"):
+        if expression.name in names:
+            return str(expression.name)
+        known = ", ".join(sorted(names))
+        msg = f"{expression.name} is not known, only {known}; a parameter gets {expression.name}=1"
+        raise FormulaError(msg)
+    if not expression.args:
+        try:
+            return float(expression)
+        except (TypeError, ValueError) as error:
+            msg = f"{expression} of sympy is no real number; expected one"
+            raise FormulaError(msg) from error
+    if kind == "Piecewise":
+        pairs = [(p.args[0], p.args[1]) for p in expression.args]
+        values = [tree_of(value, names, depth + 1) for value, _ in pairs]
+        last: Tree = float("nan")
+        for value, (_, holds) in zip(values[::-1], pairs[::-1], strict=True):
+            always = type(holds).__name__ == "BooleanTrue"
+            last = value if always else ("where", tree_of(holds, names, depth + 1), value, last)
+        return last
+    name = _NAMES.get(kind, kind.lower())
+    if name not in (*_NAMES.values(), *FUNCTIONS):
+        functions = ", ".join(FUNCTIONS)
+        msg = f"sympy's {kind} is no part of a formula; there are + - * / ^ and {functions}"
+        raise FormulaError(msg)
+    given = [tree_of(part, names, depth + 1) for part in expression.args]
+    if name == "^":
+        return reduce(lambda base, power: (name, base, power), given)
+    return (name, *given)

@@ -1,0 +1,226 @@
+"""Flows from formulas: the grammar, sympy and functions, surfaces, and what strangers type."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from strategies import property_test
+
+import flowtex
+from flowtex import FieldError
+from flowtex.field.formula import KNOWN, FormulaError
+from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
+
+VALUES = {"x": np.linspace(-2.0, 2.0, 9), "y": np.linspace(0.3, 1.7, 9), "b": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("-x^2", lambda x, y, b: -(x**2)),
+        ("2^-x*y", lambda x, y, b: 2.0 ** (-x) * y),
+        ("2^3^y", lambda x, y, b: 2 ** (3**y)),
+        ("x - y - b", lambda x, y, b: (x - y) - b),
+        ("x/y/b", lambda x, y, b: (x / y) / b),
+        ("x - (y - b)*-x", lambda x, y, b: x - (y - b) * -x),
+        ("1.5e-1*x + .5", lambda x, y, b: 0.15 * x + 0.5),
+        ("where(x < 0, -x, (x >= 1)*y)", lambda x, y, b: np.where(x < 0, -x, (x >= 1) * y)),
+        ("-(x < 0) + (y > 1)", lambda x, y, b: -1.0 * (x < 0) + 1.0 * (y > 1)),
+        (
+            "mod(x, 0.7) + max(x, y, b)",
+            lambda x, y, b: np.mod(x, 0.7) + np.maximum(x, np.maximum(y, b)),
+        ),
+        (
+            "ln(y)*atan2(y, x)**2 \u2212 pi\u00b7e",
+            lambda x, y, b: np.log(y) * np.arctan2(y, x) ** 2 - np.pi * np.e,
+        ),
+    ],
+)
+def test_a_formula_has_the_values_of_python(text: str, expected: Any) -> None:
+    tree = parse(text, VALUES)
+    assert_allclose(evaluate(tree, VALUES), expected(**VALUES), rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "words"),
+    [
+        ("-sin(x", 6, 'a ")" of sin is missing'),
+        ("2x", 1, "write * for a product"),
+        ("x +* 2", 3, "a number, a name or a ( is missing"),
+        ("x @ 2", 2, "'@' is no part of a formula"),
+        ("a*x", 0, "a is not known, only x, y; a parameter gets a=1"),
+        ("1 < x < 2", 6, "comparisons have two sides"),
+        ("x)", 1, "which nothing opens"),
+        ("sin(x, y)", 0, "sin has 2 values between its brackets, not 1"),
+        ("sin", 3, "write sin(x)"),
+        ("cosx(2)", 0, "did you mean 'cos'"),
+        ("x(y)", 0, "write x*("),
+        ("x.__class__", 1, "'.' is no part"),
+        ("t", 0, "give times="),
+        ("", 0, "the formula ends"),
+        ("1e999", 0, "too large"),
+        ("(" * 100 + "x", 60, "more than 60 parts"),
+    ],
+)
+def test_an_error_points_at_the_place(text: str, place: int, words: str) -> None:
+    with pytest.raises(FormulaError) as caught:
+        flowtex.formula("y", text)
+    message, shown, caret = str(caught.value).split("\n")
+    assert words in message
+    assert shown == f"  {text}" and caret == " " * (place + 2) + "^"
+
+
+LETTERS = "xyzuvtb01.9+-*/^()<>=, \n_sincosexplogabsminmaxwhere\u2212\u03b8;'\"[]{}@"
+WORDS = [
+    *FUNCTIONS,
+    *"xyb+-*/^()<,",
+    "<=",
+    "**",
+    "2",
+    "0",
+    "1e308",
+    ".5",
+    "pi",
+    "lambda",
+    "__import__",
+]
+TEXTS = st.one_of(
+    st.text(LETTERS, max_size=30),
+    st.lists(st.sampled_from(WORDS), max_size=14).map(" ".join),
+    st.recursive(
+        st.sampled_from(["x", "y", "b", "2", "0.5", "1e200", "pi"]),
+        lambda inner: st.one_of(
+            st.tuples(inner, st.sampled_from(list("+-*/^")), inner).map(
+                lambda p: f"({''.join(p)})"
+            ),
+            st.tuples(st.sampled_from(FUNCTIONS), inner).map(lambda p: f"{p[0]}({p[1]})"),
+            inner.map(lambda p: f"-{p}"),
+        ),
+        max_leaves=8,
+    ),
+)
+
+
+@property_test(400)
+@given(TEXTS, TEXTS)
+@example("__import__('os').system('true')", "x")
+@example("x", "x\n+@")
+@example("where(x,1,0)/0", "exp(exp(exp(x)))")
+def test_what_anybody_types_is_a_flow_or_an_error_that_points(first: str, second: str) -> None:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of flows at rest
+            field = flowtex.formula(first, second, resolution=5, b=0.5)
+    except FormulaError as error:
+        assert str(error).endswith("^") or "letters" in str(error)
+    except FieldError as error:
+        assert "value in no cell" in str(error) or "velocity" in str(error), error
+    else:
+        assert field.formula is not None and np.isfinite(field.velocity).all()
+        allowed = {*OPERATIONS, "x", "y", "b"}
+        stack = [each.tree for each in field.formula.expressions]
+        while stack:
+            node = stack.pop()
+            assert isinstance(node, (float, str, tuple))
+            if isinstance(node, str):
+                assert node in allowed
+            elif isinstance(node, tuple):
+                assert node[0] in OPERATIONS
+                stack += node[1:]
+
+
+def test_sympy_and_functions_make_the_same_field() -> None:
+    sympy = pytest.importorskip("sympy")
+    x, y, b = sympy.symbols("x y b")
+    ends: dict[str, Any] = {"x": (-7, 7), "y": (-4, 4), "b": 0.2, "resolution": 33}
+    text = flowtex.formula("y", "-sin(x) - b*abs(y)", **ends)
+    symbols = flowtex.formula(y, -sympy.sin(x) - b * sympy.Abs(y), **ends)
+    functions = flowtex.formula(lambda y: y, lambda b, x, y: -np.sin(x) - b * np.abs(y), **ends)
+    for other in (symbols, functions):
+        assert_allclose(other.velocity, text.velocity, atol=1e-15)
+    pieces = sympy.Piecewise((x, x < 0), (y, sympy.Ge(y, 1)), (2, True))
+    assert_allclose(
+        flowtex.formula(pieces, 1, resolution=9).velocity,
+        flowtex.formula("where(x < 0, x, where(y >= 1, y, 2))", 1, resolution=9).velocity,
+    )
+    with pytest.raises(FormulaError, match="sympy's gamma is no part of a formula"):
+        flowtex.formula(y, sympy.gamma(x))
+    with pytest.raises(FormulaError, match="no real number"):
+        flowtex.formula(y, x * sympy.I)
+
+
+def test_a_field_keeps_what_it_was_made_from() -> None:
+    field = flowtex.formula("y", "-sin(x) - b*y", x=(-7, 7), y=(-4, 4), b=(0.2, 0, 1))
+    assert field.shape == (147, 257) and field.name == "x' = y, y' = -sin(x) - b*y"
+    formula = field.at_step(0).formula
+    assert formula is not None and formula.texts == ("y", "-sin(x) - b*y")
+    assert vars(formula.parameters["b"]) == {"value": 0.2, "low": 0, "high": 1}
+    x, y = field.points[..., 0], field.points[..., 1]
+    assert_allclose(field.velocity[0, ..., 1], -np.sin(x) - 0.2 * y, atol=1e-14)
+
+
+def test_the_time_is_a_name_where_there_are_times() -> None:
+    times = np.linspace(0, 3, 7)
+    field = flowtex.formula("cos(t)", "sin(t)", times=times, resolution=9)
+    assert_allclose(field.velocity[:, 2, 3, 0], np.cos(times))
+    assert_allclose(field.times, times)
+
+
+@pytest.mark.parametrize(
+    "surface", ["sphere", ("cos(v)*cos(u)", "cos(v)*sin(u)", "sin(v)"), "torus", "cylinder"]
+)
+def test_rates_on_a_surface_turn_it_as_vectors_in_space_do(surface: Any) -> None:
+    ends: dict[str, Any] = {} if isinstance(surface, str) else {"u": (-3, 3), "v": (-1, 1)}
+    rates = flowtex.formula("1", "0", surface=surface, resolution=17, **ends)
+    space = flowtex.formula("-y", "x", "0", surface=surface, resolution=17, **ends)
+    assert_allclose(rates.velocity, space.velocity, atol=1e-8)
+    assert rates.normal_share < 0.02
+    assert rates.periodic[1] == isinstance(surface, str)
+
+
+def test_where_there_is_no_value_it_is_blank() -> None:
+    field = flowtex.formula("sqrt(x)", "1/y", resolution=11)
+    x, y = field.points[..., 0], field.points[..., 1]
+    assert (field.valid == (x >= 0) & (y != 0)).all()
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_formulas_have_names(name: str) -> None:
+    field = flowtex.formula(name, resolution=17)
+    assert field.formula is not None and field.name == name.replace("_", " ")
+    assert field.valid.mean() > 0.9
+    assert all(p.low <= p.value <= p.high for p in field.formula.parameters.values())
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (dict(x=(7, -7)), r"x is \(7, -7\); expected two numbers, the lower one first"),
+        (dict(u=(0, 1)), "u has a range; the coordinates here are x and y"),
+        (dict(b="high"), "b is 'high'; expected a number, or value, low and high"),
+        (dict(b=(2, 0, 1)), r"b is \(2, 0, 1\); expected"),
+        (dict(z=1), "z is a coordinate or the time"),
+        (dict(times=[1, 0]), "expected times that increase"),
+        (dict(resolution=1), "resolution is 1; expected 2 to 10,000 nodes"),
+        (dict(surface="cube"), "surface is 'cube'; there are: sphere, torus, cylinder"),
+        (dict(surface=("u", "v")), "expected x, y and z of u and v"),
+        (dict(x=(-2, -1), y=(0, 1), _first="sqrt(x)"), "has a value in no cell of the grid"),
+        (dict(_first=None), "an expression is None; expected a text"),
+        (dict(_first=lambda q: q), "takes q; there are: x, y"),
+        (dict(_first=lambda x: x[:2]), "gives no numbers at nodes of shape"),
+    ],
+)
+def test_what_does_not_fit_is_refused(given: dict[str, Any], words: str) -> None:
+    first = given.pop("_first", "y")
+    with pytest.raises(FieldError, match=words):
+        flowtex.formula(first, "-x", **given)
+    with pytest.raises(FieldError, match="there are 3 expressions; expected two, the rates"):
+        flowtex.formula("1", "2", "3")
+    with pytest.raises(FieldError, match="which names no known formula; did you mean 'pendulum'"):
+        flowtex.formula("pendulu")
