@@ -12,6 +12,7 @@ const ATTRIBUTES = [
   "flowtexNoise",
   "flowtexScalar",
   "flowtexCorners",
+  "flowtexRadius",
 ];
 /** Samplers, each in the texture unit of its place. */
 export const SAMPLERS = ["u_slices", "u_slicesNext", "u_noiseImage", "u_stepImage", "u_cmap"];

@@ -8,7 +8,7 @@ import type { Settings } from "./protocol.ts";
 import { COARSEST_SCALE, draftUniforms, learnedPrice, motionFactor, movingTime, quality, rowsIn } from "./quality.ts";
 import { reused, type Reuse } from "./reuse.ts";
 import type { Scene } from "./scene.ts";
-import { uniforms, type Moment, type ViewState } from "./uniforms.ts";
+import { isNear, uniforms, type Moment, type ViewState } from "./uniforms.ts";
 import { clamp, scale, subtract, toFrame } from "./vectors.ts";
 
 /** Milliseconds for a picture in motion of one of many views at least, and for a strip at rest. */
@@ -349,6 +349,13 @@ export class ProgressiveRenderer {
         layer.draw(shown[0], shown[1], view.anchor, true);
       }
     });
+    const arrows = scene.arrows.program(viewer.settings, isNear(scene.header, viewer.settings, view));
+    if (arrows) {
+      scene.bindTextures(shown[0], shown[1]);
+      const seen = { ...camera.sight(height / view.density), planes: camera.planes };
+      const values = { ...this.values(scene, scene, camera, view, samples, draft), u_picture: [width, height] };
+      scene.arrows.draw(arrows, seen, view.anchor, viewer.settings, values);
+    }
     bodies.draw(around, "clear");
     if (smooth) graphics.copySmooth(width, rows);
     // Reading a pixel waits until everything is drawn.

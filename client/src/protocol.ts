@@ -242,7 +242,7 @@ export interface PoleHeader {
 
 type ShaderName =
   "vertex" | "fragment" | "pick" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment"
-  | "bodyVertex" | "bodyFragment" | "fullVertex" | "probe";
+  | "arrowVertex" | "arrowFragment" | "bodyVertex" | "bodyFragment" | "fullVertex" | "probe";
 /** Those of a client that traces. */
 type TraceShaderName = "trace" | "layers";
 
@@ -309,9 +309,12 @@ export interface Header {
     mostTurns: number;
     kernels: string[];
     anchorRange: number;
-    arrowPieces: number;
-    arrowLeast: number;
-    arrowMostDense: number;
+    /** Of flowtex/rendering/arrow_seeds.py, and how many pieces an arrow has. */
+    arrows: Record<
+      | ("pieces" | "least" | "mostDense")
+      | ("octave" | "mostOctaves" | "candidateArea" | "mostCandidates" | "around" | "aroundRadii" | "closer"),
+      number
+    >;
     /** Cells that a side of a path goes over, beyond which it does not follow their own velocity. */
     farCells: number;
     shading: Shading;

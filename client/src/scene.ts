@@ -1,5 +1,6 @@
 // The buffers and textures of one scene, made of its parts when they are first drawn.
 
+import { Arrows } from "./arrows.ts";
 import { Bodies, BODY_PARTS } from "./bodies.ts";
 import type { Graphics, Resource } from "./context.ts";
 import { EarthLayer } from "./earthlayer.ts";
@@ -7,7 +8,7 @@ import { makeLayers, sendLayer, type LayersSize } from "./layers.ts";
 import { coordinates, cornersAt, noiseCoordinates, positions, shares, type Corners } from "./mesh.ts";
 import { MeshLevels, type Sight } from "./meshlevels.ts";
 import { SAMPLERS, type Program } from "./programs.ts";
-import { stepOf, type Data, type Header, type Part } from "./protocol.ts";
+import { stepOf, type Data, type Header, type Part, type Settings } from "./protocol.ts";
 import { flowsOf, normalOf, positionOf, programsOf, Tracing, type Made } from "./tracer.ts";
 import {
   atVertices,
@@ -51,6 +52,7 @@ export class Scene {
   readonly parts: Map<string, Part>;
   readonly earth: EarthLayer;
   readonly bodies: Bodies;
+  readonly arrows: Arrows;
   anchor: Vector = [0, 0, 0];
   private readonly resources = new Map<string, Resource>();
   private scalarSteps = "";
@@ -67,6 +69,13 @@ export class Scene {
     this.parts = parts;
     this.earth = new EarthLayer(graphics, header, parts);
     this.bodies = new Bodies(graphics, header, parts);
+    this.arrows = new Arrows(graphics, header, parts);
+  }
+
+  /** Whether the programs are built of what is drawn beside the surface; asks for them. */
+  isReady(settings: Settings): boolean {
+    const programs = [false, true].map((isClose) => this.arrows.program(settings, isClose));
+    return this.earth.isReady && this.bodies.isReady && programs.every((program) => program?.ready ?? true);
   }
 
   /** Names of the parts that a moment needs and that are not there. */
@@ -201,6 +210,7 @@ export class Scene {
   forget(name: string): void {
     const [kind, step] = name.split("/");
     if (USERS[kind]?.includes("index")) this.meshLevels = this.drawn = null;
+    if (["position", "cells", "triangles"].includes(kind)) this.arrows.forget();
     const sliced = ["slices", "extra", "flow"].includes(kind);
     if (!sliced && kind !== "scalars") this.earth.forget(name);
     if (BODY_PARTS.includes(kind)) this.bodies.dispose();
@@ -224,6 +234,7 @@ export class Scene {
     this.stopTracing();
     this.earth.dispose();
     this.bodies.dispose();
+    this.arrows.dispose();
   }
 
   /** What some parts are known by on the whole page; nothing where one of them has no digest. */
@@ -486,7 +497,8 @@ export class Scene {
     }
   }
 
-  private bindTextures(before: number, after: number): void {
+  /** Have the slices of a moment, and images, in their units. */
+  bindTextures(before: number, after: number): void {
     const gl = this.graphics.context;
     const { paper } = this.header;
     const repeat = paper?.repeat ?? [false, false];

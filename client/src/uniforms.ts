@@ -69,7 +69,7 @@ export function uniforms(
     u_apart: arrowDistance(header, settings) * view.density,
     u_bySpeed: settings.arrow_length === "speed",
     u_arrowSides: slices.sides,
-    u_pieces: constants.arrowPieces,
+    u_pieces: constants.arrows.pieces,
     ...(header.paper && noiseShape ? paperUniforms(header.paper, s, noiseShape, view.density) : {}),
   };
 }
@@ -92,7 +92,7 @@ export function hasArrows(header: Header, settings: Settings): boolean {
 
 /** Pixels of the page from an arrow to the next at least. */
 export function arrowDistance({ constants }: Header, { arrows }: Settings): number {
-  return constants.arrowLeast * Math.max(Number(arrows), constants.arrowMostDense);
+  return constants.arrows.least * Math.max(Number(arrows), constants.arrows.mostDense);
 }
 
 /**

@@ -534,7 +534,7 @@ export class Viewer implements User {
       this.panel.fail("The shader does not compile with this graphics driver.", program.error);
       return;
     }
-    if (!program.ready || !this.scene?.earth.isReady || !this.scene.bodies.isReady) return this.request();
+    if (!program.ready || !this.scene?.isReady(this.settings)) return this.request();
     const isComplete = !this.sharp && this.renderer.draw(program, shown, until);
     this.root.dataset.drawn = "true"; // coarse or not
     if (isComplete) {

@@ -281,3 +281,16 @@ def _mixed(key: Hashes) -> Hashes:
 def _shares(key: Hashes) -> Floats:
     """Numbers from 0 to 1 of hashed ones."""
     return key / 2.0**32
+
+
+def seed_limits() -> dict[str, float]:
+    """Numbers by which a client finds the same seeds, for JSON."""
+    return {
+        "octave": OCTAVE,
+        "mostOctaves": MOST_OCTAVES,
+        "candidateArea": CANDIDATE_AREA,
+        "mostCandidates": MOST_CANDIDATES,
+        "around": AROUND,
+        "aroundRadii": AROUND_RADII,
+        "closer": CLOSER,
+    }

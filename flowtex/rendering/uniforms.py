@@ -13,6 +13,7 @@ import numpy as np
 
 from flowtex._util.array_types import Floats, Ints
 from flowtex.rendering import constants as const
+from flowtex.rendering.arrow_seeds import seed_limits
 from flowtex.rendering.constants import FAR_CELLS, KERNELS
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
@@ -30,7 +31,7 @@ CLOCK_STEP, MOST_TURNS = 2.0**-12, 2.0**12
 #: Pieces of an arrow, the least distance of two over the mean one, and that in pixels at least.
 ARROW_PIECES, ARROW_LEAST, ARROW_MOST_DENSE = 12, 0.85, 8.0
 #: Length of an arrow over the least distance, at most.
-ARROW_LONGEST = 1.5
+ARROW_LONGEST = 1.6
 
 #: How much more lag a path may take than its length: beside critical points, where those of
 #: neighbours part, their mean is slow.
@@ -129,9 +130,12 @@ def client_constants() -> dict[str, Any]:
         "mostTurns": MOST_TURNS,
         "kernels": list(KERNELS),
         "anchorRange": ANCHOR_RANGE,
-        "arrowPieces": ARROW_PIECES,
-        "arrowLeast": ARROW_LEAST,
-        "arrowMostDense": ARROW_MOST_DENSE,
+        "arrows": {
+            "pieces": ARROW_PIECES,
+            "least": ARROW_LEAST,
+            "mostDense": ARROW_MOST_DENSE,
+            **seed_limits(),
+        },
         "farCells": FAR_CELLS,
         "shading": _shading(),
     }

@@ -142,8 +142,8 @@ map(Number),drawn=Math.max(grain*density,Math.min(grain,1)),stretched=all*spacin
 u_spacing:clamp(stretched,.1,Math.max(DRAFT_SPACING,spacing))}}var PREAMBLE=`#version 300 es
 precision highp float;
 precision highp int;
-`,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar","flowtexCorners"],SAMPLERS=[
-"u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_cmap"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
+`,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar","flowtexCorners","flo\
+wtexRadius"],SAMPLERS=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_cmap"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
 this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
 this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
 "Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,
@@ -693,27 +693,28 @@ header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*vie
 kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,
 ...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,
 u_apart:arrowDistance(header,settings)*view.density,u_bySpeed:settings.arrow_length==="speed",u_arrowSides:slices.sides,
-u_pieces:constants.arrowPieces,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):{}}}function isMoving(header,settings){
+u_pieces:constants.arrows.pieces,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):{}}}function isMoving(header,settings){
 let streams=settings.motion!=="off"&&!isSignFree(header);return!header.paper&&(header.slices.steps>1||streams)}function isSparse(header,settings){
-return!header.paper&&settings.texture==="streaklets"}function arrowDistance({constants},{arrows}){return constants.arrowLeast*Math.max(Number(arrows),constants.arrowMostDense)}
-function isNear(header,settings,view){let{geometry,slices,constants}=header,s=settings,gap=Math.hypot(...subtract2(view.
-eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(view.eye,view.focus)):
-1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;return Math.floor(s.samples/2)*s.spacing*
-grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose){let chosen={FLOWTEX_CELLS:isClose,FLOWTEX_MOVING:isMoving(
-header,settings),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.entries(chosen).flatMap(([name,holds])=>holds?[
-name]:[])}var modulo=(value,by)=>value-by*Math.floor(value/by);function motionUniforms(header,s,view){let{geometry,slices,
-constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?modulo((view.time-slices.times[0])/
-(geometry.extent/slices.pace),constants.mostTurns):modulo(view.clock/s.period,1),travel=varies?geometry.extent:s.speed*s.
-period,coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,turns-coarse],u_travel:travel*
-(inPixels?view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="speed",u_wave:constants.wavePixels*
-view.density}}function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.constants,{frame,center}=header.
-geometry,focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-1,cells=2**clearDoublings,
-even=focus.map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.SQRT2),whole=odd.map(x=>Math.
-floor(x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,u_noiseOriginOdd:whole,
-u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.noise==="image"?
-s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,u_noiseDeviation:paper.
-deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],u_pictureRound:[Number(
-paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
+return!header.paper&&settings.texture==="streaklets"}function hasArrows(header,settings){return Number(settings.arrows)>
+0&&!isSignFree(header)&&!header.paper}function arrowDistance({constants},{arrows}){return constants.arrows.least*Math.max(
+Number(arrows),constants.arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,constants}=header,s=settings,
+gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(
+view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;return Math.floor(
+s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose){let chosen={
+FLOWTEX_CELLS:isClose,FLOWTEX_MOVING:isMoving(header,settings),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.entries(
+chosen).flatMap(([name,holds])=>holds?[name]:[])}var modulo=(value,by)=>value-by*Math.floor(value/by);function motionUniforms(header,s,view){
+let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?modulo(
+(view.time-slices.times[0])/(geometry.extent/slices.pace),constants.mostTurns):modulo(view.clock/s.period,1),travel=varies?
+geometry.extent:s.speed*s.period,coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,
+turns-coarse],u_travel:travel*(inPixels?view.density:1),u_travelInPixels:inPixels,u_travelBySpeed:varies||s.motion==="sp\
+eed",u_wave:constants.wavePixels*view.density}}function noiseOrigin(header,view,finest){let{noiseDoublings,clearDoublings}=header.
+constants,{frame,center}=header.geometry,focus=toFrame(frame,subtract2(view.focus,center)),limit=2**(noiseDoublings-clearDoublings)-
+1,cells=2**clearDoublings,even=focus.map(x=>clamp(Math.round(x/finest/cells),-limit,limit)*cells),odd=even.map(x=>x/Math.
+SQRT2),whole=odd.map(x=>Math.floor(x/cells)*cells);return{u_noiseOrigin:even.map((x,k)=>x*finest-view.anchor[k]),u_noiseOriginEven:even,
+u_noiseOriginOdd:whole,u_noiseRestOdd:odd.map((x,k)=>x-whole[k])}}function paperUniforms(paper,s,noiseShape,density){let tiles=s.
+noise==="image"?s.tiles:1,[rows,columns]=noiseShape;return{u_noiseSize:paper.size.map(n=>n*density),u_noiseGrain:paper.grain,
+u_noiseDeviation:paper.deviations,u_noiseCorrected:paper.corrected,u_pictureSize:[columns*density*tiles,rows*density*tiles],
+u_pictureRound:[Number(paper.repeat[1]),Number(paper.repeat[0])],u_pictureGrey:noiseShape.length===2,u_tiles:tiles}}function momentOf(times2,time){
 if(times2.length<2)return[0,0,0];let step=0;for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/
 (times2[step+1]-times2[step]);return[step,step+1,clamp(late,0,1)]}var POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_SLOPE=1e-6,SMALL2=.001;function texelsAt({
 scene,place}){let{rows,columns,triangles}=scene.header.geometry;if(triangles)return scene.cornersAt(place);let[x,y]=[place[0]+
@@ -1291,8 +1292,11 @@ width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),
 header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
 samples||height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(
 around2);let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.
-use(program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),bodies.draw(
-around2,"clear"),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}values({
+use(program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)});let arrows=scene.
+arrows.program(viewer.settings,isNear(scene.header,viewer.settings,view));if(arrows){scene.bindTextures(shown[0],shown[1]);
+let seen={...camera.sight(height/view.density),planes:camera.planes},values={...this.values(scene,scene,camera,view,samples,
+draft),u_picture:[width,height]};scene.arrows.draw(arrows,seen,view.anchor,viewer.settings,values)}bodies.draw(around2,"\
+clear"),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}values({
 header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.shape??null;return{
 ...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(
 header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.
@@ -1300,7 +1304,79 @@ background,u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.ge
 if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;
 if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,
 coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,
-0,first,w,rows,0,to,width,rows*height/h)}};var BODY_PARTS=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],LIGHTS=8,[ENDS_BYTES,COLOURS_BYTES]=[
+0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
+wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
+view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}normal({cell}){let across=cross2(...this.sides(wholeCell(
+cell)));return scale2(across,1/Math.max(length2(across),Number.MIN_VALUE))}between(nodal,{cell,place},size){let{corners}=this.
+surface,[i,j]=place,shares2=[(1-j)*(1-i),(1-j)*i,j*(1-i),j*i],result2=new Array(size).fill(0);for(let n=0;n<CORNERS;n+=1){
+let at=size*corners[CORNERS*cell+n];for(let k=0;k<size;k+=1)result2[k]+=shares2[n]*nodal[at+k]}return result2}position(cell,place){
+return this.between(this.surface.nodes,{cell,place},3)}point(position){let{frame,center}=this.surface.geometry;return add(
+fromFrame(frame,position),center)}covers([last,least],[view,spacing]){let{closer}=this.limits;return this.cornersOf(view).
+every(point=>closer*least*pixelAt(last,point)<=spacing*pixelAt(view,point)&&this.sees(last,point,0))}cornersOf({planes}){
+let{center,extent}=this.surface.geometry,normal=n=>planes[n].slice(0,3),away=cross2(normal(0),normal(2)),reach=.5*extent*
+length2(away);return[0,1].flatMap(side=>[2,3].flatMap(end=>[-1,1].map(sign=>[side,end,sign]))).map(([side,end,sign])=>{let[
+a,b]=[normal(side),normal(end)],sum=add(scale2(cross2(b,away),-planes[side][3]),cross2(away,a),-planes[end][3]),both=cross2(
+a,b);return scale2(add(sum,both,dot2(away,center)+sign*reach),1/dot2(both,away))})}sees(view,point,reach){let slack=reach+
+this.limits.around*view.pixels*pixelAt(view,point);return view.planes.every(p=>dot2(p,point)+p[3]>=-slack*length2(p))}make(wanted){
+let[view,spacing]=wanted,{limits,sums,whole}=this,{extent,center}=this.surface.geometry,total2=sums[sums.length-1]??0,nearest=view.
+eye?Math.max(length2(subtract2(center,view.eye))-.5*extent,0):1,least=limits.closer*spacing*pixelOf(view,nearest),radius=extent,
+seeds=whole[0],parts=null;for(let octave=0;octave<limits.mostOctaves;octave+=1){let area=limits.candidateArea*radius**2;
+if(total2<=limits.mostCandidates*area)whole[octave+1]??=this.grown(seeds,this.spread(octave,area),radius),seeds=whole[octave+
+1];else{parts??=Array.from(sums,(_,cell)=>wholeCell(cell)),parts=this.divided(parts.filter(part=>this.isNeeded(part,wanted,
+radius)),area);let candidates=parts.flatMap(part=>{let key=mixed(part.key+octave);return shareOf2(key)*area<this.area(part)?
+[this.candidate(part,key)]:[]});if(seeds=this.grown(seeds,candidates,radius),!parts.length)break}if(radius<=least)break;
+radius*=limits.octave}return seeds.filter(seed=>{let point=this.point(seed.position);return seed.radius>=limits.closer*spacing*
+pixelAt(view,point)&&this.sees(view,point,0)})}spread(octave,area){let{sums}=this,base=mixed(octave+OCTAVE_PRIME),cell=0;
+return Array.from({length:Math.floor((sums[sums.length-1]??0)/area)},(_,number)=>{let key=mixed(base+number),at=(number+
+shareOf2(key))*area;for(;cell<sums.length-1&&sums[cell]<=at;)cell+=1;return this.candidate(wholeCell(cell),key)})}candidate({
+cell,low,size},key){let first=mixed(key+OCTAVE_PRIME),second=mixed(first+OCTAVE_PRIME),place=[low[0]+size[0]*shareOf2(first),
+low[1]+size[1]*shareOf2(second)];return{cell,place,position:this.position(cell,place),radius:1/0}}grown(seeds,candidates,least){
+let most=least/this.limits.octave,near=new Neighbours(most);for(let seed of seeds)near.add(seed.position);for(let seed of candidates)
+seed.radius=near.distance(seed.position);let order=candidates.filter(({radius})=>radius>=least).sort((a,b)=>b.radius-a.radius),
+fresh=new Neighbours(most),taken=order.filter(seed=>(seed.radius=Math.min(seed.radius,fresh.distance(seed.position)),seed.
+radius<least?!1:(fresh.add(seed.position),!0)));return[...seeds,...taken]}isNeeded(part,[view,spacing],radius){let{octave,
+closer,aroundRadii}=this.limits,{cell,low,size}=part,middle=this.point(this.position(cell,[low[0]+.5*size[0],low[1]+.5*size[1]])),
+[a,b]=this.sides(part),reach=.5*(length2(a)+length2(b)),away=Math.max(awayOf(view,middle)-reach,0);return!(radius<octave*
+closer*spacing*pixelOf(view,away))&&this.sees(view,middle,reach+aroundRadii*radius)}divided(parts,area){let large=parts.
+filter(part=>this.area(part)>area);if(!large.length)return parts;let halves=large.map(part=>{let[a,b]=this.sides(part),axis=length2(
+b)>length2(a)?1:0,size=[...part.size];size[axis]*=.5;let low=[...part.low];return low[axis]+=size[axis],[{...part,size,key:mixed(
+part.key+OCTAVE_PRIME)},{...part,size,low,key:mixed(part.key+SEED_PRIME)}]}),small=parts.filter(part=>this.area(part)<=area);
+return this.divided([...small,...halves.map(([first])=>first),...halves.map(([,second])=>second)],area)}sides({cell,low,
+size}){let at=(i,j)=>this.position(cell,[low[0]+size[0]*i,low[1]+size[1]*j]);return[subtract2(at(1,.5),at(0,.5)),subtract2(
+at(.5,1),at(.5,0))]}area(part){return length2(cross2(...this.sides(part)))}},Neighbours=class{most;cubes=new Map;constructor(most){
+this.most=most}cube(point){return point.map(x=>Math.floor(x/this.most))}add(point){let key=cubeKey(...this.cube(point)),
+there=this.cubes.get(key);there?there.push(point):this.cubes.set(key,[point])}distance(point){let[i,j,k]=this.cube(point),
+nearest=this.most;for(let n=0;n<27;n+=1){let key=cubeKey(i+n%3-1,j+Math.floor(n/3)%3-1,k+Math.floor(n/9)-1);for(let other of this.
+cubes.get(key)??[])nearest=Math.min(nearest,length2(subtract2(point,other)))}return nearest}},OCTAVE_PRIME=2654435769,SEED_PRIME=2246822507,
+HASH_FACTORS=[739982445,695872825],HASH_SHIFT=15;function cubeKey(i,j,k){return Math.imul(i,2376512323)^Math.imul(j,3625334849)^
+Math.imul(k,3407524639)}function mixed(key){let hash=key>>>0;for(let factor of HASH_FACTORS)hash=Math.imul(hash^hash>>>HASH_SHIFT,
+factor)>>>0;return(hash^hash>>>HASH_SHIFT)>>>0}var shareOf2=key=>key/2**32;function wholeCell(cell){return{cell,low:[0,0],
+size:[1,1],key:mixed(cell)}}var awayOf=({eye},point)=>eye?length2(subtract2(point,eye)):1,pixelOf=({halfHeight,pixels},away)=>2*
+halfHeight/pixels*away,pixelAt=(view,point)=>pixelOf(view,awayOf(view,point));var SIZES=[[0,3],[1,2],[2,3],[5,3],[6,1]],FLOAT_BYTES=4,STRIDE=SIZES.reduce((sum,[,size])=>sum+size,0),Arrows=class{graphics;header;parts;seeds=null;array=null;buffer=null;drawn=null;constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts}program(settings,isClose){let{shaders,geometry}=this.header;if(!hasArrows(
+this.header,settings))return null;let variant=isClose&&!geometry.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.
+get(shaders.arrowVertex,shaders.arrowFragment,...variant)}draw(program,view,anchor,settings,values){let{graphics}=this,gl=graphics.
+context;this.seeds??=new ArrowSeeds(this.surface(),this.header.constants.arrows);let seeds=this.seeds.seen(view,arrowDistance(
+this.header,settings));this.array??=this.make(),gl.bindVertexArray(this.array),(this.drawn?.seeds!==seeds||String(this.drawn.
+anchor)!==String(anchor))&&(gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer),gl.bufferData(gl.ARRAY_BUFFER,this.numbers(seeds,
+anchor),gl.DYNAMIC_DRAW),this.drawn={seeds,anchor}),graphics.programs.use(program,values),gl.enable(gl.BLEND),gl.blendFuncSeparate(
+gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),gl.depthMask(!1),gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,2*(this.
+header.constants.arrows.pieces+1),seeds.length),gl.depthMask(!0),gl.disable(gl.BLEND),gl.bindVertexArray(null)}forget(){
+this.seeds=this.drawn=null}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),
+this.array=this.buffer=this.seeds=this.drawn=null}make(){let gl=this.graphics.context,array=this.graphics.counted(gl.createVertexArray());
+this.buffer=this.graphics.counted(gl.createBuffer()),gl.bindVertexArray(array),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer);
+let offset=0;for(let[attribute,size]of SIZES)gl.enableVertexAttribArray(attribute),gl.vertexAttribPointer(attribute,size,
+gl.FLOAT,!1,STRIDE*FLOAT_BYTES,offset),gl.vertexAttribDivisor(attribute,1),offset+=size*FLOAT_BYTES;return array}numbers(seeds,anchor){
+let{geometry}=this.header,{seeds:made}=this,triangles=this.parts.get("triangles")?.data,places=geometry.triangles?null:coordinates(
+geometry);return Float32Array.from(seeds.flatMap(seed=>{let[i,j]=seed.place,first=3*seed.cell;return[...subtract2(seed.position,
+anchor),...(places&&made?.between(places,seed,2))??[i*(1-j),j],...made?.normal(seed)??[0,0,1],...triangles&&geometry.triangles?
+triangles.slice(first,first+3):[0,0,0],seed.radius]}))}surface(){let{geometry}=this.header,nodes=this.parts.get("positio\
+n")?.data??new Float32Array;return{geometry,nodes,corners:this.corners()}}corners(){let{geometry}=this.header,[rows,columns]=geometry.
+shape,result2=[];if(geometry.triangles){let nodes=this.parts.get("triangles")?.data??[];for(let n=0;n<nodes.length;n+=3)
+result2.push(nodes[n],nodes[n+1],nodes[n+2],nodes[n+2]);return Uint32Array.from(result2)}let cells=this.parts.get("cells")?.
+data;for(let n=0;n<(rows-1)*(columns-1);n+=1){if(cells&&!cells[n])continue;let low=n+Math.floor(n/(columns-1));result2.push(
+low,low+1,low+columns,low+columns+1)}return Uint32Array.from(result2)}};var BODY_PARTS=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],LIGHTS=8,[ENDS_BYTES,COLOURS_BYTES]=[
 24,8],BEHIND=[1,2],PLATE_MARGIN=.2;function atEnds(values,pieces,size){let Type=values.constructor,ends=new Type(size*pieces.
 length);for(let n=0;n<pieces.length;n+=1)for(let k=0;k<size;k+=1)ends[size*n+k]=values[size*pieces[n]+k];return ends}function lightUniforms({
 geometry,bodies},camera){let[right,up,ahead]=camera.axes,lights=(bodies?.lights??[]).slice(0,LIGHTS),ways=lights.map(({way,
@@ -1394,29 +1470,31 @@ Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coar
 n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,
 values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
-alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;bodies;anchor=[
+alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;anchor=[
 0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),this.bodies=
-new Bodies(graphics,header,parts)}missing(before,after){let{geometry,slices,scalars,paper,pyramid}=this.header,{trace}=slices,
-names=["mesh",...trace?.parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&names.push("places"),this.header.
-bodies?.runs.length&&names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
-[before,after]))trace?names.push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===
-2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cma\
-p"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(
-step,step).map(name=>name.startsWith("flow/")?stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.
-header.scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
-after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
-slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.
-nodes??[],shape2={flow:[...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.
-rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,
-part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.
-shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),
-digest=name=>this.key(["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.
-shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,
-geometry.shape)),steps.every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.
-graphics,this.header,trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;
-if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],
-step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
+new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts)}isReady(settings){let programs=[!1,!0].map(
+isClose=>this.arrows.program(settings,isClose));return this.earth.isReady&&this.bodies.isReady&&programs.every(program=>program?.
+ready??!0)}missing(before,after){let{geometry,slices,scalars,paper,pyramid}=this.header,{trace}=slices,names=["mesh",...trace?.
+parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&names.push("places"),this.header.bodies?.runs.length&&names.
+push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))trace?names.
+push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===2&&names.push(`ext\
+ra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push(
+"noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(step,step).map(name=>name.
+startsWith("flow/")?stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.header.scalars){let{name,
+steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`\
+scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.
+header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??[],shape2={flow:[
+...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.rows.size,geometry.columns.
+size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,part.shape[2]],step:paper?
+[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.shape)}make(steps,until){
+let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(
+["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.
+planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),steps.
+every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.graphics,this.header,
+trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;if(!trace||this.
+resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],step,
+trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
 tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
 get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.
 advance(until),!texture)return!1;this.stopTracing()}return this.take(name,"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){
@@ -1425,17 +1503,18 @@ digest};graphics.release(parts.get(name)),parts.set(name,graphics.hold(part)),th
 missing(steps[0],steps[steps.length-1]).length&&(!this.header.slices.trace||this.isLoaded(steps))}stopTracing(){this.graphics.
 tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.
 parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,
-step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=this.drawn=null);let sliced=["slices","extra","fl\
-ow"].includes(kind);!sliced&&kind!=="scalars"&&this.earth.forget(name),BODY_PARTS.includes(kind)&&this.bodies.dispose();
-for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);SOURCES.includes(kind)&&this.dropSlices(NaN,NaN),
-this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&(resource.users-=
-1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.key)))}dispose(){
-for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.dispose(),this.bodies.dispose()}key(names,...rest){
-let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify(
-[digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,
-whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?graphics.common.get(whole):void 0,object=shared2?.object??graphics.
-counted(make()),resource=shared2??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,
-resource),shared2||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
+step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=this.drawn=null),["position","cells","triangles"].
+includes(kind)&&this.arrows.forget();let sliced=["slices","extra","flow"].includes(kind);!sliced&&kind!=="scalars"&&this.
+earth.forget(name),BODY_PARTS.includes(kind)&&this.bodies.dispose();for(let user of sliced?[`slices/${step}`]:USERS[kind]??
+[])this.drop(user);SOURCES.includes(kind)&&this.dropSlices(NaN,NaN),this.drop("array")}drop(name){let resource=this.resources.
+get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.
+object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);
+this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),this.arrows.dispose()}key(names,...rest){let digests=names.
+map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):
+""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&
+`${name.split("/")[0]} ${key}`,shared2=whole?graphics.common.get(whole):void 0,object=shared2?.object??graphics.counted(
+make()),resource=shared2??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),
+shared2||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
 let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
 bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
 take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.
@@ -1665,19 +1744,18 @@ return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1
 length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);
 this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)return;if(program.
 error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||
-!this.scene?.earth.isReady||!this.scene.bodies.isReady)return this.request();let isComplete=!this.sharp&&this.renderer.draw(
-program,shown,until);this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.
-panel.clear(),this.scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||
-this.request()}advance(now){let{player,options}=this,isMade=steps=>(this.next=steps,options.streamed?!0:!this.missing(steps).
-length&&!!this.scene?.make(steps,now));this.next=[],this.isPainted=!1,!(!player.playing||!player.advance(now,isMade))&&(player.
-varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(
-!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to l\
-ook at yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},
-shown,density)}get canPick(){let{scene,graphics}=this;return!!scene&&!graphics.isLost&&!!graphics.gl&&scene.pickers.every(
-({ready})=>ready)}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&
-groundAt(header,camera,x,y)}find(x,y){let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.
-canPick)return null;let{anchor}=this.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},
-x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+!this.scene?.isReady(this.settings))return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,shown,until);
+this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.
+scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){
+let{player,options}=this,isMade=steps=>(this.next=steps,options.streamed?!0:!this.missing(steps).length&&!!this.scene?.make(
+steps,now));this.next=[],this.isPainted=!1,!(!player.playing||!player.advance(now,isMade))&&(player.varies?options.onTime?.(
+player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
+let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let anchor=scene?.
+anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},shown,density)}get canPick(){
+let{scene,graphics}=this;return!!scene&&!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){
+return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
+let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
+view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
 controls",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
 height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.

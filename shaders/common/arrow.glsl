@@ -45,12 +45,27 @@ int flowtexWalk(vec2 coordinate, vec4 base, int side, float spacing, int count, 
 {
   flowtexTrailCount = 0;
   flowtexTrail[1] = flowtexTrail[2] = vec3(0.0);
-  if (count == 0 || (side > 0 && u_arrowSides < 2))
-    return 0;
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   int layer = side > 0 ? u_lagCount : 0;
   flowtexSide(sums, coordinate, 0.0, base.xyz, layer, float(side), spacing, base.w * u_unit, count, inCell);
   return flowtexTrailCount < count ? max(flowtexTrailCount - 1, 0) : count;
+}
+
+// The number of pieces, of a whole arrow, before one side of a path ends; and how far from the seed the path
+// is after these, over their length, where that is less than what came.
+int flowtexPieces(vec2 coordinate, vec4 base, int side, float spacing, bool inCell, inout float straight)
+{
+  if (side > 0 && u_arrowSides < 2)
+    return 0;
+  float whole = spacing * float(u_pieces) / (base.w * u_unit); // as a lag
+  int layer = side > 0 ? u_lagCount : 0;
+  if (flowtexLayer(coordinate, layer + 1, 0.0).w < FLOWTEX_ARROW_FREE * whole)
+    return flowtexWalk(coordinate, base, side, spacing, u_pieces, inCell);
+  int slice = 0;
+  do ++slice;
+  while (slice < u_lagCount && u_lags[slice - 1] < whole);
+  straight = min(straight, length(flowtexLayer(coordinate, layer + slice, 0.0).xyz) / length(base.xyz));
+  return u_pieces;
 }
 
 // Change in pixels of a point of clip space along a way there.
@@ -83,12 +98,11 @@ FlowtexStroke flowtexStroke(mat4 matrix, vec3 position, vec3 normal, vec2 coordi
   float spacing = step_ / max(length(along), FLOWTEX_ARROW_SHORTEST * pixels.x);
   bool inCell = flowtexEnterCell(coordinate, spacing * float(u_pieces));
   // The seed is in the middle, where the path goes on to both sides.
-  int before = flowtexWalk(coordinate, base, -1, spacing, u_pieces + 1, inCell);
-  float far = before < u_pieces ? 1e30 : length(flowtexTrail[1]);
-  int beyond = flowtexWalk(coordinate, base, 1, spacing, u_pieces + 1, inCell);
-  far = min(far, beyond < u_pieces ? 1e30 : length(flowtexTrail[1]));
+  float straight = 1.0;
+  int before = flowtexPieces(coordinate, base, -1, spacing, inCell, straight);
+  int beyond = flowtexPieces(coordinate, base, 1, spacing, inCell, straight);
   // None that winds around itself.
-  stroke.share *= smoothstep(FLOWTEX_ARROW_WOUND, 1.5 * FLOWTEX_ARROW_WOUND, far / (spacing * float(u_pieces)));
+  stroke.share *= smoothstep(FLOWTEX_ARROW_WOUND, 1.5 * FLOWTEX_ARROW_WOUND, straight);
   int behind = min(before, u_pieces / 2);
   int ahead = min(beyond, u_pieces - behind);
   behind = min(before, u_pieces - ahead);
@@ -96,11 +110,11 @@ FlowtexStroke flowtexStroke(mat4 matrix, vec3 position, vec3 normal, vec2 coordi
   if (2 * count < u_pieces)
     return stroke;
   int at = min(piece, count) - behind;
-  int walked = flowtexWalk(coordinate, base, at < 0 ? -1 : 1, spacing, abs(at) + (at == 0 ? 0 : 1), inCell);
   vec3 here = vec3(0.0);
   vec3 way = tangent;
   if (at != 0)
   {
+    flowtexWalk(coordinate, base, at < 0 ? -1 : 1, spacing, abs(at) + 1, inCell);
     bool isWhole = flowtexTrailCount > abs(at);
     here = flowtexTrail[isWhole ? 1 : 2];
     way = (at < 0 ? -1.0 : 1.0) * (flowtexTrail[2] - flowtexTrail[isWhole ? 0 : 1]);

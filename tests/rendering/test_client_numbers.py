@@ -25,6 +25,7 @@ from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.earth import MapLines, Projection
 from flowtex.field.dates import date_text
 from flowtex.probe import probe
+from flowtex.rendering.arrow_seeds import ArrowSeeds, seed_limits
 from flowtex.rendering.cpu.noise import noise_lattice, octave
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.map_overlay import map_lines
@@ -183,6 +184,48 @@ def assert_near(found: Any, expected: Any, where: str = "") -> None:
 
 def test_uniforms_for_the_client() -> None:
     check("uniforms.json", {name: uniforms_of(name) for name in VIEWS})
+
+
+def seeds_of(
+    field: FlowField, eye: Any, half: float, middle: tuple[float, float]
+) -> dict[str, Any]:
+    """Seeds of a view down onto a place, along parallel rays or from an eye."""
+    geometry = TextureSet.build(SliceStore(field), Settings()).geometry
+    seeds = ArrowSeeds(geometry)
+    sides = [
+        np.array([sign * (axis == k) for k in range(3)]) for axis in (0, 1) for sign in (1, -1)
+    ]
+    if eye is None:
+        planes = [[*s, half - s[:2] @ middle] for s in sides]
+    else:
+        planes = [[*(n := s - [0, 0, half]), -n @ eye] for s in sides]
+    view = TileView(None if eye is None else np.array(eye), half, 90.0, np.array(planes))
+    seen = seeds.seen(view, 20.0)
+    order = np.lexsort((seen.radius, seen.cell))
+    frame = {"center": geometry.center, "extent": geometry.extent, "frame": geometry.frame.ravel()}
+    return {
+        "surface": {
+            "geometry": frame,
+            "nodes": geometry.at_vertices(geometry.position).astype(float).ravel(),
+            "corners": seeds.corners.ravel(),
+        },
+        "view": {"eye": view.eye, "halfHeight": half, "pixels": 90.0, "planes": view.planes},
+        "seeds": [
+            [int(seen.cell[n]), *seen.place[n].tolist(), float(seen.radius[n])] for n in order
+        ],
+    }
+
+
+def test_seeds_of_arrows_for_the_client() -> None:
+    points, triangles = random_plane(np.random.default_rng(5), 60)
+    scattered = FlowField.from_triangles(points, triangles, np.ones_like(points) * [1, 0.5, 0])
+    cases = [
+        seeds_of(gyre(13, 7), None, 0.5, (1.0, 0.5)),
+        seeds_of(gyre(13, 7), None, 1e-4, (0.63, 0.37)),
+        seeds_of(strip(), (1.2, 0.1, 2.0), 0.3, (0, 0)),
+        seeds_of(scattered, None, 0.02, (0.4, 0.6)),
+    ]
+    check("seeds.json", {"limits": seed_limits(), "spacing": 20.0, "cases": plain(cases)})
 
 
 #: Settings on which the mean colours of a picture depend.

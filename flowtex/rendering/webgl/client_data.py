@@ -49,6 +49,8 @@ SHADERS = {
     "groundFragment": "webgl2/ground_fragment.glsl",
     "bodyVertex": "webgl2/body_vertex.glsl",
     "bodyFragment": "webgl2/body_fragment.glsl",
+    "arrowVertex": "webgl2/arrow_vertex.glsl",
+    "arrowFragment": "webgl2/arrow_fragment.glsl",
     "fullVertex": "webgl2/full_vertex.glsl",
     "probe": "webgl2/probe.glsl",
 }

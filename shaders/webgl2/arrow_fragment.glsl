@@ -1,0 +1,11 @@
+in vec2 flowtexPlaceOut;
+in vec2 flowtexShapeOut;
+
+//#include common/arrow_shape.glsl
+
+out vec4 flowtexOut;
+
+void main()
+{
+  flowtexOut = flowtexArrow(flowtexPlaceOut, flowtexShapeOut.x, flowtexShapeOut.y);
+}

@@ -1,0 +1,33 @@
+// A vertex of an arrow; what a seed has is the same for all of them.
+
+in vec3 flowtexPosition; // in the surface's own frame, from u_anchor of the client
+in vec2 flowtexCoordinate;
+#ifndef FLOWTEX_PLANAR
+in vec3 flowtexNormal;
+#else
+const vec3 flowtexNormal = vec3(0.0, 0.0, 1.0);
+#endif
+#ifdef FLOWTEX_TRIANGLES
+in vec3 flowtexCorners;
+#endif
+in float flowtexRadius;
+
+uniform mat4 u_matrix; // from the surface's frame to the picture
+
+out vec2 flowtexPlaceOut;
+out vec2 flowtexShapeOut; // size and share
+
+//#include common/arrow.glsl
+
+void main()
+{
+#ifdef FLOWTEX_TRIANGLES
+  flowtexSetCorners(flowtexCorners);
+#endif
+  float side = float(gl_VertexID & 1) * 2.0 - 1.0;
+  FlowtexStroke stroke = flowtexStroke(u_matrix, flowtexPosition, flowtexNormal, flowtexCoordinate,
+                                       flowtexRadius, gl_VertexID >> 1, side);
+  gl_Position = stroke.position;
+  flowtexPlaceOut = stroke.place;
+  flowtexShapeOut = vec2(stroke.size, stroke.share);
+}

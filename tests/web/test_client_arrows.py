@@ -1,0 +1,57 @@
+"""Arrows in the browser are those of VTK's pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from flows import gyre, scattered_gyre, swinging, torus
+from matrix import ASIDE, COLOUR, GROUND, SIZE, TILTED, straight
+from scipy import ndimage
+from webgl_page import ClientPage, packed, state
+
+import flowtex
+from flowtex import FlowField
+from flowtex.camera import Camera
+from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.scene import Scene
+from flowtex.settings import Settings
+
+pytestmark = pytest.mark.browser
+
+PLAIN = {"samples": 11, "strength": 0.0, "arrows": 24}
+VIEWS: dict[str, tuple[Callable[[], FlowField], Camera, dict[str, Any]]] = {
+    "plane": (gyre, straight(2), {}),
+    "near": (gyre, straight(300), {}),
+    "aslant": (gyre, TILTED, {"arrow_length": "speed"}),
+    "curved": (torus, ASIDE, {}),
+    "between two steps": (swinging, straight(1, (0, 0)), {"time": 0.55}),
+    "triangles": (scattered_gyre, straight(3), {}),
+}
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_arrows_are_those_of_vtk(client: ClientPage, name: str) -> None:
+    make, camera, given = VIEWS[name]
+    options = {**PLAIN, **given}
+    time = options.pop("time", None)
+    scene = Scene(make(), Settings(**options))
+    data = ClientData(scene.textures, Colours(plain=COLOUR, background=GROUND))
+    header = data.header(scene.settings, camera=state(camera), time=time)
+    steps = tuple(range(scene.textures.store.steps))
+    view = client.mount(packed(data, header, steps), SIZE, controls=False, smooth=False)
+    theirs = client.picture(view)
+    look = {"scalars": False, "color": COLOUR, "background": GROUND, "lighting": False}
+    ours, without = (
+        flowtex.render(make(), size=SIZE, camera=camera, time=time, **{**look, **options, **more})
+        for more in ({}, {"arrows": 0})
+    )
+    assert (np.abs(ours.astype(int) - without) > 60).any(axis=-1).mean() > 0.02
+    # Outlines of the surface are smoothed in one of them.
+    inside = ndimage.binary_erosion((without == without[60, 90]).all(axis=-1), iterations=2)
+    off = np.abs(theirs.astype(int) - ours).max(axis=-1)[inside]
+    # Vertices lie at other fractions of a pixel.
+    assert (off > 8).mean() < 0.05
+    assert (off > 40).mean() < 0.003
