@@ -7,14 +7,13 @@ sticks to the surface, beside VTK's Surface LIC), ``popping`` (a slow zoom), ``m
 ``FLOWTEX_DATA``). All with the settings' defaults. ``--json FILE`` keeps the figures.
 
 ``--judge FILE`` takes another judge of streaks, grain, aliasing and motion instead of
-``tests/measures.py``: a module with the functions alignment, grain, aliasing and carried.
+:mod:`flowtex.quality`: a module with the functions alignment, grain, aliasing and carried.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import sys
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import SimpleNamespace
@@ -27,10 +26,9 @@ from scenes import Stage, gyre_field, gyre_view, vortex_view
 from seams import across_lines, seams
 
 import flowtex
+from flowtex import quality
+from flowtex._util.blocks import block_means
 from flowtex.diagnostics import require_opengl
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-import measures
 
 Figures = dict[str, dict[str, float]]
 
@@ -38,10 +36,10 @@ SIZE = (1024, 768)
 ZOOMS = (1, 1.41, 2, 4, 8, 16, 45, 64, 256, 512, 1024)
 #: What measures the pictures; ``--judge`` puts another in its place.
 JUDGE = SimpleNamespace(
-    streaks=measures.streaks,
-    grain=measures.grain,
-    aliasing=measures.aliasing,
-    carried=measures.carried,
+    streaks=lambda *given: quality.alignment(*given)._asdict(),
+    grain=lambda *given: quality.grain(*given)._asdict(),
+    aliasing=quality.aliasing,
+    carried=quality.sticking,
 )
 #: Seconds from one frame of an animation to the next.
 FRAME = 1 / 30
@@ -86,7 +84,9 @@ def aliased() -> Figures:
             picture = flowtex.render(field, scalars=False, **options)
             options["size"] = (4 * size[0], 4 * size[1])
             large = flowtex.render(field, scalars=False, grain=4 * grains, **options)
-            error = JUDGE.aliasing(picture, measures.averaged(large, 4), view.mask)
+            error = JUDGE.aliasing(
+                picture, block_means(np.asarray(large, float).mean(axis=-1), 4), view.mask
+            )
             found[f"zoomed out {out} times, lod={lod}"] = {"error": error}
     return found
 

@@ -17,7 +17,7 @@ from flowtex.settings import Settings
 from flowtex.trace import TraceSlices, trace
 
 if TYPE_CHECKING:
-    from flowtex import examples, pyramid
+    from flowtex import examples, pyramid, quality
     from flowtex.camera import Camera
     from flowtex.display import show
     from flowtex.field.formula.make import formula
@@ -49,6 +49,7 @@ __all__ = [
     "formula",
     "movie",
     "pyramid",
+    "quality",
     "render",
     "separatrices",
     "show",
@@ -79,7 +80,7 @@ def __getattr__(name: str) -> Any:
     """Import what draws (PyVista, VTK, the widget) only when it is used."""
     import importlib
 
-    if name in ("examples", "pyramid"):
+    if name in ("examples", "pyramid", "quality"):
         return importlib.import_module(f"flowtex.{name}")
     if name in _DRAWS:
         importlib.import_module("flowtex.diagnostics").begin_trial()

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
+from flowtex import quality
 from flowtex._util.array_types import Bools, Bytes, Floats
 from flowtex._util.blocks import block_means
 from flowtex.camera import Camera
@@ -22,7 +23,6 @@ from flowtex.rendering.cpu.shade import shade
 from flowtex.rendering.cpu.texture import LookupMaker
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
-from paper import measures
 from paper.bench import Bench
 
 #: Colour of a surface without scalars.
@@ -145,13 +145,13 @@ class View:
         clip = points @ matrix[:, :3].T + matrix[:, 3]
         return np.asarray(clip[..., :2] / clip[..., 3:] * np.array(self.size) / 2)
 
-    def streaks(self, value: Floats) -> measures.Streaks:
+    def streaks(self, value: Floats) -> quality.Alignment:
         """Direction of the texture against the flow."""
-        return measures.streaks(value, *self.flow, self.mask)
+        return quality.alignment(value, *self.flow, self.mask)
 
-    def grain(self, value: Floats) -> measures.Grain:
+    def grain(self, value: Floats) -> quality.Grain:
         """Grain of the texture along the flow and across it."""
-        return measures.grain(value, *self.flow, self.mask, self.bench.seed)
+        return quality.grain(value, *self.flow, self.mask, seed=self.bench.seed)
 
 
 def view_of(

@@ -15,7 +15,6 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates, sobel
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
-from flowtex._util.blocks import block_means
 
 #: Standard deviation in pixels of the window in which streaks are told from noise.
 WINDOW = 4.0
@@ -90,27 +89,6 @@ def _half(g: Floats, start: Floats, places: Iterator[Floats]) -> float:
             return distance - (0.5 - now) / (before - now)
         before = now
     return float(FARTHEST)
-
-
-def fineness(image: AnyArray, mask: Bools) -> float:
-    """Mean change from pixel to pixel over the deviation: how fine the grain is."""
-    g = grey(image)
-    step = np.hypot(np.diff(g, axis=0)[:, :-1], np.diff(g, axis=1)[:-1])
-    return float(step[mask[:-1, :-1]].mean() / g[mask].std())
-
-
-def aliasing(image: AnyArray, reference: AnyArray, mask: Bools) -> float:
-    """Root mean square of the error over the deviation of the reference.
-
-    The reference is the same view, drawn several times as large and averaged.
-    """
-    a, b = grey(image)[mask], grey(reference)[mask]
-    return float(np.sqrt(np.mean((a - b) ** 2)) / b.std())
-
-
-def averaged(image: AnyArray, times: int) -> Floats:
-    """Mean of blocks of ``times`` by ``times`` pixels."""
-    return np.asarray(block_means(grey(image), times))
 
 
 def carried(

@@ -27,6 +27,7 @@ PACKAGE = ROOT / "flowtex"
 LAYERS: tuple[tuple[str, ...], ...] = (
     ("errors", "_version"),
     ("_util",),
+    ("quality",),
     ("settings",),
     ("earth",),
     ("field",),
@@ -56,7 +57,7 @@ RENDERERS = ("rendering.cpu", "rendering.vtk", "rendering.webgl")
 OUTSIDE = ("benchmarks", "docs", "paper", "tests", "tools")
 
 #: Most entries at the top of the package, modules in a folder, and lines in a source file.
-MAX_ENTRIES, MAX_MODULES, MAX_LINES = 27, 15, 600
+MAX_ENTRIES, MAX_MODULES, MAX_LINES = 28, 15, 600
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from flowtex import quality
 from flowtex._util.array_types import Floats
 from paper import measures
 from paper.bench import OURS, PAPER, Bench
@@ -110,7 +111,7 @@ def _compared(view: View, times: int, **settings: Any) -> Comparison:
         streaks = view.streaks(values)
         pictures[lod] = values
         figures[lod] = {
-            "aliasing": measures.aliasing(values, reference, view.mask),
+            "aliasing": quality.aliasing(values, reference, view.mask),
             "likeness": measures.likeness(values, reference, view.mask),
             "angle": streaks.angle,
             "coherence": streaks.coherence,

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex import quality
 from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.paper_noise import PaperImages, PaperNoise
@@ -65,7 +66,7 @@ def _coherence(view: View, values: Floats) -> dict[str, float]:
         "fast": view.mask & (view.speed >= high),
     }
     coherence = {
-        name: measures.streaks(values, *view.flow, mask).coherence for name, mask in masks.items()
+        name: quality.alignment(values, *view.flow, mask).coherence for name, mask in masks.items()
     }
     return {**coherence, "angle": view.streaks(values).angle}
 

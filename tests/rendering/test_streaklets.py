@@ -8,7 +8,7 @@ import pytest
 from flows import gyre, lines, swinging
 from scipy import ndimage
 
-from flowtex import FlowField
+from flowtex import FlowField, quality
 from flowtex._util.array_types import Floats
 from flowtex.camera import Camera
 from flowtex.field.locate import locator
@@ -19,8 +19,8 @@ from flowtex.scene import Scene
 from flowtex.settings import Settings
 
 SIZE = (180, 120)
-#: Pixels over which a still is judged around each of its pixels.
-WINDOW = 29
+#: Pixels along the border that are not judged.
+BORDER = quality.SENSE_WINDOW // 2
 
 
 @cache
@@ -36,22 +36,9 @@ def picture(field: FlowField, zoom: float) -> Picture:
 
 
 def sense(drawn: Picture, velocity: Floats) -> float:
-    """Share of the strokes' pixels whose sense is that of the flow, by the picture alone.
-
-    A stroke brightens slowly towards its head and ends there, so along the way that the flow goes
-    a picture has few large steps downward: the cube of the derivative is negative in the mean.
-    """
-    way = velocity[..., :2] * (1, -1)
-    way /= np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-30)
-    value = np.where(drawn.covered, drawn.value, 0.0)
-    by_y, by_x = np.gradient(value)
-    along = by_x * way[..., 0] + by_y * way[..., 1]
-    inside = ndimage.binary_erosion(drawn.covered, iterations=2)
-    cubes = ndimage.uniform_filter(np.where(inside, along**3, 0.0), WINDOW)
-    strokes = inside & (value > np.nanpercentile(drawn.value, 80))
-    border = WINDOW // 2
-    strokes[:border] = strokes[-border:] = strokes[:, :border] = strokes[:, -border:] = False
-    return float((cubes[strokes] < 0).mean())
+    covered = ndimage.binary_erosion(drawn.covered, iterations=2)
+    judged = np.pad(covered[BORDER:-BORDER, BORDER:-BORDER], BORDER)
+    return quality.sense(drawn.value, velocity[..., 0], velocity[..., 1], judged)
 
 
 def velocity_of(field: FlowField, drawn: Picture) -> Floats:

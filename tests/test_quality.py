@@ -1,0 +1,151 @@
+"""The measures of pictures on patterns whose figures are known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from measures import grain as other_grain
+from measures import streaks as other_streaks
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
+
+from flowtex import quality
+from flowtex.errors import FieldError
+
+Floats = NDArray[np.float64]
+SIZE = (160, 200)
+ONES = np.ones(SIZE)
+EVERYWHERE = np.pad(np.ones((128, 168), bool), 16)
+
+
+def stripes(degrees: float, wave: float = 8.0) -> tuple[Floats, Floats, Floats]:
+    """Lines at an angle to the right, anticlockwise, and the direction along them."""
+    rows, columns = np.indices(SIZE)
+    a = np.radians(degrees)
+    across = columns * np.sin(a) + rows * np.cos(a)
+    ones = np.ones(SIZE)
+    return np.sin(2 * np.pi * across / wave), ones * np.cos(a), ones * np.sin(a)
+
+
+def noise(rng: np.random.Generator, *sigma: float) -> Floats:
+    return np.asarray(gaussian_filter(rng.standard_normal(SIZE), sigma or 0, mode="wrap"))
+
+
+@pytest.mark.parametrize("degrees", [0, 20, 45, 90, 135, 170])
+def test_lines_are_coherent_and_at_their_angle(degrees: float) -> None:
+    picture, u, v = stripes(degrees)
+    result = quality.alignment(picture, u, v, EVERYWHERE)
+    assert result.coherence > 0.99
+    assert result.angle < 1.0
+    # Neither length nor sign of the flow counts, and a right angle is the farthest.
+    assert quality.alignment(picture, -7 * u, -7 * v, EVERYWHERE) == pytest.approx(result, abs=1e-6)
+    assert quality.alignment(picture, -v, u, EVERYWHERE).angle > 89
+
+
+def test_white_noise_has_no_direction(rng: np.random.Generator) -> None:
+    ones = np.ones(SIZE)
+    result = quality.alignment(noise(rng), ones, 0 * ones, EVERYWHERE)
+    assert result.coherence < 0.25
+    assert abs(result.angle - 45) < 5
+
+
+def test_grain_of_smoothed_noise_is_that_of_its_correlation(rng: np.random.Generator) -> None:
+    ones = np.ones(SIZE)
+    picture = noise(rng, 1.5, 4.0)  # rows, columns
+    # White noise behind a Gaussian has a Gaussian correlation, root two as wide.
+    half = np.sqrt(2) * np.sqrt(2 * np.log(2))
+    result = quality.grain(picture, ones, 0 * ones, EVERYWHERE)
+    assert result.along == pytest.approx(4.0 * half, rel=0.12)
+    assert result.across == pytest.approx(1.5 * half, rel=0.12)
+    turned = quality.grain(picture, 0 * ones, ones, EVERYWHERE)
+    assert turned == pytest.approx((result.across, result.along), rel=0.05)
+
+
+def test_grain_follows_a_bent_flow() -> None:
+    rows, columns = np.indices(SIZE).astype(np.float64)
+    y, x = SIZE[0] / 2 - rows - 0.3, columns - SIZE[1] / 2 + 0.3
+    radius = np.hypot(x, y)
+    mask = EVERYWHERE & (radius > 20) & (radius < 60)
+    result = quality.grain(np.sin(radius * 2), -y, x, mask)
+    assert result.along > 30
+    assert result.across < 1.2
+
+
+def test_the_measures_agree_with_the_tests_own(rng: np.random.Generator) -> None:
+    picture, u, v = noise(rng, 0.8, 6.0), np.ones(SIZE), np.zeros(SIZE)
+    ours, theirs = (
+        quality.alignment(picture, u, v, EVERYWHERE),
+        other_streaks(picture, u, v, EVERYWHERE),
+    )
+    assert ours.angle == pytest.approx(theirs["angle"], abs=0.5)
+    assert ours.coherence == pytest.approx(theirs["coherence"], abs=0.05)
+    grains, others = (
+        quality.grain(picture, u, v, EVERYWHERE),
+        other_grain(picture, u, v, EVERYWHERE),
+    )
+    assert grains.along == pytest.approx(others["along"], rel=0.1)
+
+
+def test_missing_pixels_do_not_spread(rng: np.random.Generator) -> None:
+    picture, u, v = stripes(30)
+    holed = picture.copy()
+    holed[:12] = np.nan
+    whole = quality.alignment(picture, u, v, EVERYWHERE)
+    assert quality.alignment(holed, u, v, EVERYWHERE).coherence == pytest.approx(
+        whole.coherence, abs=0.02
+    )
+
+
+def test_a_sense_is_that_of_heads() -> None:
+    ramps = np.tile((np.arange(SIZE[1]) % 25.0) ** 3, (SIZE[0], 1))
+    colours = np.repeat(ramps[..., None] / ramps.max() * 255, 3, axis=-1).astype(np.uint8)
+    ones, zeros = np.ones(SIZE), np.zeros(SIZE)
+    assert quality.sense(ramps, ones, zeros) == quality.sense(colours, ones, zeros) == 1
+    assert quality.sense(ramps, -ones, zeros) == 0
+    assert quality.sense(ramps.T, zeros.T, -ones.T) == 1
+    even, u, v = stripes(30)
+    assert quality.sense(even, u, v) == pytest.approx(0.5, abs=0.4)
+
+
+def test_a_texture_that_is_carried_sticks(rng: np.random.Generator) -> None:
+    first = noise(rng, 1.5, 1.5)
+    second = np.roll(first, (2, -5), axis=(0, 1))
+    assert quality.sticking(first, second, -5, 2) > 0.99
+    assert quality.sticking(first, second, 0, 0) < 0.3
+    assert quality.sticking(first, first, np.zeros(SIZE), np.zeros(SIZE), EVERYWHERE) > 0.99
+
+
+def test_spacing_tells_even_marks_from_random_ones(rng: np.random.Generator) -> None:
+    lattice = np.stack(np.meshgrid(np.arange(20.0), np.arange(15.0)), axis=-1).reshape(-1, 2)
+    assert quality.spacing(lattice) == 0
+    assert quality.spacing(7 * lattice + rng.normal(0, 0.5, lattice.shape)) < 0.15
+    # Of points at random the distance to the nearest has a Rayleigh distribution.
+    random = rng.random((20_000, 2))
+    assert quality.spacing(random) == pytest.approx(np.sqrt(4 / np.pi - 1), rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("ab", ONES, ONES), r"^picture is <U2 of shape \(\); expected numbers of shape"),
+        ((np.full(SIZE, np.nan), ONES, ONES), r"^picture is NaN everywhere"),
+        ((ONES, ONES[:-1], ONES), r"^u has shape \(159, 200\); expected \(160, 200\)"),
+        ((ONES, ONES, ONES, ONES[:2]), r"^mask has shape \(2, 200\)"),
+        ((ONES, 0 * ONES, 0 * ONES), r"^mask is False everywhere"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused(arguments: Any, message: str) -> None:
+    for measure in (quality.alignment, quality.grain, quality.sense):
+        with pytest.raises(FieldError, match=message):
+            measure(*arguments)
+
+
+def test_points_and_pairs_are_checked() -> None:
+    with pytest.raises(FieldError, match=r"^points has shape \(1, 2\); expected \(N, 2\)"):
+        quality.spacing([[0.0, 1.0]])
+    with pytest.raises(FieldError, match=r"^first has shape \(159, 200\) and second \(160, 200\)"):
+        quality.sticking(ONES[:-1], ONES, 0, 0)
+    with pytest.raises(FieldError, match=r"^picture has shape \(159, 200\) and reference"):
+        quality.aliasing(ONES[:-1], ONES)
