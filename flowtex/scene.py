@@ -510,7 +510,8 @@ def share_field(field: FlowField) -> FlowField:
     if has_pyramid(field):
         return field
     names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
-    words = (*names, field.periodic, field.sign_free, str(field.start), field.projection)
+    made = field.formula and (field.formula.texts, field.formula.parameters)
+    words = (*names, str(made), field.periodic, field.sign_free, str(field.start), field.projection)
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
     joined = () if field.triangles is None else (field.triangles,)

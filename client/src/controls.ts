@@ -96,6 +96,11 @@ export class Controls {
     return true;
   }
 
+  /** The rows of a formula's parameters. */
+  get parameters(): HTMLElement[] {
+    return [...this.controls.values()].filter(({ row }) => row.name.startsWith("formula.")).map(({ line }) => line);
+  }
+
   update(): void {
     const { settings } = this.viewer;
     for (const [name, { row, line, show }] of this.controls) {

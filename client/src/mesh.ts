@@ -6,9 +6,12 @@ import type { Vector } from "./vectors.ts";
 /** What a node without a value has, far below every colour map. */
 const NO_VALUE = -1e9;
 
-export function positions(data: Float32Array, anchor: Vector): Float32Array {
-  if (!anchor.some(Boolean)) return data;
-  return data.map((x, n) => x - anchor[n % 3]);
+/** Positions relative to a point, in whose surroundings single precision does. */
+export function positions(data: Data, anchor: Vector): Float32Array {
+  if (data instanceof Float32Array && !anchor.some(Boolean)) return data;
+  const result = new Float32Array(data.length);
+  for (let n = 0; n < data.length; n += 1) result[n] = data[n] - anchor[n % 3];
+  return result;
 }
 
 /** Pairs (u, v) of all nodes. */

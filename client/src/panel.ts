@@ -82,7 +82,9 @@ export class Panel {
   private legendLook = "";
   private readonly title = dom("div", { class: "title" });
   private readonly readout = dom("div", { class: "readout", role: "status" });
-  private readonly head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.readout]);
+  /** Sliders of a formula's parameters. */
+  private readonly parameters = dom("div", { class: "parameters" });
+  private readonly head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.parameters, this.readout]);
   private readonly note = dom("div", { class: "note", hidden: "", role: "alert" });
   /** What goes on, whose beginning is read out, and how far it is, which would be read again and again. */
   private readonly doing = dom("span", { role: "status" });
@@ -173,6 +175,7 @@ export class Panel {
     this.note.hidden = true;
     const isOther = this.controls.build(header);
     if (isOther) this.controls.element.prepend(...this.colours.rows, this.axesRow, this.paceRow);
+    if (isOther) this.parameters.replaceChildren(...this.controls.parameters);
     this.showLegend();
     this.update();
     this.arrange();
@@ -219,6 +222,7 @@ export class Panel {
     const moment = header && isApart && this.viewer.player.varies ? this.moment(header) : "";
     this.title.textContent = [title, moment].filter(Boolean).join(" · ");
     this.title.hidden = !this.title.textContent;
+    this.title.classList.toggle("formula", Boolean(header?.formula));
     const label = options.label ?? (title || name);
     root.setAttribute("aria-label", label ? `Flow texture: ${label}` : "Flow texture");
   }
@@ -376,6 +380,11 @@ export class Panel {
     this.wait([], true);
     this.note.hidden = true;
     delete this.viewer.root.dataset.failed;
+  }
+
+  failWithout(): void {
+    const remedy = "Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.";
+    this.fail("This browser has no WebGL2, which the picture is drawn with.", remedy);
   }
 
   fail(problem: string, detail: string): void {

@@ -240,6 +240,17 @@ export interface PoleHeader {
   plane: number[];
 }
 
+/** A number, a name, or the name of an operation and what it is applied to. */
+export type Tree = number | string | Tree[];
+
+/** What the velocity is computed from, where the client does: flowtex/rendering/webgl/formula.py. */
+export interface FormulaHeader {
+  /** The rates of the two coordinates, their names and ends. */
+  trees: [Tree, Tree];
+  names: [x: string, y: string];
+  ends: [x: [low: number, high: number], y: [low: number, high: number]];
+}
+
 type ShaderName =
   "vertex" | "fragment" | "pick" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment"
   | "arrowVertex" | "arrowFragment" | "bodyVertex" | "bodyFragment" | "fullVertex" | "probe";
@@ -328,6 +339,7 @@ export interface Header {
   /** Null where the whole surface is here. */
   pyramid: PyramidHeader | null;
   store?: StoreHeader;
+  formula?: FormulaHeader;
   limits: CameraLimits;
   table: Row[];
   settings: Settings;

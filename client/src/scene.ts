@@ -80,10 +80,10 @@ export class Scene {
 
   /** Names of the parts that a moment needs and that are not there. */
   missing(before: number, after: number): string[] {
-    const { geometry, slices, scalars, paper, pyramid } = this.header;
+    const { geometry, slices, scalars, paper, pyramid, formula } = this.header;
     const { trace } = slices;
     const names = ["mesh", ...(trace?.parts ?? ["position", ...(geometry.planar ? [] : ["normal"])])];
-    if (pyramid) names.push("places");
+    if (pyramid && !formula) names.push("places");
     if (this.header.bodies?.runs.length) names.push(...BODY_PARTS);
     if (geometry.triangles) names.push("triangles", "blocks");
     for (const step of new Set([before, after])) {
@@ -359,7 +359,7 @@ export class Scene {
     const vertices = <T extends Data>(values: T, size: number) =>
       corners ? atVertices(values, corners, size) : values;
     const nodes = () =>
-      vertices(positions(this.part("position").data as Float32Array, this.anchor), 3);
+      vertices(positions(this.part("position").data, this.anchor), 3);
     const normal = geometry.planar ? null : this.part("normal").data;
     const normals = <T extends Data>(nodal: T) =>
       corners ? vertexNormals(nodal, this.part("position").data, corners) : nodal;

@@ -39,6 +39,9 @@ export interface Choice {
 /** By name, coarse ones first. */
 export type Choices = Map<string, Choice>;
 
+/** The place of a block of a level. */
+export type PlaceOf = (level: number, row: number, column: number) => Data | number[];
+
 /** Numbers of a block's place: centre, radius, and longest side of a cell. */
 const PLACE = 5;
 
@@ -54,17 +57,20 @@ export function cellPixels(pyramid: PyramidHeader, settings: Settings): number {
 
 export class Pyramid {
   readonly header: PyramidHeader;
-  /** Places of the blocks of each level, row by row. */
-  private readonly places: Data[] = [];
+  private readonly place: PlaceOf;
 
-  constructor(header: PyramidHeader, places: Data) {
+  /** `places` has those of each level, row by row, or tells them. */
+  constructor(header: PyramidHeader, places: Data | PlaceOf) {
     this.header = header;
     let start = 0;
-    for (const [rows, columns] of header.blocks) {
-      const end = start + PLACE * rows * columns;
-      this.places.push(places.subarray(start, end));
-      start = end;
-    }
+    const starts = header.blocks.map(([rows, columns]) => (start += rows * columns) - rows * columns);
+    this.place =
+      typeof places === "function"
+        ? places
+        : (level, row, column) => {
+            const at = PLACE * (starts[level] + row * header.blocks[level][1] + column);
+            return places.subarray(at, at + PLACE);
+          };
   }
 
   /** First row and column of a tile's blocks among those of its level, and the rows and columns after them. */
@@ -112,8 +118,7 @@ export class Pyramid {
       const coarse = new Set<number>();
       for (let j = top; j < bottom; j += 1) {
         for (let i = left; i < right; i += 1) {
-          const at = PLACE * (j * width + i);
-          const place = this.places[key[0]].subarray(at, at + PLACE);
+          const place = this.place(key[0], j, i);
           if (!isSeen(view, place)) continue;
           const pixels = cellSize(view, place);
           if (key[0] > finest && pixels > view.cellPixels) coarse.add(j * width + i);
@@ -139,12 +144,12 @@ export class Pyramid {
   }
 }
 
-function isSeen({ planes }: TileView, [x, y, z, radius]: Data): boolean {
+function isSeen({ planes }: TileView, [x, y, z, radius]: Data | number[]): boolean {
   return planes.every((p) => dot(p, [x, y, z]) + p[3] >= -radius * length(p.slice(0, 3)));
 }
 
 /** Greatest size of the cells of a block in pixels. */
-function cellSize({ eye, halfHeight, pixels }: TileView, [x, y, z, radius, size]: Data): number {
+function cellSize({ eye, halfHeight, pixels }: TileView, [x, y, z, radius, size]: Data | number[]): number {
   const away = eye ? Math.max(length(subtract([x, y, z], eye)) - radius, size) : 1;
   return (size * 0.5 * pixels) / (halfHeight * away);
 }

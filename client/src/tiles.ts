@@ -6,6 +6,7 @@
 
 import type { Camera } from "./camera.ts";
 import { narrowed } from "./colours.ts";
+import { placesOf } from "./formula.ts";
 import { join, type Region } from "./meshlevels.ts";
 import {
   isOfStep,
@@ -234,10 +235,11 @@ export class Tiles {
     const drawn = String(parts.map(({ levels }, n) => [names[n], levels]));
     if (drawn === this.drawn && this.layers.every(({ scene }) => scene.hasTriangles)) return;
     this.drawn = drawn;
-    const { geometry, mesh, pyramid } = this.root.header;
+    const { geometry, mesh, pyramid, formula } = this.root.header;
     const most = Math.log2(mesh.tileCells);
     const blocks = pyramid?.blocks[0] ?? parts[0].shape;
-    const joins = geometry.triangles ? [] : join(parts, blocks, geometry.periodic, most);
+    // No crack opens in a plane.
+    const joins = geometry.triangles || formula ? [] : join(parts, blocks, geometry.periodic, most);
     parts.forEach(({ levels }, n) => this.layers[n].scene.setTriangles(levels, joins[n]));
   }
 
@@ -246,7 +248,7 @@ export class Tiles {
     const { header } = this.root;
     const { settings, canvas, ratio } = this.host;
     if (!header.pyramid) return new Map();
-    this.pyramid ??= new Pyramid(header.pyramid, this.root.part("places").data);
+    this.pyramid ??= new Pyramid(header.pyramid, placesOf(header) ?? this.root.part("places").data);
     const choices = this.pyramid.choose({
       ...camera.sight(canvas.height / ratio),
       planes: camera.planes,

@@ -42,7 +42,7 @@ export function positionOf(padded: Part, trace: TraceHeader, shape: [number, num
   const [rows, columns] = shape;
   const width = padded.shape[1];
   const [top, left] = trace.drawn;
-  const data = new Float32Array(rows * columns * 3);
+  const data = new Float64Array(rows * columns * 3);
   for (let j = 0, n = 0; j < rows; j += 1) {
     const first = 3 * ((j + top + 1) * width + left + 1);
     for (let k = 0; k < 3 * columns; k += 1) data[n++] = padded.data[first + k] + trace.middle[k % 3];
@@ -216,6 +216,12 @@ export class Tracing {
     return part.data;
   }
 
+  /** The numbers of a part, which may come in half precision. */
+  private numbers(name: string): Float32Array {
+    const data = this.data(name);
+    return data instanceof Float32Array ? data : Float32Array.from(data, (bits) => HALVES[bits]);
+  }
+
   private texture(width: number, height: number, inner: number, data: Float32Array | null) {
     const gl = this.graphics.context;
     const texture = this.graphics.counted(gl.createTexture());
@@ -258,15 +264,15 @@ export class Tracing {
   /** Velocity of the nodes as the shaders ask for it; notes the most cells in a unit of lag. */
   private flow(step: number): Float32Array {
     const { trace } = this;
-    const data = this.data(`flow/${step}`);
+    const data = this.numbers(`flow/${step}`);
     const unit = this.data("unit");
     const channels = data.length / unit.length;
     const flow = new Float32Array(4 * unit.length);
     for (let n = 0, at = 0; n < unit.length; n += 1, at += channels) {
-      const speed = HALVES[data[at + 2]];
+      const speed = data[at + 2];
       const size = HALVES[unit[n]] * trace.unit;
-      flow[4 * n] = (HALVES[data[at]] * speed) / size;
-      flow[4 * n + 1] = (HALVES[data[at + 1]] * speed) / size;
+      flow[4 * n] = (data[at] * speed) / size;
+      flow[4 * n + 1] = (data[at + 1] * speed) / size;
       flow[4 * n + 2] = speed;
       flow[4 * n + 3] = trace.timed ? trace.timed.unit : size;
     }
@@ -278,11 +284,11 @@ export class Tracing {
   }
 
   private wholeSpeed(step: number): Float32Array {
-    const data = this.data(`flow/${step}`);
+    const data = this.numbers(`flow/${step}`);
     const nodes = this.data("unit").length;
     const channels = data.length / nodes;
     const whole = new Float32Array(4 * nodes);
-    for (let n = 0; n < nodes; n += 1) whole[4 * n] = HALVES[data[(n + 1) * channels - 1]];
+    for (let n = 0; n < nodes; n += 1) whole[4 * n] = data[(n + 1) * channels - 1];
     return whole;
   }
 

@@ -42,7 +42,7 @@ const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify
 
 export class Viewer implements User {
   readonly options: Options;
-  readonly requests: Requests | null;
+  readonly requests: Requests;
   readonly graphics: Graphics = sharedGraphics();
   readonly lifetime = new Lifetime();
   readonly player = new Player();
@@ -78,7 +78,7 @@ export class Viewer implements User {
 
   constructor(element: HTMLElement, options: Options = {}) {
     this.options = options;
-    this.requests = options.source ? new Requests(options.source, this) : null;
+    this.requests = new Requests(options.source ?? null, this);
     const { root } = this;
     root.className = "flowtex";
     root.tabIndex = 0;
@@ -94,12 +94,7 @@ export class Viewer implements User {
     this.pointers = new Pointers(this);
     this.graphics.users.add(this);
     this.observe();
-    if (!this.graphics.gl && !options.streamed) {
-      this.panel.fail(
-        "This browser has no WebGL2, which the picture is drawn with.",
-        "Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.",
-      );
-    }
+    if (!this.graphics.gl && !options.streamed) this.panel.failWithout();
   }
 
   private observe(): void {
@@ -126,7 +121,7 @@ export class Viewer implements User {
     if (this.lifetime.isOver) return;
     this.player.playing = false;
     this.lifetime.end();
-    this.requests?.stop();
+    this.requests.stop();
     this.tiles?.dispose();
     this.tiles = null;
     this.scene?.dispose();
@@ -140,13 +135,10 @@ export class Viewer implements User {
   /** Draw another scene, from where it says or from the camera that there is. */
   setHeader(header: Header, keepsCamera = false): void {
     if (header.format !== FORMAT) {
-      this.panel.fail(
-        `The scene has format ${header.format}, and this client reads format ${FORMAT}.`,
-        "Use the client of the flowtex that made the scene.",
-      );
-      return;
+      const fault = `The scene has format ${header.format}, and this client reads format ${FORMAT}.`;
+      return this.panel.fail(fault, "Use the client of the flowtex that made the scene.");
     }
-    this.requests?.stop();
+    this.requests.stop();
     const old = this.header;
     const isSame = old?.generation !== undefined && old.generation === header.generation;
     if (isSame) return this.recolour(coloursOf(header));
@@ -154,8 +146,7 @@ export class Viewer implements User {
     this.header = header;
     this.settings = { ...header.settings, ...header.own };
     this.player.setHeader(header);
-    this.tiles?.dispose();
-    this.scene?.dispose();
+    this.requests.setHeader(header);
     this.makeScene(header);
     const isElsewhere = !old || !isSamePlace(old.geometry, header.geometry);
     if (isElsewhere) {
@@ -193,6 +184,8 @@ export class Viewer implements User {
   }
 
   private makeScene(header: Header): void {
+    this.tiles?.dispose();
+    this.scene?.dispose();
     if (this.options.streamed) return;
     this.scene = new Scene(this.graphics, header, this.parts);
     this.tiles = new Tiles(this, this.scene);
@@ -217,8 +210,17 @@ export class Viewer implements User {
   setSettings(settings: Settings): void {
     if (Object.entries(settings).every(([name, value]) => this.settings[name] === value)) return;
     Object.assign(this.settings, settings);
+    if (this.requests.follow(this.settings)) this.renew();
     this.panel.update();
     this.change();
+  }
+
+  /** Have the flow computed anew. */
+  private renew(): void {
+    this.held.clear((name) => /^(flow|scalars)\//.test(name));
+    this.requests.stop();
+    if (this.header) this.makeScene(this.header);
+    this.requests.wantSteps(this.missing(this.player.moment.slice(0, 2)));
   }
 
   /** Follow the setting of another view, unless it is this one's own. */
@@ -432,8 +434,7 @@ export class Viewer implements User {
   }
 
   lost(): void {
-    // Buffers and textures are lost with the context.
-    this.tiles?.dispose();
+    this.scene = null; // buffers and textures are lost with the context
     if (this.header) this.makeScene(this.header);
     this.setSharp(false);
   }
@@ -451,8 +452,8 @@ export class Viewer implements User {
     const moment = player.moment;
     const ahead = player.playing ? [1, 2].map((n) => (moment[1] + n) % header.slices.steps) : [];
     const steps = this.missing([moment[0], moment[1], ...this.next, ...ahead]);
-    const { source, isComing } = this.options;
-    if (steps.length && source?.hasSteps && !isComing?.()) this.requests?.wantSteps(steps);
+    const { isComing } = this.options;
+    if (steps.length && this.requests.hasSteps && !isComing?.()) this.requests.wantSteps(steps);
     const isMade = !lacking.length && scene.make(moment.slice(0, 2), until);
     this.root.dataset.lacking = String(lacking.length || Number(!isMade));
     this.panel.wait(lacking, isMade, this.renderer.leavesOut);
@@ -530,10 +531,7 @@ export class Viewer implements User {
     const program = this.program(header); // built while parts come and slices are made
     this.scene?.prepare();
     if (!shown || !this.camera) return;
-    if (program.error) {
-      this.panel.fail("The shader does not compile with this graphics driver.", program.error);
-      return;
-    }
+    if (program.error) return this.panel.fail("The shader does not compile with this graphics driver.", program.error);
     if (!program.ready || !this.scene?.isReady(this.settings)) return this.request();
     const isComplete = !this.sharp && this.renderer.draw(program, shown, until);
     this.root.dataset.drawn = "true"; // coarse or not

@@ -585,6 +585,7 @@ class FlowField(FieldConstructors):
             valid=self.valid[at],
             has_position=None if self.has_position is None else self.has_position[at],
             scalars={k: s[:, at[0], at[1]] for k, s in self.scalars.items()},
+            formula=None,  # whose nodes are evenly spaced
         )
 
     def __repr__(self) -> str:

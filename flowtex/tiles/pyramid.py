@@ -297,6 +297,7 @@ class Pyramid:
             periodic=periodic,
             has_position=nodes.has_position,
             scalars=nodes.scalars,
+            formula=None,
         )
 
     def _positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:

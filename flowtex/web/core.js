@@ -246,16 +246,17 @@ for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width
 count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<count2;first+=
 row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=numbers[n-channels];return decoded(info,scale3?floats(numbers,
 scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){let channels=units.length;return numbers instanceof
-Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){return anchor.some(Boolean)?data.map((x,n)=>x-anchor[n%3]):data}function grid(us,vs){
-let result2=new Float32Array(2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;
-return result2}function coordinates({shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},
-(_,n)=>(n+before+.5)/size);return grid(middles(shape2[1],columns),middles(shape2[0],rows))}function noiseCoordinates({alongI,
-alongJ}){return grid(alongI,alongJ)}function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(
-scalars);return steps.forEach((values,k)=>{for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(
-share)?share:NO_VALUE}}),result2}function cornersAt([rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-
-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],
-aside=corner+(a>=b?1:columns);return[[corner,1-most],[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){
-return corners.reduce((sum,[node,share])=>sum+share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
+Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
+data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];return result2}function grid(us,vs){let result2=new Float32Array(
+2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
+shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},(_,n)=>(n+before+.5)/size);return grid(
+middles(shape2[1],columns),middles(shape2[0],rows))}function noiseCoordinates({alongI,alongJ}){return grid(alongI,alongJ)}
+function shares(steps,scalars,nodes){let result2=new Float32Array(2*nodes),place=shareOf(scalars);return steps.forEach((values,k)=>{
+for(let n=0;n<nodes;n+=1){let share=place(values[n]);result2[2*n+k]=Number.isFinite(share)?share:NO_VALUE}}),result2}function cornersAt([
+rows,columns],[i,j]){let[left,low]=[Math.min(Math.floor(i),columns-2),Math.min(Math.floor(j),rows-2)],[a,b]=[i-left,j-low],
+corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+(a>=b?1:columns);return[[corner,1-most],
+[aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){return corners.reduce((sum,[node,share])=>sum+
+share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
 geometry,camera,x,y),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&place[1]<=y1?place:null}let[
 start,along]=camera.ray(x,y),nearest=dot2(start,along),square=nearest**2-dot2(start,start)+earth.radius**2,depth=-nearest-
 Math.sqrt(square);return depth>0?add(start,along,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
@@ -342,7 +343,7 @@ flatMap(({line,inward,near},n)=>[line,inward,near,this.shift(n)]),planes=this.po
 length<8;)numbers.push(0);for(;planes.length<12;)planes.push(0);return{u_poles:numbers,u_planes:planes,u_polar:Number(this.
 isAlongJ)}}};var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=8,
 DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,PASS_NODES=2e4,ENDLESS=1e30,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape2){
-let[rows,columns]=shape2,width=padded.shape[1],[top,left]=trace.drawn,data=new Float32Array(rows*columns*3);for(let j=0,
+let[rows,columns]=shape2,width=padded.shape[1],[top,left]=trace.drawn,data=new Float64Array(rows*columns*3);for(let j=0,
 n=0;j<rows;j+=1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.
 middle[k%3]}return{data,shape:[rows,columns,3]}}function normalOf(padded,trace,shape2){let[rows,columns]=shape2,width=3*
 padded.shape[1],[top,left]=trace.drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=
@@ -371,7 +372,8 @@ next();if(gl.isContextLost())return null;if(done)return this.result=null,value}w
 this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Texture",texture);for(let frame of this.frames)
 this.graphics.free("Framebuffer",frame);this.result&&!this.graphics.context.isContextLost()&&this.graphics.context.deleteTexture(
 this.result),this.result=null,this.textures.clear(),this.frames.length=0}data(name){let part=this.find(name);if(!part)throw new Error(
-`the part "${name}" of the scene is missing`);return part.data}texture(width,height,inner,data){let gl=this.graphics.context,
+`the part "${name}" of the scene is missing`);return part.data}numbers(name){let data=this.data(name);return data instanceof
+Float32Array?data:Float32Array.from(data,bits=>HALVES[bits])}texture(width,height,inner,data){let gl=this.graphics.context,
 texture=this.graphics.counted(gl.createTexture());return this.textures.add(texture),gl.activeTexture(gl.TEXTURE0),gl.bindTexture(
 gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
 gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.texSubImage2D(gl.TEXTURE_2D,0,0,0,
@@ -380,27 +382,27 @@ return this.frames.push(frame),gl.bindFramebuffer(gl.FRAMEBUFFER,frame),frame}ta
 context,texture=this.texture(width,height,gl.RGBA32UI,null),frame=this.frame();return gl.framebufferTexture2D(gl.FRAMEBUFFER,
 gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),[texture,frame]}unbind(){let gl=this.graphics.context;for(let n=0;n<UNITS;n+=
 1)gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,null),gl.bindTexture(gl.TEXTURE_2D_ARRAY,null);gl.bindFramebuffer(
-gl.FRAMEBUFFER,null)}flow(step){let{trace}=this,data=this.data(`flow/${step}`),unit2=this.data("unit"),channels=data.length/
-unit2.length,flow=new Float32Array(4*unit2.length);for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=HALVES[data[at+
-2]],size=HALVES[unit2[n]]*trace.unit;flow[4*n]=HALVES[data[at]]*speed/size,flow[4*n+1]=HALVES[data[at+1]]*speed/size,flow[4*
-n+2]=speed,flow[4*n+3]=trace.timed?trace.timed.unit:size}let result2=this.poles.laidOut(flow);return trace.timed&&(this.
-fastest=Math.max(this.fastest,this.poles.fastest(result2)*trace.timed.speed*trace.timed.unit)),result2}wholeSpeed(step){
-let data=this.data(`flow/${step}`),nodes=this.data("unit").length,channels=data.length/nodes,whole=new Float32Array(4*nodes);
-for(let n=0;n<nodes;n+=1)whole[4*n]=HALVES[data[(n+1)*channels-1]];return whole}cells(){let[rows,columns]=this.trace.nodes,
-[open,nearest]=["open","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<
-rows*columns;n+=1){cells[4*n]=open?open[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest?nearest[2*n+k]:0}return cells}padded(){
-let data=this.data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=
-1)result2[4*n+k]=data[3*n+k];return result2}flowTexture(step){let{width,height}=this.poles.size,gl=this.graphics.context,
-texture=this.flows.get(step)??this.texture(width,height,gl.RGBA32F,this.flow(step));this.flows.delete(step),this.flows.set(
-step,texture);for(let[other,old]of this.flows){if(this.flows.size<=FLOWS_HELD)break;this.flows.delete(other),this.textures.
-delete(old),this.graphics.free("Texture",old)}return texture}partsOf({from,to}){let count2=clamp(Math.ceil((to-from)*this.
-fastest/PASS_CELLS),1,MOST_PARTS),at=n=>n===count2?to:from+(to-from)*n/count2;return Array.from({length:count2},(_,n)=>[
-at(n),at(n+1)])}layerTarget(result2,size){let gl=this.graphics.context,{width,height}=size;if(this.graphics.floats){let frame2=this.
-frame();return{begin:n=>(gl.bindFramebuffer(gl.FRAMEBUFFER,frame2),gl.framebufferTextureLayer(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,
-result2,0,n),[width,height]),end:()=>{},finish:()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),
-size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}}}let pairs=Math.ceil(width/2),[,frame]=this.target(pairs,height),read=new Uint32Array(
-pairs*height*4),halves=new Uint16Array(read.buffer),texels=new Uint16Array(4*width*height);return{begin:()=>(gl.bindFramebuffer(
-gl.FRAMEBUFFER,frame),[pairs,height]),end:n=>{gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,read);for(let row2=0;row2<
+gl.FRAMEBUFFER,null)}flow(step){let{trace}=this,data=this.numbers(`flow/${step}`),unit2=this.data("unit"),channels=data.
+length/unit2.length,flow=new Float32Array(4*unit2.length);for(let n=0,at=0;n<unit2.length;n+=1,at+=channels){let speed=data[at+
+2],size=HALVES[unit2[n]]*trace.unit;flow[4*n]=data[at]*speed/size,flow[4*n+1]=data[at+1]*speed/size,flow[4*n+2]=speed,flow[4*
+n+3]=trace.timed?trace.timed.unit:size}let result2=this.poles.laidOut(flow);return trace.timed&&(this.fastest=Math.max(this.
+fastest,this.poles.fastest(result2)*trace.timed.speed*trace.timed.unit)),result2}wholeSpeed(step){let data=this.numbers(
+`flow/${step}`),nodes=this.data("unit").length,channels=data.length/nodes,whole=new Float32Array(4*nodes);for(let n=0;n<
+nodes;n+=1)whole[4*n]=data[(n+1)*channels-1];return whole}cells(){let[rows,columns]=this.trace.nodes,[open,nearest]=["op\
+en","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<rows*columns;n+=1){
+cells[4*n]=open?open[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest?nearest[2*n+k]:0}return cells}padded(){let data=this.
+data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=1)result2[4*
+n+k]=data[3*n+k];return result2}flowTexture(step){let{width,height}=this.poles.size,gl=this.graphics.context,texture=this.
+flows.get(step)??this.texture(width,height,gl.RGBA32F,this.flow(step));this.flows.delete(step),this.flows.set(step,texture);
+for(let[other,old]of this.flows){if(this.flows.size<=FLOWS_HELD)break;this.flows.delete(other),this.textures.delete(old),
+this.graphics.free("Texture",old)}return texture}partsOf({from,to}){let count2=clamp(Math.ceil((to-from)*this.fastest/PASS_CELLS),
+1,MOST_PARTS),at=n=>n===count2?to:from+(to-from)*n/count2;return Array.from({length:count2},(_,n)=>[at(n),at(n+1)])}layerTarget(result2,size){
+let gl=this.graphics.context,{width,height}=size;if(this.graphics.floats){let frame2=this.frame();return{begin:n=>(gl.bindFramebuffer(
+gl.FRAMEBUFFER,frame2),gl.framebufferTextureLayer(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,result2,0,n),[width,height]),end:()=>{},
+finish:()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),size.levels&&gl.generateMipmap(gl.
+TEXTURE_2D_ARRAY)}}}let pairs=Math.ceil(width/2),[,frame]=this.target(pairs,height),read=new Uint32Array(pairs*height*4),
+halves=new Uint16Array(read.buffer),texels=new Uint16Array(4*width*height);return{begin:()=>(gl.bindFramebuffer(gl.FRAMEBUFFER,
+frame),[pairs,height]),end:n=>{gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,read);for(let row2=0;row2<
 height;row2+=1){let first=8*pairs*row2;texels.set(halves.subarray(first,first+4*width),4*width*row2)}gl.activeTexture(gl.
 TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),sendLayer(gl,size,n,texels)},finish:()=>{}}}*slices(step){let{graphics,
 trace,header}=this,gl=graphics.context,{geometry,slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.
@@ -585,11 +587,12 @@ header,rebuild));if(JSON.stringify(rows)===JSON.stringify(this.rows))return!1;th
 element.replaceChildren();for(let row2 of rows){let control=this.control(row2),{input,output}=control,name=dom("span",{class:"\
 name"},[row2.label]),attributes={class:"row","data-setting":row2.name},line=dom("label",attributes,[name,...output?[output]:
 [],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row2.name,{...control,row:row2,line}),this.
-element.append(line)}return!0}update(){let{settings}=this.viewer;for(let[name,{row:row2,line,show}]of this.controls){name in
-settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.toggle("idle",isIdle),line.title=isIdle?
-`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control==="checkbox"?this.switch(row2):row2.control===
-"choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.slider(row2)}switch({name}){let input=dom("\
-input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.
+element.append(line)}return!0}get parameters(){return[...this.controls.values()].filter(({row:row2})=>row2.name.startsWith(
+"formula.")).map(({line})=>line)}update(){let{settings}=this.viewer;for(let[name,{row:row2,line,show}]of this.controls){
+name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.toggle("idle",isIdle),line.title=
+isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control==="checkbox"?this.switch(row2):row2.
+control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.slider(row2)}switch({name}){let input=dom(
+"input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.
 checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom("option",
 {value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.viewer.
 choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[min,max]=[
@@ -631,9 +634,10 @@ on",{class:"arrow",points:textOf2(head)}]),...dots.map(({place:[cx,cy],radius,gr
 map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring(
 "point")]}var ROOT="",PLACE=5,nameOf=key=>key.join("/"),keyOf=name=>name.split("/").map(Number);function cellPixels(pyramid,settings){
 let[samples,spacing,grain]=["samples","spacing","grain"].map(s=>Number(settings[s])),streak=.5*samples*spacing*grain;return pyramid.
-cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;places=[];constructor(header,places){
-this.header=header;let start=0;for(let[rows,columns]of header.blocks){let end=start+PLACE*rows*columns;this.places.push(
-places.subarray(start,end)),start=end}}blocksOf(name,[level,row2,column]){let[rows,columns]=this.header.blocks[level];if(name===
+cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyramid=class{header;place;constructor(header,places){
+this.header=header;let start=0,starts=header.blocks.map(([rows,columns])=>(start+=rows*columns)-rows*columns);this.place=
+typeof places=="function"?places:(level,row2,column)=>{let at=PLACE*(starts[level]+row2*header.blocks[level][1]+column);
+return places.subarray(at,at+PLACE)}}blocksOf(name,[level,row2,column]){let[rows,columns]=this.header.blocks[level];if(name===
 ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends=[Math.min(size*(row2+1),rows),Math.min(size*(column+
 1),columns)];return[size*row2,size*column,...ends]}children(name,[level,row2,column]){let{blocks,tileBlocks}=this.header,
 counts=blocks[level-1].map(n=>Math.ceil(n/tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:[[2*row2,2*column],[row2,column].
@@ -642,19 +646,19 @@ level-1,j,i]);return keys}finerPart([,row2,column],above){let{tileBlocks}=this.h
 [0,0,0]:keyOf(above);return[half*row2-tileBlocks*j,half*column-tileBlocks*i,half]}choose(view){let chosen=new Map,{depth,
 finest}=this.header,waiting=[ROOT];for(let name of waiting){let key=name===ROOT?[depth,0,0]:keyOf(name),choice={key,needed:!1,
 pixels:0,finer:[]},[top,left,bottom,right]=this.blocksOf(name,key),width=this.header.blocks[key[0]][1],coarse=new Set;for(let j=top;j<
-bottom;j+=1)for(let i=left;i<right;i+=1){let at=PLACE*(j*width+i),place=this.places[key[0]].subarray(at,at+PLACE);if(!isSeen(
-view,place))continue;let pixels=cellSize(view,place);key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.
-needed=!0,coarse.has(j*width+i)||(choice.pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(
-name,key).filter(child=>{let[row2,column,size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.
-floor(block/width)-row2,block%width-column];return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.
-push(...choice.finer)}return chosen}};function isSeen({planes},[x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=
--radius*length2(p.slice(0,3)))}function cellSize({eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(
-subtract2([x,y,z],eye))-radius,size):1;return size*.5*pixels/(halfHeight*away)}function wantedTiles(chosen){return[...chosen].
-filter(([name,{needed}])=>name!==ROOT&&needed).sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){
-let shown=new Map,hide=name=>{shown.delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.
-get(name)??{},done=finer.filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(
-name)?(done.forEach(hide),!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){
-let line=n=>Math.min(n*2**level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
+bottom;j+=1)for(let i=left;i<right;i+=1){let place=this.place(key[0],j,i);if(!isSeen(view,place))continue;let pixels=cellSize(
+view,place);key[0]>finest&&pixels>view.cellPixels?coarse.add(j*width+i):choice.needed=!0,coarse.has(j*width+i)||(choice.
+pixels=Math.max(choice.pixels,pixels))}coarse.size&&(choice.finer=this.children(name,key).filter(child=>{let[row2,column,
+size]=this.finerPart(child,ROOT);return[...coarse].some(block=>{let[j,i]=[Math.floor(block/width)-row2,block%width-column];
+return j>=0&&j<size&&i>=0&&i<size})}).map(nameOf)),chosen.set(name,choice),waiting.push(...choice.finer)}return chosen}};
+function isSeen({planes},[x,y,z,radius]){return planes.every(p=>dot2(p,[x,y,z])+p[3]>=-radius*length2(p.slice(0,3)))}function cellSize({
+eye,halfHeight,pixels},[x,y,z,radius,size]){let away=eye?Math.max(length2(subtract2([x,y,z],eye))-radius,size):1;return size*
+.5*pixels/(halfHeight*away)}function wantedTiles(chosen){return[...chosen].filter(([name,{needed}])=>name!==ROOT&&needed).
+sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,ready){let shown=new Map,hide=name=>{shown.
+delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.
+filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),
+!1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**
+level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
 size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
 function vertexShares(count2){return Float32Array.from({length:SHARES.length*count2},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
 let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
@@ -913,7 +917,12 @@ SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(n
   pointer-events: none; white-space: nowrap; overflow: hidden;
 }
 .title { font-weight: 600; overflow: hidden; text-overflow: ellipsis; }
-.title::first-letter { text-transform: uppercase; }
+.title:not(.formula)::first-letter { text-transform: uppercase; }
+.parameters { display: flex; gap: 12px; min-width: 0; overflow-x: auto; pointer-events: auto; }
+.parameters:empty { display: none; }
+.parameters .row.row { display: flex; flex: none; gap: 5px; min-height: 0; padding: 0; border: 0; }
+.parameters .row input { order: 1; width: 64px; }
+.parameters .row output { order: 2; min-width: 4ch; }
 .readout, .ticks, .time, .row output { color: var(--quiet); font-variant-numeric: tabular-nums; }
 .readout { display: flex; gap: 8px; }
 .readout:empty { display: none; }
@@ -1092,60 +1101,62 @@ platform)?"⌘":"Ctrl",HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME
 "select",{},AXES.map(kind=>dom("option",{},[kind])));axesRow=dom("label",{class:"row"},[dom("span",{class:"name"},["Axes"]),
 this.axesMenu]);paceMenu=dom("select",{},PACES.map(pace=>dom("option",{value:`${pace}`},[`${pace}×`])));paceRow=dom("la\
 bel",{class:"row",title:"How fast time goes by."},[dom("span",{class:"name"},["Pace"]),this.paceMenu]);controls;colours;isShown;axesKind=null;isOpen=!1;legendLook="";title=dom(
-"div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});head=dom("div",{class:"head glass",hidden:""},
-[this.title,this.readout]);note=dom("div",{class:"note",hidden:"",role:"alert"});doing=dom("span",{role:"status"});count=dom(
-"span",{"aria-hidden":"true"});busy=dom("div",{class:"busy",hidden:""},[this.doing,this.count]);told=dom("div",{class:"t\
-old glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{class:"hint glass",hidden:""},[HINT]);bar;handle;playButton;stepButtons;toggles;gear;slider=dom(
-"input",{type:"range",...TIME_RANGE});timeText=dom("span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.
-timeText]);hintTimer=null;lateTimer=null;constructor(viewer){this.viewer=viewer;let{root,stage,canvas,options}=viewer;this.
-isShown=options.controls??!0,this.axes=new Axes(viewer),viewer.lifetime.listen(this.axesMenu,"change",()=>{for(let{panel}of viewer.
-together)panel.chooseAxes(this.axesMenu.value)}),this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),
-this.handle=this.button("show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=
-this.button("play","Play (space)",()=>viewer.togglePlaying()),this.stepButtons=[this.button("previous","A step back (,)",
-()=>viewer.step(-1)),this.button("next","A step on (.)",()=>viewer.step(1))],viewer.lifetime.listen(this.paceMenu,"chang\
-e",()=>viewer.player.pace=Number(this.paceMenu.value)),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(
-this.slider.value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod",
-"Level of detail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button(
-"settings","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle(
-"flowtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{
-legend,controls,head,bar,handle,busy,hintBox,told,note}=this,{card}=viewer;stage.className="stage",stage.append(canvas,card.
-overlay,this.axes.element,card.element,busy,hintBox,told),shadow.append(dom("div",{class:"top"},[head,legend.element]),stage,
-bar,handle),shadow.append(controls.element,note),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){
-let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
-listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
-label":"Controls"},[this.stepButtons[0],this.playButton,this.stepButtons[1],this.track,this.button("home","Show everythi\
-ng (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{
-this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.
-toggle())])}build(){let{header}=this.viewer;if(!header)return;this.note.hidden=!0,this.controls.build(header)&&this.controls.
-element.prepend(...this.colours.rows,this.axesRow,this.paceRow),this.showLegend(),this.update(),this.arrange()}update(){
-let{header,settings}=this.viewer,{playing,varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==
-this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
-ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
-playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
-null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=this.paceRow.hidden=!varies&&!streams;for(let button of this.
-stepButtons)button.hidden=!varies;this.paceMenu.value=String(this.viewer.player.pace),this.slider.disabled=!varies&&settings.
-motion==="off";let width=header&&this.date(header)?.length||8+withUnit("",header?.slices.timeUnit??"").length;this.timeText.
-style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,differences=(header?.
-differs??[]).filter(name2=>name2 in settings).map(name2=>{let label2=header?.table.find(row2=>row2.name===name2)?.label??
-name2,value=settings[name2];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}),name=header?.name??"",
-title=differences.join(", ")||(options.named&&this.viewer.together.length<2?"":name),{first}=this,isApart=first!==this.viewer.
-player&&this.viewer.player.time!==first.time,moment=header&&isApart&&this.viewer.player.varies?this.moment(header):"";this.
-title.textContent=[title,moment].filter(Boolean).join(" · "),this.title.hidden=!this.title.textContent;let label=options.
-label??(title||name);root.setAttribute("aria-label",label?`Flow texture: ${label}`:"Flow texture")}get first(){return this.
-viewer.together[0]?.player??this.viewer.player}tick(){let{header,player,settings}=this.viewer;if(!header||this.track.hidden)
-return;this.first!==player&&this.name();let{first,last,now}=player.range(settings);this.slider.value=String((now-first)/
-(last-first||1));let text=player.varies?this.moment(header):`${now.toFixed(1)} s`;this.timeText.textContent!==text&&(this.
-timeText.textContent=text)}moment(header){let{player}=this.viewer;return this.date(header)??withUnit(numberText(player.time),
-header.slices.timeUnit)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({show_level,
-strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.viewer;this.
-legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("cmap")?.data)}read(point,ground=null){
-let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||
-!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),
-!point)return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==void 0&&(this.readout.append(
-dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){this.isOpen=
-open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=shown;for(let{panel}of this.viewer.
-together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{header,options,root}=this.viewer;return(options.
-follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&root.clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){
+"div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});parameters=dom("div",{class:"parameters"});head=dom(
+"div",{class:"head glass",hidden:""},[this.title,this.parameters,this.readout]);note=dom("div",{class:"note",hidden:"",role:"\
+alert"});doing=dom("span",{role:"status"});count=dom("span",{"aria-hidden":"true"});busy=dom("div",{class:"busy",hidden:""},
+[this.doing,this.count]);told=dom("div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{class:"\
+hint glass",hidden:""},[HINT]);bar;handle;playButton;stepButtons;toggles;gear;slider=dom("input",{type:"range",...TIME_RANGE});timeText=dom(
+"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;constructor(viewer){
+this.viewer=viewer;let{root,stage,canvas,options}=viewer;this.isShown=options.controls??!0,this.axes=new Axes(viewer),viewer.
+lifetime.listen(this.axesMenu,"change",()=>{for(let{panel}of viewer.together)panel.chooseAxes(this.axesMenu.value)}),this.
+controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.button("show","Show the bar (h)",
+()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.
+togglePlaying()),this.stepButtons=[this.button("previous","A step back (,)",()=>viewer.step(-1)),this.button("next","A s\
+tep on (.)",()=>viewer.step(1))],viewer.lifetime.listen(this.paceMenu,"change",()=>viewer.player.pace=Number(this.paceMenu.
+value)),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.
+choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.
+button("levels","Show level",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),
+this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.
+attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,told,
+note}=this,{card}=viewer;stage.className="stage",stage.append(canvas,card.overlay,this.axes.element,card.element,busy,hintBox,
+told),shadow.append(dom("div",{class:"top"},[head,legend.element]),stage,bar,handle),shadow.append(controls.element,note),
+viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){let button=dom("button",
+{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",
+press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.
+stepButtons[0],this.playButton,this.stepButtons[1],this.track,this.button("home","Show everything (0)",()=>viewer.reset()),
+this.toggles.lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button(
+"full","Fill the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{
+header}=this.viewer;if(!header)return;this.note.hidden=!0;let isOther=this.controls.build(header);isOther&&this.controls.
+element.prepend(...this.colours.rows,this.axesRow,this.paceRow),isOther&&this.parameters.replaceChildren(...this.controls.
+parameters),this.showLegend(),this.update(),this.arrange()}update(){let{header,settings}=this.viewer,{playing,varies}=this.
+viewer.player;this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,
+button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"P\
+ause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.
+playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.
+track.hidden=this.paceRow.hidden=!varies&&!streams;for(let button of this.stepButtons)button.hidden=!varies;this.paceMenu.
+value=String(this.viewer.player.pace),this.slider.disabled=!varies&&settings.motion==="off";let width=header&&this.date(
+header)?.length||8+withUnit("",header?.slices.timeUnit??"").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.
+tick()}name(){let{header,settings,root,options}=this.viewer,differences=(header?.differs??[]).filter(name2=>name2 in settings).
+map(name2=>{let label2=header?.table.find(row2=>row2.name===name2)?.label??name2,value=settings[name2];return`${label2}:\
+ ${typeof value=="boolean"?value?"on":"off":value}`}),name=header?.name??"",title=differences.join(", ")||(options.named&&
+this.viewer.together.length<2?"":name),{first}=this,isApart=first!==this.viewer.player&&this.viewer.player.time!==first.
+time,moment=header&&isApart&&this.viewer.player.varies?this.moment(header):"";this.title.textContent=[title,moment].filter(
+Boolean).join(" · "),this.title.hidden=!this.title.textContent,this.title.classList.toggle("formula",!!header?.formula);
+let label=options.label??(title||name);root.setAttribute("aria-label",label?`Flow texture: ${label}`:"Flow texture")}get first(){
+return this.viewer.together[0]?.player??this.viewer.player}tick(){let{header,player,settings}=this.viewer;if(!header||this.
+track.hidden)return;this.first!==player&&this.name();let{first,last,now}=player.range(settings);this.slider.value=String(
+(now-first)/(last-first||1));let text=player.varies?this.moment(header):`${now.toFixed(1)} s`;this.timeText.textContent!==
+text&&(this.timeText.textContent=text)}moment(header){let{player}=this.viewer;return this.date(header)??withUnit(numberText(
+player.time),header.slices.timeUnit)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({
+show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.
+viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("c\
+map")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.
+position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(
+position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==
+void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){
+this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=shown;for(let{panel}of this.
+viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{header,options,root}=this.viewer;
+return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&root.clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){
 this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&hasTicks(header)?"ticks":"none",kind=this.
 axesKind??usual,shown=this.isFramed?kind:"none";this.axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(
 shown)}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!(this.
@@ -1162,11 +1173,13 @@ viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", 
 mplete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=
 shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.
 add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.
-root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.
-note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true",this.viewer.options.onError?.(problem,detail)}fullscreen(){
-let{root,together}=this.viewer;toggleFullscreen(together.length>1&&root.parentElement||root)}async save(){let{viewer}=this,
-href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
-dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
+root.dataset.failed}failWithout(){this.fail("This browser has no WebGL2, which the picture is drawn with.","Turn on hard\
+ware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}fail(problem,detail){this.note.replaceChildren(
+dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed=
+"true",this.viewer.options.onError?.(problem,detail)}fullscreen(){let{root,together}=this.viewer;toggleFullscreen(together.
+length>1&&root.parentElement||root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),
+name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.
+later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
 0];lastFrame=0;hasHeader=!1;setHeader(header){let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.
 every((t,n)=>t===this.times[n]))||!this.hasHeader)&&(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.
 times=times2}get varies(){return this.times.length>1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){
@@ -1475,26 +1488,26 @@ alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),co
 this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),this.bodies=
 new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts)}isReady(settings){let programs=[!1,!0].map(
 isClose=>this.arrows.program(settings,isClose));return this.earth.isReady&&this.bodies.isReady&&programs.every(program=>program?.
-ready??!0)}missing(before,after){let{geometry,slices,scalars,paper,pyramid}=this.header,{trace}=slices,names=["mesh",...trace?.
-parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&names.push("places"),this.header.bodies?.runs.length&&names.
-push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))trace?names.
-push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===2&&names.push(`ext\
-ra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push(
-"noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(step,step).map(name=>name.
-startsWith("flow/")?stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.header.scalars){let{name,
-steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`\
-scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.
-header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??[],shape2={flow:[
-...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.rows.size,geometry.columns.
-size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,part.shape[2]],step:paper?
-[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.shape)}make(steps,until){
-let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(
-["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.
-planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),steps.
-every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.graphics,this.header,
-trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;if(!trace||this.
-resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],step,
-trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
+ready??!0)}missing(before,after){let{geometry,slices,scalars,paper,pyramid,formula}=this.header,{trace}=slices,names=["m\
+esh",...trace?.parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.header.
+bodies?.runs.length&&names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
+[before,after]))trace?names.push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===
+2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cma\
+p"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(
+step,step).map(name=>name.startsWith("flow/")?stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.
+header.scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
+after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
+slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.
+nodes??[],shape2={flow:[...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.
+rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,
+part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.
+shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),
+digest=name=>this.key(["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.
+shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,
+geometry.shape)),steps.every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.
+graphics,this.header,trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;
+if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],
+step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
 tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
 get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.
 advance(until),!texture)return!1;this.stopTracing()}return this.take(name,"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){
@@ -1575,23 +1588,86 @@ e",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap
 gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){
 return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&
 (this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,
-this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE3,HALF_ONE]=[3,5,15360],PATH_SHARE=.99,OPERATIONS=new Map(Object.
+entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
+b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.min(a,b),
+max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
+sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function compiled(tree){if(typeof tree=="number")return()=>tree;
+if(typeof tree=="string")return values=>values[tree];let[name,...parts]=tree,call=OPERATIONS.get(String(name));if(!call)
+throw new Error(`the formula has the operation "${name}", which this client does not know`);let[first,second,...rest]=parts.
+map(compiled);return second?rest.length?name==="where"?values=>first(values)?second(values):rest[0](values):values=>rest.
+reduce((sum,part)=>call(sum,part(values)),call(first(values),second(values))):values=>call(first(values),second(values)):
+values=>call(first(values))}var Grid=class{header;formula;rates;constructor(header,formula){[this.header,this.formula]=[
+header,formula],this.rates=formula.trees.map(compiled)}at(axis,level,line){let[low,high]=this.formula.ends[1-axis],cells=(this.
+header.geometry.shape[axis]-1)*2**this.doublings(level);return line===cells?high:low+(high-low)*line/cells}doublings(level){
+return(this.header.pyramid?.depth??0)-level}shape(level){return this.header.geometry.shape.map(n=>(n-1)*2**this.doublings(
+level)+1)}local(level,row2,column){let{center,frame}=this.header.geometry;return toFrame(frame,subtract2([this.at(1,level,
+column),this.at(0,level,row2),0],center))}flow({level,from,to},step,parameters){let[rows,columns]=[to[0]-from[0]+1,to[1]-
+from[1]+1],{speed:{typical},slices}=this.header,share=2**-this.doublings(level),size=(slices.trace?.unit??1)*share,[dx,dy]=[
+1,0].map(axis=>this.at(axis,level,1)-this.at(axis,level,0)),data=new Float32Array(3*rows*columns),speeds=new Float32Array(
+rows*columns),values={...parameters,t:slices.times[step]},[xName,yName]=this.formula.names;for(let j=0,n=0;j<rows;j+=1){
+values[yName]=this.at(0,level,from[0]+j);for(let i=0;i<columns;i+=1,n+=1){values[xName]=this.at(1,level,from[1]+i);let[u,
+v2]=this.rates.map(rate=>rate(values)),speed=Math.hypot(u,v2);speed>0&&speed<1e30&&(speeds[n]=speed,data.set([u/dx*size/
+speed,v2/dy*size/speed,speed/typical],3*n))}}return{flow:{data,shape:[rows,columns,3]},speeds}}padded({level,from,to}){let middle=this.
+local(level,.5*(from[0]+to[0]),.5*(from[1]+to[1])),[rows,columns]=[to[0]-from[0]+3,to[1]-from[1]+3],data=new Float32Array(
+3*rows*columns);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3)data.set(subtract2(this.local(level,from[0]+
+j-1,from[1]+i-1),middle),n);return{middle,part:{data,shape:[rows,columns,3]}}}};function placesOf(header){let{formula,mesh}=header;
+if(!formula)return null;let grid2=new Grid(header,formula);return(level,row2,column)=>{let shape2=grid2.shape(level),corner=far=>grid2.
+local(level,Math.min((row2+far)*mesh.tileCells,shape2[0]-1),Math.min((column+far)*mesh.tileCells,shape2[1]-1)),[low,high]=[
+corner(0),corner(1)],cell=Math.hypot(...subtract2(grid2.local(level,0,1),grid2.local(level,0,0))),own=low.map((x,k)=>.5*
+(x+high[k])),{center,frame}=header.geometry;return[...[0,1,2].map(k=>center[k]+own.reduce((sum,x,m)=>sum+frame[3*m+k]*x,
+0)),.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var FormulaSource=class{hasSteps=!0;atOnce=2;header;grid;parameters={};state="";constructor(header,formula){
+this.header=header,this.grid=new Grid(header,formula),this.follow(header.settings)}follow(settings){let own=Object.entries(
+settings).filter(([name])=>name.startsWith(PARAMETER));this.parameters=Object.fromEntries(own.map(([name,value])=>[name.
+slice(PARAMETER.length),Number(value)]));let before=this.state;return this.state=JSON.stringify([this.header.formula,this.
+header.geometry,this.parameters]),before!==this.state}load=(key,steps)=>Promise.resolve(key?this.tile(key,steps):this.whole(
+steps));whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,
+from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
+return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
+shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
+start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
+w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
+{mesh,pyramid,geometry,slices,scalars}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("a formula comes withou\
+t its levels");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(
+at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.
+map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-
+from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),
+share=2**-grid2.doublings(level),longest=PATH_SHARE*pyramid.pathCells,lags=[...slices.lags.filter(lag=>lag<longest),longest],
+texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(
+shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.
+length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,
+nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.
+unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,
+steps,drawn,shape2,prefix),speeds=parts[1].data;return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.
+named(`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),
+this.named(`${prefix}mesh`,this.blocks(key,shape2,speeds,scalars.high-scalars.low)),...parts]}blocks(key,shape2,speeds,range){
+let{mesh,pyramid}=this.header,most=Math.log2(mesh.tileCells),[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
+size=2*(most+1)+PLACE3,data=new Float32Array(rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??
+1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],bend=0;for(let j=1;j<
+mesh.tileCells;j+=1)for(let i=1;i<mesh.tileCells;i+=1){let[y,x]=[row2*mesh.tileCells+j,column*mesh.tileCells+i];if(y>=shape2[0]-
+1||x>=shape2[1]-1)continue;let n=y*shape2[1]+x,across=by=>Math.abs(speeds[n-by]-2*speeds[n]+speeds[n+by]);bend=Math.max(
+bend,across(1)+across(shape2[1]))}let levels=Array.from({length:most+1},(_,level)=>level?bend*4**level/8/(range||1):0),where=place?.(
+key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set([...levels.map(()=>0),...levels,...where],block*size)}
+return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
 taker}want(jobs){this.jobs=jobs;let names=new Set(jobs.map(String));for(let[name,controller]of this.running)names.has(name)||
 (this.running.delete(name),controller.abort());this.next()}stop(){this.want([]),this.failed=new Failures}next(){for(let job of this.
-jobs){if(this.running.size>=(this.source.atOnce??AT_ONCE))return;!this.running.has(String(job))&&!this.failed.has(String(
-job))&&this.run(job)}}async run(job){let{source,taker}=this,[key,steps]=job,controller=new AbortController,{signal}=controller,
-has=part=>key?taker.tiles?.has(nameOf(key),part)??!1:taker.parts.has(part);this.running.set(String(job),controller);try{
-let parts=await source.load(key,steps,signal,has);if(!signal.aborted)for(let part of parts)taker.setPart(part)}catch(error){
-signal.aborted||this.fail(job,error)}signal.aborted||(this.running.delete(String(job)),this.failed.has(String(job))||(this.
-jobs=this.jobs.filter(other=>String(other)!==String(job))),this.next())}fail(job,error){let[key,steps]=job;this.failed.add(
-String(job)),setTimeout(()=>this.next(),FAILED_MS+SPARE_MS);let isAway=error.fault==="unreachable",name=key&&!isAway?nameOf(
-key):void 0;this.taker.lack(wordsOf(key?COARSE:ABSENT_STEP,error),name,steps)}};function wordsOf(what,error){let{fault,message=String(
-error),detail=""}=error;return console.warn(message,detail),fault==="other"?message:`${what}: ${message}`}var Requests=class{tiles;wholes;constructor(source,taker){
-this.tiles=new Queue(source,taker),this.wholes=new Queue(source,taker)}open(){let{source,taker}=this.tiles;source.open?.().
-catch(error=>taker.lack(wordsOf(ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.want(keys.map(key=>[key,steps]))}wantSteps(steps){
+jobs){if(this.running.size>=(this.source()?.atOnce??AT_ONCE))return;!this.running.has(String(job))&&!this.failed.has(String(
+job))&&this.run(job)}}async run(job){let{taker}=this,source=this.source();if(!source)return;let[key,steps]=job,controller=new AbortController,
+{signal}=controller,has=part=>key?taker.tiles?.has(nameOf(key),part)??!1:taker.parts.has(part);this.running.set(String(job),
+controller);try{let parts=await source.load(key,steps,signal,has);if(!signal.aborted)for(let part of parts)taker.setPart(
+part)}catch(error){signal.aborted||this.fail(job,error)}signal.aborted||(this.running.delete(String(job)),this.failed.has(
+String(job))||(this.jobs=this.jobs.filter(other=>String(other)!==String(job))),this.next())}fail(job,error){let[key,steps]=job;
+this.failed.add(String(job)),setTimeout(()=>this.next(),FAILED_MS+SPARE_MS);let isAway=error.fault==="unreachable",name=key&&
+!isAway?nameOf(key):void 0;this.taker.lack(wordsOf(key?COARSE:ABSENT_STEP,error),name,steps)}};function wordsOf(what,error){
+let{fault,message=String(error),detail=""}=error;return console.warn(message,detail),fault==="other"?message:`${what}: ${message}`}
+var Requests=class{tiles;wholes;given;formula=null;constructor(source,taker){this.given=source,this.tiles=new Queue(()=>this.
+source,taker),this.wholes=new Queue(()=>this.source,taker)}get source(){return this.formula??this.given}get hasSteps(){return this.
+source?.hasSteps??!1}setHeader(header){this.stop(),this.formula=header.formula?new FormulaSource(header,header.formula):
+null}follow(settings){return this.formula?.follow(settings)??!1}open(){let{taker}=this.tiles;this.source?.open?.().catch(
+error=>taker.lack(wordsOf(ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.want(keys.map(key=>[key,steps]))}wantSteps(steps){
 let before=this.wholes.jobs.flatMap(([,some])=>some);if(steps.every(step=>before.includes(step)))return;let wanted=[...new Set(
 [...steps,...before])].slice(0,steps.length+SPARE_STEPS);this.wholes.want(wanted.map(step=>[null,[step]]))}stop(){this.tiles.
 stop(),this.wholes.stop()}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
@@ -1625,36 +1701,36 @@ this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,
 pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/columns);j+=1)levels.fill(
 -1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[
 names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,
-mesh,pyramid}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.triangles?
-[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,joins[n]))}choose(camera,steps){
-let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;this.pyramid??=new Pyramid(header.
-pyramid,this.root.part("places").data);let choices=this.pyramid.choose({...camera.sight(canvas.height/ratio),planes:camera.
-planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=1;for(let name of choices.keys()){let tile=this.tiles.
-get(name);tile&&(tile.used=this.count)}let until=performance.now()+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,
-header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(name,steps)),this.ask(),this.trim(steps);for(let name of wanted)
-this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(choices,name=>this.isHere(name,steps)&&this.load(name,
-steps,until));return this.wanted=wanted.length,this.pending=wanted.filter(name=>!this.isHere(name,steps)||!this.isLoaded(
-name,steps)).length,this.chosen={choices,steps,names:String([...shown.keys()])},shown}obtainable(names,steps,depth){let needs=[
-steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.failed.has(this.need(name,some))),found=names.map(
-name=>{let[level,row2,column]=keyOf(name);for(;level<depth&&isFailed(nameOf([level,row2,column]));)[level,row2,column]=[
-level+1,row2>>1,column>>1];return level<depth?nameOf([level,row2,column]):ROOT});return[...new Set(found)].filter(name=>name!==
-ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||scene?.missing(steps[0],steps[steps.
-length-1]).length===0}isLoaded(name,steps){let scene=this.tiles.get(name)?.scene;return scene===null||(scene?.isLoaded(steps)??
-!1)}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||this.isLoaded(name,steps)?!0:performance.
-now()>until||!scene.make(steps,until)?(this.host.refine(),!1):(scene.load(steps),!0)}ask(){let{requests,lifetime}=this.host;
-!requests||this.isWaiting||!(this.missing.length||this.hasAsked)||(this.isWaiting=!0,lifetime.later(()=>{if(this.isWaiting=
-!1,this.isOver)return;this.hasAsked=this.missing.length>0;let lacking=(name,step)=>this.tiles.get(name)?.scene?.lacking(
-step)??flowsOf(this.root.header,step),needed=this.missing.flatMap(name=>this.chosen.steps.flatMap(step=>lacking(name,step))),
-steps=[...new Set(needed)].sort((a,b)=>a-b);requests.wantTiles(this.missing.map(keyOf),steps)},REQUEST_MS))}trim(steps){
-let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,scene,used}=tile,kind=scene?.
-header.slices.trace?"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}/`)),needed=scene?steps.
-flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-STEPS_HELD2[kind],0))){
-let step=stepOf(part);if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(tile,`${each}/${step}`);
-let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)this.release(tile,
-each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>(this.host.options.
-source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);tile?.scene?.dispose();
-for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){part!=="cm\
-ap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};function placedCamera({geometry,limits,earth},first,nodes,aspect){let state=firstLook(geometry,limits,first,nodes,aspect);
+mesh,pyramid,formula}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.
+triangles||formula?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(
+levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;
+this.pyramid??=new Pyramid(header.pyramid,placesOf(header)??this.root.part("places").data);let choices=this.pyramid.choose(
+{...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=
+1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+
+LOAD_MS,wanted=this.obtainable(wantedTiles(choices),steps,header.pyramid.depth);this.missing=wanted.filter(name=>!this.isHere(
+name,steps)),this.ask(),this.trim(steps);for(let name of wanted)this.isHere(name,steps)&&this.load(name,steps,until);let shown=cover(
+choices,name=>this.isHere(name,steps)&&this.load(name,steps,until));return this.wanted=wanted.length,this.pending=wanted.
+filter(name=>!this.isHere(name,steps)||!this.isLoaded(name,steps)).length,this.chosen={choices,steps,names:String([...shown.
+keys()])},shown}obtainable(names,steps,depth){let needs=[steps,...steps.map(step=>[step])],isFailed=name=>needs.some(some=>this.
+failed.has(this.need(name,some))),found=names.map(name=>{let[level,row2,column]=keyOf(name);for(;level<depth&&isFailed(nameOf(
+[level,row2,column]));)[level,row2,column]=[level+1,row2>>1,column>>1];return level<depth?nameOf([level,row2,column]):ROOT});
+return[...new Set(found)].filter(name=>name!==ROOT)}isHere(name,steps){let scene=this.tiles.get(name)?.scene;return scene===
+null||scene?.missing(steps[0],steps[steps.length-1]).length===0}isLoaded(name,steps){let scene=this.tiles.get(name)?.scene;
+return scene===null||(scene?.isLoaded(steps)??!1)}load(name,steps,until){let scene=this.tiles.get(name)?.scene;return!scene||
+this.isLoaded(name,steps)?!0:performance.now()>until||!scene.make(steps,until)?(this.host.refine(),!1):(scene.load(steps),
+!0)}ask(){let{requests,lifetime}=this.host;!requests||this.isWaiting||!(this.missing.length||this.hasAsked)||(this.isWaiting=
+!0,lifetime.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=this.missing.length>0;let lacking=(name,step)=>this.
+tiles.get(name)?.scene?.lacking(step)??flowsOf(this.root.header,step),needed=this.missing.flatMap(name=>this.chosen.steps.
+flatMap(step=>lacking(name,step))),steps=[...new Set(needed)].sort((a,b)=>a-b);requests.wantTiles(this.missing.map(keyOf),
+steps)},REQUEST_MS))}trim(steps){let bytes=0;for(let[name,tile]of[...this.tiles].sort(([,a],[,b])=>b.used-a.used)){let{parts,
+scene,used}=tile,kind=scene?.header.slices.trace?"flow":"slices",held=[...parts.keys()].filter(part=>part.startsWith(`${kind}\
+/`)),needed=scene?steps.flatMap(step=>flowsOf(scene.header,step)):steps;for(let part of held.slice(0,Math.max(held.length-
+STEPS_HELD2[kind],0))){let step=stepOf(part);if(needed.includes(step))continue;for(let each of[kind,"extra"])this.release(
+tile,`${each}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,step,this.root.header));for(let each of values)
+this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>
+(this.host.options.source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
+tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
+part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};function placedCamera({geometry,limits,earth},first,nodes,aspect){let state=firstLook(geometry,limits,first,nodes,aspect);
 return new Camera(state,limits,geometry.planar,aspect,earth&&!earth.map?earth.radius:0)}function viewState({header,camera,
 anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.
 frame,subtract2(focus,geometry.center)),range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);
@@ -1663,35 +1739,36 @@ timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(rows*den
 createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;held=new HeldParts(
 this.graphics);parts=this.held.all;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;isPainted=!0;firstCamera=null;keptCamera=null;next=[];constructor(element,options={}){this.options=
-options,this.requests=options.source?new Requests(options.source,this):null;let{root}=this;root.className="flowtex",root.
-tabIndex=0,Object.assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.setAttribute("data-lm-suppr\
-ess-shortcuts","true"),root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(
-this),element.append(root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.observe(),!this.graphics.
-gl&&!options.streamed&&this.panel.fail("This browser has no WebGL2, which the picture is drawn with.","Turn on hardware \
-acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}observe(){let{lifetime,root}=this;lifetime.observe(
-new ResizeObserver(()=>this.panel.arrange()),root),lifetime.observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(
-entries=>{this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,
-root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){
-let{objects,users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,frames:this.renderer.frames}}dispose(){
-this.lifetime.isOver||(this.player.playing=!1,this.lifetime.end(),this.requests?.stop(),this.tiles?.dispose(),this.tiles=
-null,this.scene?.dispose(),this.scene=null,this.held.clear(),this.graphics.leave(this),this.renderer.dispose(),this.root.
-remove())}setHeader(header,keepsCamera=!1){if(header.format!==FORMAT){this.panel.fail(`The scene has format ${header.format}\
-, and this client reads format ${FORMAT}.`,"Use the client of the flowtex that made the scene.");return}this.requests?.stop();
-let old=this.header;if(old?.generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));
-old&&this.holdDraft(STEADY_MS),this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(
-header),this.tiles?.dispose(),this.scene?.dispose(),this.makeScene(header);let isElsewhere=!old||!isSamePlace(old.geometry,
-header.geometry);isElsewhere&&(this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.camera]=[this.
-keptCamera?null:header.camera,null]),old&&old.generation!==header.generation&&this.held.clear(name=>isElsewhere&&!keepsCamera||
-name.includes("/")),this.panel.build(),this.resize(),this.change()}recolour(colours){if(this.header){Object.assign(this.
-header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),
-this.change()}}chooseColours(choice){if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.
-together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(
-part),viewer.recolour(colours)}}makeScene(header){this.options.streamed||(this.scene=new Scene(this.graphics,header,this.
-parts),this.tiles=new Tiles(this,this.scene))}setPart(part){let{name}=part,tile=tilePart(name);if(tile)return void this.
-tiles?.setPart(tile[0],{...part,name:tile[1]});this.held.set(part)&&(this.scene?.forget(name),this.trim(),name==="cmap"&&
-this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change())}trim(){this.
-held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}setSettings(settings){Object.entries(settings).
-every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.panel.update(),this.change())}followSetting(name,value){
+options,this.requests=new Requests(options.source??null,this);let{root}=this;root.className="flowtex",root.tabIndex=0,Object.
+assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.setAttribute("data-lm-suppress-shortcuts","tr\
+ue"),root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.
+append(root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.observe(),!this.graphics.gl&&!options.streamed&&
+this.panel.failWithout()}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.panel.arrange()),
+root),lifetime.observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(entries=>{this.
+isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,root),lifetime.
+listen(document,"visibilitychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){let{objects,
+users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,frames:this.renderer.frames}}dispose(){this.
+lifetime.isOver||(this.player.playing=!1,this.lifetime.end(),this.requests.stop(),this.tiles?.dispose(),this.tiles=null,
+this.scene?.dispose(),this.scene=null,this.held.clear(),this.graphics.leave(this),this.renderer.dispose(),this.root.remove())}setHeader(header,keepsCamera=!1){
+if(header.format!==FORMAT){let fault=`The scene has format ${header.format}, and this client reads format ${FORMAT}.`;return this.
+panel.fail(fault,"Use the client of the flowtex that made the scene.")}this.requests.stop();let old=this.header;if(old?.
+generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));old&&this.holdDraft(STEADY_MS),
+this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.requests.setHeader(
+header),this.makeScene(header);let isElsewhere=!old||!isSamePlace(old.geometry,header.geometry);isElsewhere&&(this.keptCamera=
+old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.camera]=[this.keptCamera?null:header.camera,null]),old&&old.
+generation!==header.generation&&this.held.clear(name=>isElsewhere&&!keepsCamera||name.includes("/")),this.panel.build(),
+this.resize(),this.change()}recolour(colours){if(this.header){Object.assign(this.header,colours);for(let name of["scalar\
+s","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){
+if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
+let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){
+this.tiles?.dispose(),this.scene?.dispose(),!this.options.streamed&&(this.scene=new Scene(this.graphics,header,this.parts),
+this.tiles=new Tiles(this,this.scene))}setPart(part){let{name}=part,tile=tilePart(name);if(tile)return void this.tiles?.
+setPart(tile[0],{...part,name:tile[1]});this.held.set(part)&&(this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.
+recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change())}trim(){this.held.trim(this.
+header,this.options.source,this.player.moment.slice(0,2))}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
+settings[name]===value)||(Object.assign(this.settings,settings),this.requests.follow(this.settings)&&this.renew(),this.panel.
+update(),this.change())}renew(){this.held.clear(name=>/^(flow|scalars)\//.test(name)),this.requests.stop(),this.header&&
+this.makeScene(this.header),this.requests.wantSteps(this.missing(this.player.moment.slice(0,2)))}followSetting(name,value){
 name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
 this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?
 copyOf(state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.
@@ -1723,11 +1800,11 @@ stage,[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*rat
 this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.
 state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||
 !header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(
-this.stage.clientHeight,1)}lost(){this.tiles?.dispose(),this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){
+this.stage.clientHeight,1)}lost(){this.scene=null,this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){
 let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){let{header,scene,player,
 shown,lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+
-n)%header.slices.steps):[],steps=this.missing([moment[0],moment[1],...this.next,...ahead]),{source,isComing}=this.options;
-steps.length&&source?.hasSteps&&!isComing?.()&&this.requests?.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.
+n)%header.slices.steps):[],steps=this.missing([moment[0],moment[1],...this.next,...ahead]),{isComing}=this.options;steps.
+length&&this.requests.hasSteps&&!isComing?.()&&this.requests.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.
 slice(0,2),until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,isMade,this.
 renderer.leavesOut),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.
 shown=moment:(lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){
@@ -1743,7 +1820,7 @@ header,this.settings,isClose);return this.graphics.programs.get(vertex,fragment,
 return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.
 length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);
 this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)return;if(program.
-error){this.panel.fail("The shader does not compile with this graphics driver.",program.error);return}if(!program.ready||
+error)return this.panel.fail("The shader does not compile with this graphics driver.",program.error);if(!program.ready||
 !this.scene?.isReady(this.settings))return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,shown,until);
 this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.
 scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){

@@ -18,12 +18,14 @@ from flows import gyre, lines, swinging, torus
 from matrix import ASIDE, IMAGE, TILTED, WHOLE, straight
 from triangle_meshes import random_plane
 
+import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Indices
 from flowtex._util.colours import colour_table
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.earth import MapLines, Projection
 from flowtex.field.dates import date_text
+from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
 from flowtex.probe import probe
 from flowtex.rendering.arrow_seeds import ArrowSeeds, seed_limits
 from flowtex.rendering.cpu.noise import noise_lattice, octave
@@ -34,6 +36,7 @@ from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_p
 from flowtex.rendering.triangle_blocks import TriangleBlocks
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.velocity import velocity_part
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet, as_picture
@@ -570,3 +573,40 @@ def test_samples_for_the_client() -> None:
     sums = {name: samples_of(name) for name in SAMPLED}
     parts = parts_of(ClientData(Scene(bend()).textures))
     check("samples.json", {"parts": parts, "sums": sums, "noise": noise_of(5)})
+
+
+def test_what_a_formula_gives() -> None:
+    """Values of trees, and the numbers of a tile that is computed from a formula."""
+    values = {"x": -1.7, "y": 0.6, "b": 0.2}
+    calls = {name: OPERATIONS[name] for name in FUNCTIONS}
+    texts = [f"{name}({'x, y, b'[: 3 * (count or 2) - 2]})" for name, (_, count) in calls.items()]
+    texts += [
+        "-x^2/y - b + 2*x",
+        "(x < y) + (x > y)*3 + (x <= b) - (b >= y)",
+        "pi*e",
+        "min(x, y, b)",
+    ]
+    trees = [parse(text, values) for text in texts]
+    with np.errstate(all="ignore"):
+        results = [float(evaluate(tree, values)) for tree in trees]
+    ends: Any = {"x": (-8, 8), "y": (-4, 4), "b": (0.2, 0, 1)}
+    field = flowtex.formula("y", "-sin(x) - b*y", **ends)
+    data = ClientData(TextureSet.build(SliceStore(field), Settings()), traces=True)
+    header = data.header(Settings())
+    parts = ("geometry", "slices", "formula", "pyramid", "mesh", "speed", "scalars", "settings")
+    fine = flowtex.formula("y", "-sin(x) - b*y", resolution=513, **ends)
+    pyramid = Pyramid(fine, nodes=(257, 513), depth=1)
+    tile = pyramid.textures(TileKey(0, 0, 1))
+    assert tile is not None
+    velocity = np.asarray(velocity_part(data.textures, 0), float)
+    whole, own = header["pyramid"], ClientData(tile, traces=True).tile_header
+    check(
+        "formula.json",
+        {
+            "trees": [trees, values, [None if np.isnan(r) else r for r in results]],
+            "header": {**{name: header[name] for name in parts}, "pyramid": whole},
+            "velocity": velocity[::20, ::32].tolist(),
+            "tile": own,
+            "places": pyramid.places(0)[1, [0, 5]].tolist(),
+        },
+    )

@@ -6,7 +6,8 @@
 //
 // flowtex/web/source.py is the other side of the first three.
 
-import type { NamedPart } from "../protocol.ts";
+import { FormulaSource } from "../formula.ts";
+import type { Header, NamedPart, Settings } from "../protocol.ts";
 import type { StoreError } from "./store.ts";
 import { nameOf, type TileKey } from "../tilechoice.ts";
 
@@ -71,14 +72,14 @@ export class Failures {
 
 /** Jobs of a source, some of which run at a time. */
 class Queue {
-  readonly source: Source;
+  private readonly source: () => Source | null;
   readonly taker: Taker;
   private readonly running = new Map<string, AbortController>();
   /** Jobs that wait or run, and failed ones, which are tried again. */
   jobs: Job[] = [];
   private failed = new Failures();
 
-  constructor(source: Source, taker: Taker) {
+  constructor(source: () => Source | null, taker: Taker) {
     this.source = source;
     this.taker = taker;
   }
@@ -103,13 +104,15 @@ class Queue {
 
   private next(): void {
     for (const job of this.jobs) {
-      if (this.running.size >= (this.source.atOnce ?? AT_ONCE)) return;
+      if (this.running.size >= (this.source()?.atOnce ?? AT_ONCE)) return;
       if (!this.running.has(String(job)) && !this.failed.has(String(job))) void this.run(job);
     }
   }
 
   private async run(job: Job): Promise<void> {
-    const { source, taker } = this;
+    const { taker } = this;
+    const source = this.source();
+    if (!source) return;
     const [key, steps] = job;
     const controller = new AbortController();
     const { signal } = controller;
@@ -150,16 +153,40 @@ function wordsOf(what: string, error: unknown): string {
 export class Requests {
   private readonly tiles: Queue;
   private readonly wholes: Queue;
+  private readonly given: Source | null;
+  private formula: FormulaSource | null = null;
 
-  constructor(source: Source, taker: Taker) {
-    this.tiles = new Queue(source, taker);
-    this.wholes = new Queue(source, taker);
+  constructor(source: Source | null, taker: Taker) {
+    this.given = source;
+    this.tiles = new Queue(() => this.source, taker);
+    this.wholes = new Queue(() => this.source, taker);
+  }
+
+  /** What comes from the host, or is computed here of a formula. */
+  private get source(): Source | null {
+    return this.formula ?? this.given;
+  }
+
+  /** Whether time steps of the whole can be had. */
+  get hasSteps(): boolean {
+    return this.source?.hasSteps ?? false;
+  }
+
+  /** Ask for what belongs to another scene from now on. */
+  setHeader(header: Header): void {
+    this.stop();
+    this.formula = header.formula ? new FormulaSource(header, header.formula) : null;
+  }
+
+  /** Follow the settings; tells whether they change what is given. */
+  follow(settings: Settings): boolean {
+    return this.formula?.follow(settings) ?? false;
   }
 
   /** Report an unreadable source before anybody zooms in. */
   open(): void {
-    const { source, taker } = this.tiles;
-    source.open?.().catch((error) => taker.lack(wordsOf(ALL_COARSE, error)));
+    const { taker } = this.tiles;
+    this.source?.open?.().catch((error) => taker.lack(wordsOf(ALL_COARSE, error)));
   }
 
   /** Tiles are lacking, in the order of need; no others that were asked for before are needed. */

@@ -93,8 +93,8 @@ def formula(
     (147, 257)
     """
     if len(expressions) == 1:
-        name = name or str(expressions[0]).replace("_", " ")
-        expressions, known = _known(expressions[0])
+        title, expressions, known = _known(expressions[0])
+        name = name or title
         x, y = x or known.pop("x"), y or known.pop("y")
         parameters = {**{k: p for k, p in known.items() if k not in ("x", "y")}, **parameters}
     steps = None if times is None else _times(times)
@@ -134,15 +134,15 @@ def formula(
     return result
 
 
-def _known(name: Any) -> tuple[tuple[str, str], dict[str, Any]]:
+def _known(name: Any) -> tuple[str, tuple[str, str], dict[str, Any]]:
     if not isinstance(name, str) or name not in KNOWN:
         near = (
             near_names(name, KNOWN) if isinstance(name, str) else f"there are: {', '.join(KNOWN)}"
         )
         msg = f"there is one expression, {name!r}, which names no known formula; {near}"
         raise FieldError(msg)
-    expressions, known = KNOWN[name]
-    return expressions, dict(known)
+    title, expressions, known = KNOWN[name]
+    return title, expressions, dict(known)
 
 
 def _times(times: ArrayLike) -> Any:

@@ -23,6 +23,7 @@ from flowtex._util.colours import CMAPS, colour_shares, colour_table, is_divergi
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
 from flowtex.field.derived import speed_unit
+from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.mesh_levels import mesh_limits
 from flowtex.rendering.shaders import shader_text
@@ -32,6 +33,7 @@ from flowtex.rendering.uniforms import client_constants, variants
 from flowtex.rendering.webgl import velocity
 from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
+from flowtex.rendering.webgl.formula import client_formula, formula_header, parameter_rows
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts, plain_list
 from flowtex.settings import NEEDS, TABLE, Settings
@@ -161,6 +163,24 @@ class ClientData:
         return self.traces and is_whole and velocity.can_trace(self.textures)
 
     @cached_property
+    def formula(self) -> Formula | None:
+        """The formula that is handed over in place of the velocity."""
+        return client_formula(self.textures) if self.traced and self.pyramid is None else None
+
+    def _formula_header(self) -> Header:
+        if self.formula is None:
+            return {}
+        return {
+            **formula_header(self.formula, self.textures.grid.shape),
+            "table": [*parameter_rows(self.formula), *_table()],
+        }
+
+    @property
+    def _parameters(self) -> dict[str, float]:
+        rows = [] if self.formula is None else parameter_rows(self.formula)
+        return {row["name"]: row["default"] for row in rows}
+
+    @cached_property
     def packing(self) -> Packing:
         """The slices, packed."""
         return packing_of(self.textures)
@@ -207,7 +227,7 @@ class ClientData:
         """
         return {
             **self.constants(),
-            "settings": dict(settings),
+            "settings": dict(settings) | self._parameters,
             "camera": self.first_camera().to_dict() if camera is None else dict(camera),
             "time": float(self.times[0] if time is None else time),
             "clock": float(clock),
@@ -257,6 +277,7 @@ class ClientData:
             "pyramid": None if self.pyramid is None else _pyramid(self.pyramid, self.finest),
             "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
             "table": _table(),
+            **self._formula_header(),
         }
 
     def surface(self) -> Parts:
@@ -304,6 +325,8 @@ class ClientData:
             msg = f"time step {step} does not exist: expected 0 to {self.steps - 1}"
             raise IndexError(msg)
         parts = self.values(step)
+        if self.formula is not None:
+            return parts
         if self.traced:
             parts[f"flow/{step}"] = velocity.velocity_part(self.textures, self.source(step))
             return parts
@@ -318,6 +341,8 @@ class ClientData:
         Those that do not vary are of all times, and called those of the first.
         """
         parts: Parts = {}
+        if self.formula is not None:
+            return parts
         for number, values in self._values.items():
             if not shown or number == self.colours.number:
                 at = step if len(values) > 1 else 0

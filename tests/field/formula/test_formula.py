@@ -193,7 +193,7 @@ def test_where_there_is_no_value_it_is_blank() -> None:
 @pytest.mark.parametrize("name", KNOWN)
 def test_known_formulas_have_names(name: str) -> None:
     field = flowtex.formula(name, resolution=17)
-    assert field.formula is not None and field.name == name.replace("_", " ")
+    assert field.formula is not None and field.name == KNOWN[name][0]
     assert field.valid.mean() > 0.9
     assert all(p.low <= p.value <= p.high for p in field.formula.parameters.values())
 

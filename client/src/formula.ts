@@ -1,0 +1,302 @@
+// A flow from a formula: its velocity at any nodes, computed here. flowtex/field/formula/grammar.py makes
+// the trees, and flowtex/rendering/webgl/formula.py what else comes. As there is no finest level of a
+// formula, the source has tiles of every level, each a grid of nodes in the plane.
+
+import type { FormulaHeader, Header, NamedPart, Settings, TileHeader, Tree } from "./protocol.ts";
+import { nameOf, type PlaceOf, type TileKey } from "./tilechoice.ts";
+import { subtract, toFrame, type Vector } from "./vectors.ts";
+
+type Values = Record<string, number>;
+type Evaluate = (values: Values) => number;
+
+/** Before the name of a parameter among the settings. */
+const PARAMETER = "formula.";
+/** Cells that a tile has around it, and texels before its first node. */
+const [HALO, BEFORE] = [36, 8];
+/** Mip levels of a tile, numbers of a block's place, and one in half precision. */
+const [LEVELS, PLACE, HALF_ONE] = [3, 5, 0x3c00];
+/** Share of the cells of a path that is followed in a tile: rounding then asks for no longer lag. */
+const PATH_SHARE = 0.99;
+
+/** What operations do with two numbers or more; as OPERATIONS of Python. */
+const OPERATIONS = new Map<string, (...values: number[]) => number>(
+  Object.entries({
+    "+": (a, b) => a + b,
+    "*": (a, b) => a * b,
+    "/": (a, b) => a / b,
+    "^": (a, b) => a ** b,
+    "<": (a, b) => Number(a < b),
+    ">": (a, b) => Number(a > b),
+    "<=": (a, b) => Number(a <= b),
+    ">=": (a, b) => Number(a >= b),
+    neg: (a) => -a,
+    ln: Math.log,
+    mod: (a, b) => a - b * Math.floor(a / b),
+    where: (a, b, c) => (a ? b : c),
+    min: (a, b) => Math.min(a, b),
+    max: (a, b) => Math.max(a, b),
+  } as Record<string, (...values: number[]) => number>),
+);
+for (const name of "sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs sign floor ceil hypot".split(" ")) {
+  OPERATIONS.set(name, Math[name as "sin"]);
+}
+
+/** What computes a tree: closures of numbers, names and operations alone. */
+export function compiled(tree: Tree): Evaluate {
+  if (typeof tree === "number") return () => tree;
+  if (typeof tree === "string") return (values) => values[tree];
+  const [name, ...parts] = tree;
+  const call = OPERATIONS.get(String(name));
+  if (!call) throw new Error(`the formula has the operation "${name}", which this client does not know`);
+  const [first, second, ...rest] = parts.map(compiled);
+  if (!second) return (values) => call(first(values));
+  if (!rest.length) return (values) => call(first(values), second(values));
+  if (name === "where") return (values) => (first(values) ? second(values) : rest[0](values));
+  return (values) => rest.reduce((sum, part) => call(sum, part(values)), call(first(values), second(values)));
+}
+
+/** Rows and columns of nodes of a level, from one to another, both among them. */
+interface Window {
+  level: number;
+  from: [row: number, column: number];
+  to: [row: number, column: number];
+}
+
+/** The nodes of a formula in the plane of its surface. */
+class Grid {
+  private readonly header: Header;
+  private readonly formula: FormulaHeader;
+  private readonly rates: Evaluate[];
+
+  constructor(header: Header, formula: FormulaHeader) {
+    [this.header, this.formula] = [header, formula];
+    this.rates = formula.trees.map(compiled);
+  }
+
+  /** Coordinate of a line of nodes of a level; `axis` is 0 for rows. */
+  private at(axis: number, level: number, line: number): number {
+    const [low, high] = this.formula.ends[1 - axis];
+    const cells = (this.header.geometry.shape[axis] - 1) * 2 ** this.doublings(level);
+    return line === cells ? high : low + ((high - low) * line) / cells;
+  }
+
+  /** How many times a level is finer than the root. */
+  doublings(level: number): number {
+    return (this.header.pyramid?.depth ?? 0) - level;
+  }
+
+  /** Number of nodes of a level. */
+  shape(level: number): [number, number] {
+    return this.header.geometry.shape.map((n) => (n - 1) * 2 ** this.doublings(level) + 1) as [number, number];
+  }
+
+  /** Where a node is in the surface's frame. */
+  local(level: number, row: number, column: number): Vector {
+    const { center, frame } = this.header.geometry;
+    return toFrame(frame, subtract([this.at(1, level, column), this.at(0, level, row), 0], center as Vector));
+  }
+
+  /** The flow at the nodes of a window, as Python hands it over, and the speed. */
+  flow({ level, from, to }: Window, step: number, parameters: Values) {
+    const [rows, columns] = [to[0] - from[0] + 1, to[1] - from[1] + 1];
+    const { speed: { typical }, slices } = this.header;
+    const share = 2 ** -this.doublings(level);
+    const size = (slices.trace?.unit ?? 1) * share;
+    const [dx, dy] = [1, 0].map((axis) => this.at(axis, level, 1) - this.at(axis, level, 0));
+    const data = new Float32Array(3 * rows * columns);
+    const speeds = new Float32Array(rows * columns);
+    const values: Values = { ...parameters, t: slices.times[step] };
+    const [xName, yName] = this.formula.names;
+    for (let j = 0, n = 0; j < rows; j += 1) {
+      values[yName] = this.at(0, level, from[0] + j);
+      for (let i = 0; i < columns; i += 1, n += 1) {
+        values[xName] = this.at(1, level, from[1] + i);
+        const [u, v] = this.rates.map((rate) => rate(values));
+        const speed = Math.hypot(u, v);
+        // Where there is no value nothing moves.
+        if (!(speed > 0 && speed < 1e30)) continue;
+        speeds[n] = speed;
+        data.set([((u / dx) * size) / speed, ((v / dy) * size) / speed, speed / typical], 3 * n);
+      }
+    }
+    return { flow: { data, shape: [rows, columns, 3] }, speeds };
+  }
+
+  /** Positions of the nodes of a window and of those around it, relative to its middle. */
+  padded({ level, from, to }: Window) {
+    const middle = this.local(level, 0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1]));
+    const [rows, columns] = [to[0] - from[0] + 3, to[1] - from[1] + 3];
+    const data = new Float32Array(3 * rows * columns);
+    for (let j = 0, n = 0; j < rows; j += 1) {
+      for (let i = 0; i < columns; i += 1, n += 3) {
+        data.set(subtract(this.local(level, from[0] + j - 1, from[1] + i - 1), middle), n);
+      }
+    }
+    return { middle, part: { data, shape: [rows, columns, 3] } };
+  }
+}
+
+/** Where the blocks of each level lie, and how large their cells are. */
+export function placesOf(header: Header): PlaceOf | null {
+  const { formula, mesh } = header;
+  if (!formula) return null;
+  const grid = new Grid(header, formula);
+  return (level, row, column) => {
+    const shape = grid.shape(level);
+    const corner = (far: number) =>
+      grid.local(
+        level,
+        Math.min((row + far) * mesh.tileCells, shape[0] - 1),
+        Math.min((column + far) * mesh.tileCells, shape[1] - 1),
+      );
+    const [low, high] = [corner(0), corner(1)];
+    const cell = Math.hypot(...subtract(grid.local(level, 0, 1), grid.local(level, 0, 0)));
+    const own = low.map((x, k) => 0.5 * (x + high[k]));
+    const { center, frame } = header.geometry;
+    const place = [0, 1, 2].map((k) => center[k] + own.reduce((sum, x, m) => sum + frame[3 * m + k] * x, 0));
+    return [...place, 0.5 * Math.hypot(...subtract(high, low)) + cell, cell];
+  };
+}
+
+/** Gives what a formula is at the nodes of the whole, and of tiles: a Source. */
+export class FormulaSource {
+  readonly hasSteps = true;
+  readonly atOnce = 2;
+  private readonly header: Header;
+  private readonly grid: Grid;
+  private parameters: Values = {};
+  /** Says which numbers digests stand for. */
+  private state = "";
+
+  constructor(header: Header, formula: FormulaHeader) {
+    this.header = header;
+    this.grid = new Grid(header, formula);
+    this.follow(header.settings);
+  }
+
+  /** Take parameters from settings; tells whether they are others than before. */
+  follow(settings: Settings): boolean {
+    const own = Object.entries(settings).filter(([name]) => name.startsWith(PARAMETER));
+    this.parameters = Object.fromEntries(own.map(([name, value]) => [name.slice(PARAMETER.length), Number(value)]));
+    const before = this.state;
+    this.state = JSON.stringify([this.header.formula, this.header.geometry, this.parameters]);
+    return before !== this.state;
+  }
+
+  readonly load = (key: TileKey | null, steps: number[]) =>
+    Promise.resolve(key ? this.tile(key, steps) : this.whole(steps));
+
+  /** The flow and the values of the whole at some steps. */
+  private whole(steps: number[]): NamedPart[] {
+    const { shape } = this.header.geometry;
+    const level = this.header.pyramid?.depth ?? 0;
+    return this.parts({ level, from: [0, 0], to: [shape[0] - 1, shape[1] - 1] }, steps, [0, 0], shape);
+  }
+
+  private named(name: string, part: Pick<NamedPart, "data" | "shape">): NamedPart {
+    return { ...part, name, digest: `${this.state} ${name}` };
+  }
+
+  private parts(window: Window, steps: number[], drawn: number[], shape: readonly number[], prefix = ""): NamedPart[] {
+    return steps.flatMap((step) => {
+      const { flow, speeds } = this.grid.flow(window, step, this.parameters);
+      const width = flow.shape[1];
+      const data = new Float32Array(shape[0] * shape[1]);
+      for (let j = 0; j < shape[0]; j += 1) {
+        const start = (j + drawn[0]) * width + drawn[1];
+        data.set(speeds.subarray(start, start + shape[1]), j * shape[1]);
+      }
+      const values = `scalars/${this.header.scalars.steps > 1 ? step : 0}`;
+      return [this.named(`${prefix}flow/${step}`, flow), this.named(`${prefix}${values}`, { data, shape: [...shape] })];
+    });
+  }
+
+  private tile(key: TileKey, steps: number[]): NamedPart[] {
+    const { header, grid } = this;
+    const { mesh, pyramid, geometry, slices, scalars } = header;
+    const { trace } = slices;
+    if (!pyramid || !trace) throw new Error("a formula comes without its levels");
+    const [level, ...place] = key;
+    const cells = pyramid.tileBlocks * mesh.tileCells;
+    const count = grid.shape(level);
+    const first = place.map((at) => at * cells);
+    const last = first.map((at, axis) => Math.min(at + cells, count[axis] - 1));
+    const from = first.map((at) => Math.max(at - HALO, 0)) as [number, number];
+    const to = last.map((at, axis) => Math.min(at + HALO, count[axis] - 1)) as [number, number];
+    const nodes = to.map((at, axis) => at - from[axis] + 1) as [number, number];
+    const drawn = first.map((at, axis) => at - from[axis]) as [number, number];
+    const shape = last.map((at, axis) => at - first[axis] + 1) as [number, number];
+    const window = { level, from, to };
+    const { middle, part: padded } = grid.padded(window);
+    const share = 2 ** -grid.doublings(level);
+    const longest = PATH_SHARE * pyramid.pathCells;
+    const lags = [...slices.lags.filter((lag) => lag < longest), longest];
+    const texels = (n: number) => ({ before: BEFORE, size: BEFORE * Math.ceil((n + 2 * BEFORE) / BEFORE) });
+    const own: TileHeader = {
+      geometry: {
+        ...geometry,
+        shape,
+        rows: texels(shape[0]),
+        columns: texels(shape[1]),
+        levels: LEVELS,
+      },
+      slices: {
+        ...slices,
+        lags,
+        count: slices.count - slices.sides * (slices.lags.length - lags.length),
+        extra: [],
+        unit: slices.unit * share,
+        cell: slices.cell * share,
+        critical: slices.critical * share,
+        trace: {
+          ...trace,
+          nodes,
+          drawn,
+          first: drawn.map((n) => n - BEFORE) as [number, number],
+          middle,
+          unit: trace.unit * share,
+          timed: trace.timed && { ...trace.timed, unit: trace.timed.unit * share },
+        },
+      },
+    };
+    const prefix = `tile/${nameOf(key)}/`;
+    const text = new TextEncoder().encode(JSON.stringify(own));
+    const parts = this.parts(window, steps, drawn, shape, prefix);
+    const speeds = parts[1].data as Float32Array;
+    return [
+      this.named(`${prefix}header`, { data: text, shape: [text.length] }),
+      this.named(`${prefix}padded`, padded),
+      this.named(`${prefix}unit`, { data: new Uint16Array(nodes[0] * nodes[1]).fill(HALF_ONE), shape: nodes }),
+      this.named(`${prefix}mesh`, this.blocks(key, shape, speeds, scalars.high - scalars.low)),
+      ...parts,
+    ];
+  }
+
+  /** What triangles are chosen by: in the plane the errors are those of the colours. */
+  private blocks(key: TileKey, shape: [number, number], speeds: Float32Array, range: number) {
+    const { mesh, pyramid } = this.header;
+    const most = Math.log2(mesh.tileCells);
+    const [rows, columns] = shape.map((n) => Math.ceil((n - 1) / mesh.tileCells));
+    const size = 2 * (most + 1) + PLACE;
+    const data = new Float32Array(rows * columns * size);
+    const place = placesOf(this.header);
+    const tileBlocks = pyramid?.tileBlocks ?? 1;
+    for (let block = 0; block < rows * columns; block += 1) {
+      const [row, column] = [Math.floor(block / columns), block % columns];
+      let bend = 0;
+      for (let j = 1; j < mesh.tileCells; j += 1) {
+        for (let i = 1; i < mesh.tileCells; i += 1) {
+          const [y, x] = [row * mesh.tileCells + j, column * mesh.tileCells + i];
+          if (y >= shape[0] - 1 || x >= shape[1] - 1) continue;
+          const n = y * shape[1] + x;
+          const across = (by: number) => Math.abs(speeds[n - by] - 2 * speeds[n] + speeds[n + by]);
+          bend = Math.max(bend, across(1) + across(shape[1]));
+        }
+      }
+      const levels = Array.from({ length: most + 1 }, (_, level) => (level ? (bend * 4 ** level) / 8 / (range || 1) : 0));
+      const where = place?.(key[0], key[1] * tileBlocks + row, key[2] * tileBlocks + column) ?? [];
+      data.set([...levels.map(() => 0), ...levels, ...where], block * size);
+    }
+    return { data, shape: [rows, columns, size] };
+  }
+}

@@ -1,0 +1,66 @@
+"""What a client is handed of a formula, in place of velocities at nodes.
+
+The client computes the rates at the nodes that it draws, and those of any level below: there is no
+finest one. ``client/src/formula.ts`` is the other side.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flowtex.field.formula import Formula
+from flowtex.rendering.tile_choice import CELL_PIXELS
+from flowtex.rendering.webgl.protocol import Header
+from flowtex.textures import TextureSet
+from flowtex.tiles import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
+
+#: Levels below the grid that is handed over: enough for the deepest zoom.
+DEPTH = 20
+#: Before the name of a parameter among the settings, in the client as well.
+PREFIX = "formula."
+
+
+def client_formula(textures: TextureSet) -> Formula | None:
+    """Return the formula from which a client computes a flow itself, if it can.
+
+    That is one in the plane, of texts alone, that has a value everywhere.
+    """
+    field = textures.geometry.field
+    formula = field.formula
+    if formula is None or formula.surface or field.scalars or not field.valid.all():
+        return None
+    return formula if all(each.tree is not None for each in formula.expressions) else None
+
+
+def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:
+    """Return what of a header is a formula's, for a root of so many nodes (J, I)."""
+    shapes = [[(n - 1) * 2 ** (DEPTH - level) + 1 for n in shape] for level in range(DEPTH + 1)]
+    return {
+        "formula": {
+            "trees": [each.tree for each in formula.expressions],
+            "names": list(formula.ranges),
+            "ends": [list(ends) for ends in formula.ranges.values()],
+        },
+        "pyramid": {
+            "depth": DEPTH,
+            "finest": 0,
+            "blocks": [[-(-(n - 1) // BLOCK_CELLS) for n in each] for each in shapes],
+            "shapes": shapes,
+            "tileBlocks": TILE_BLOCKS,
+            "cellPixels": CELL_PIXELS,
+            "pathCells": PATH_CELLS,
+        },
+    }
+
+
+def parameter_rows(formula: Formula) -> list[dict[str, Any]]:
+    """Return the parameters as rows of the table of settings."""
+    return [
+        {
+            **{"name": PREFIX + name, "label": name, "default": each.value, "low": each.low},
+            **{"high": each.high, "affects": "uniform", "text": "A parameter of the formula."},
+            **{"logarithmic": False, "condition": "", "control": "slider", "whole": False},
+            **{"choices": [], "needs": []},
+        }
+        for name, each in formula.parameters.items()
+    ]

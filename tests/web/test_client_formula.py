@@ -1,0 +1,87 @@
+"""A formula on an exported page: drawn from itself at any zoom, with its parameters as sliders."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from page_reader import Reader
+from pages import COMPLETE, acted, opened_page
+
+import flowtex
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+ENDS: dict[str, Any] = {"x": (-6, 6), "y": (-3, 3), "b": (0.2, 0, 1)}
+LOOK: dict[str, Any] = {"samples": 9, "clim": (0, 5), "zoom": 3.0, "focus": (2.9, 0.3)}
+
+
+@pytest.fixture(autouse=True)
+def _small_preview(quick_export: None) -> None:
+    """Pages whose preview takes no time."""
+
+
+def pendulum(**options: Any) -> flowtex.FlowField:
+    return flowtex.formula("y", "-sin(x) - b*y", **{**ENDS, **options})
+
+
+def on_grid(resolution: int, b: float) -> flowtex.FlowField:
+    """The same flow of a function, which a page knows at its nodes alone."""
+    return flowtex.formula(
+        lambda y: y,
+        lambda x, y, b: -np.sin(x) - b * y,
+        **{**ENDS, "b": (b, 0, 1), "resolution": resolution},
+    )
+
+
+def opened(page: Page, path: Path) -> None:
+    page.goto(path.as_uri())
+    page.wait_for_selector(COMPLETE)
+
+
+def picture(page: Page) -> Any:
+    """The picture alone, as numbers."""
+    read = """async () => {
+      const { canvas } = document.querySelector("flowtex-view").first;
+      const { width, height } = canvas;
+      const copy = new OffscreenCanvas(width, height).getContext("2d");
+      copy.drawImage(canvas, 0, 0);
+      return [...copy.getImageData(0, 0, width, height).data];
+    }"""
+    return np.array(page.evaluate(read), float)
+
+
+def rms(one: Any, other: Any) -> float:
+    return float(np.sqrt(np.mean((one - other) ** 2)))
+
+
+def test_a_page_has_the_formula_and_no_velocities(tmp_path: Path) -> None:
+    path = flowtex.export(pendulum(), tmp_path / "page.html", samples=5).path
+    read = Reader(path.read_text(encoding="utf-8"))
+    assert not {name.split("/")[0] for name in read.names()} & {"flow", "scalars", "slices"}
+    header = read.header()
+    assert header["formula"]["trees"][1][0] == "+" and header["settings"]["formula.b"] == 0.2
+    grid = flowtex.export(on_grid(257, 0.2), tmp_path / "grid.html", samples=5)
+    assert path.stat().st_size < grid.nbytes
+
+
+@pytest.mark.slow
+def test_the_formula_draws_what_a_fine_grid_of_it_does_and_follows_its_slider(
+    browser: Browser, tmp_path: Path
+) -> None:
+    formula = flowtex.export(pendulum(resolution=65), tmp_path / "page.html", **LOOK).path
+    pictures = {}
+    with opened_page(browser, 320, 240) as page:
+        for b in (0.2, 0.8):
+            grid = flowtex.export(on_grid(513, b), tmp_path / f"{b}.html", **LOOK).path
+            opened(page, grid)
+            pictures[b] = picture(page)
+        opened(page, formula)
+        assert rms(picture(page), pictures[0.2]) < 2
+        slider = page.locator('[data-setting="formula.b"] input')
+        with acted(page):
+            slider.fill("0.8")
+        assert rms(picture(page), pictures[0.8]) < 2 < rms(*pictures.values())
