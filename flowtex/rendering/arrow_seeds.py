@@ -25,7 +25,8 @@ from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.vectors import norm
 from flowtex.rendering.constants import HASH_FACTORS, HASH_SHIFT, OCTAVE_PRIME, SEED_PRIME
 from flowtex.rendering.tile_choice import TileView
-from flowtex.textures.geometry import DrawnSurface
+from flowtex.textures import SurfaceGeometry, TriangleGeometry
+from flowtex.tiles import TILE_CELLS, Pyramid, TileKey
 
 #: Distance of seeds in an octave over that in the one before, and most octaves.
 OCTAVE, MOST_OCTAVES = float(np.sqrt(0.5)), 80
@@ -80,7 +81,7 @@ class ArrowSeeds:
         Vertices at the corners of each cell, (N, 4); the last two of a triangle are one.
     """
 
-    def __init__(self, geometry: DrawnSurface) -> None:
+    def __init__(self, geometry: SurfaceGeometry | TriangleGeometry) -> None:
         faces = geometry.faces
         self.corners = faces[:, [0, 1, 3, 2] if faces.shape[1] == 4 else [0, 1, 2, 2]]
         self._geometry = geometry
@@ -102,14 +103,10 @@ class ArrowSeeds:
             self._last = view, spacing, self._make(view, spacing)
         return self._last[2]
 
-    def normals(self, seeds: Seeds) -> Floats:
-        """Return unit normals of the surface at seeds, (n, 3), in its own frame."""
-        across = np.cross(*self._sides(self._cells[seeds.cell]))
-        return across / np.maximum(norm(across), np.finfo(float).tiny)[:, None]
-
-    def between(self, nodal: NDArray[np.floating], seeds: Seeds) -> Floats:
-        """Return what seeds have, (n, ...), of what the vertices have, (V, ...)."""
-        return _between(nodal[self.corners[seeds.cell]], seeds.place)
+    def vertex_data(self, seeds: Seeds) -> dict[str, Floats]:
+        """Return what shaders have of seeds, as :func:`vertex_data` does."""
+        corners = self.corners[seeds.cell]
+        return vertex_data(self._geometry, corners, seeds.place, seeds.radius)
 
     def _covers(self, last: TileView, least: float, view: TileView, spacing: float) -> bool:
         """Whether the seeds of the last view do for another one."""
@@ -281,6 +278,55 @@ def _mixed(key: Hashes) -> Hashes:
 def _shares(key: Hashes) -> Floats:
     """Numbers from 0 to 1 of hashed ones."""
     return key / 2.0**32
+
+
+def vertex_data(
+    geometry: SurfaceGeometry | TriangleGeometry, corners: Indices, place: Floats, radius: Floats
+) -> dict[str, Floats]:
+    """Return what shaders have of seeds, by the names of attributes.
+
+    Seeds lie between the vertices at the ``corners`` (n, 4) of a cell.
+    """
+    nodes = geometry.at_vertices(geometry.position)[corners].astype(float)
+    across = np.cross(
+        nodes[:, 1] + nodes[:, 3] - nodes[:, 0] - nodes[:, 2],
+        nodes[:, 2] + nodes[:, 3] - nodes[:, 0] - nodes[:, 1],
+    )
+    coordinate = geometry.coordinate.reshape(-1, 2)[corners]
+    data = {
+        "flowtexPosition": _between(nodes, place),
+        "flowtexCoordinate": _between(coordinate, place),
+        "flowtexNormal": across / np.maximum(norm(across), np.finfo(float).tiny)[:, None],
+        "flowtexRadius": radius,
+    }
+    if geometry.corners is not None:
+        data["flowtexCorners"] = geometry.corners[corners[:, 0]].astype(float)
+    return data
+
+
+def in_tile(
+    pyramid: Pyramid, key: TileKey, geometry: SurfaceGeometry, at: Floats
+) -> tuple[Bools, Indices, Floats]:
+    """Find places (n, 2), (i, j) of the root of a grid, in a tile.
+
+    Returns which are there, and of these the corners of their cells, (m, 4), and places there.
+    """
+    lines = zip(pyramid.line_numbers(pyramid.depth), pyramid.line_numbers(key.level), strict=True)
+    own = np.stack(
+        [
+            np.interp(np.interp(x, np.arange(len(root)), root), fine, np.arange(len(fine)))
+            for x, (root, fine) in zip(at.T, reversed(list(lines)), strict=True)
+        ],
+        axis=-1,
+    )
+    own -= np.array([key.column, key.row]) * TILE_CELLS
+    rows, columns = geometry.shape
+    cell = np.clip(np.floor(own), 0, (columns - 2, rows - 2)).astype(int)
+    inside: Bools = (np.abs(own - cell - 0.5) <= 0.5).all(axis=-1)
+    inside &= geometry.cells[cell[:, 1], cell[:, 0]]
+    first = cell[inside, 1] * columns + cell[inside, 0]
+    corners = first[:, None] + np.array([0, 1, columns, columns + 1])
+    return inside, corners, (own - cell)[inside]
 
 
 def seed_limits() -> dict[str, float]:

@@ -1,8 +1,13 @@
-"""Arrows that follow the flow, as an actor beside the surface's own one."""
+"""Arrows that follow the flow, as actors beside those of the surface and of its tiles.
+
+Seeds are those of the whole surface, or of the coarsest level. Where a tile is drawn it draws the
+arrows there, along its own paths.
+"""
 
 from __future__ import annotations
 
 import weakref
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,13 +15,16 @@ import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds
+from flowtex._util.array_types import Floats
+from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds, in_tile, vertex_data
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import TileView
 from flowtex.rendering.uniforms import ARROW_PIECES, arrow_distance, has_arrows, is_near, variants
 from flowtex.rendering.vtk.layer import FlowLayer, write_uniform
 from flowtex.rendering.vtk.mesh import FlowMapper
 from flowtex.settings import Settings
+from flowtex.textures import SurfaceGeometry
+from flowtex.tiles import Pyramid, TileKey
 
 OWNER = "flowtex arrows"
 #: Shader, the mark of VTK after which our text is inserted, and our file.
@@ -26,23 +34,84 @@ REPLACEMENTS = (
     ("fragment", "//VTK::PositionVC::Dec", "vtk/arrow_fragment_dec.glsl"),
     ("fragment", "//VTK::Light::Impl", "vtk/arrow_fragment_impl.glsl"),
 )
-#: Point arrays by the names of the shader's attributes.
-ATTRIBUTES = (
-    "flowtexCoordinate",
-    "flowtexRibbon",
-    "flowtexRadius",
-    "flowtexNormal",
-    "flowtexCorners",
-)
+#: Attribute of the vertices of a ribbon: piece and side.
+RIBBON = "flowtexRibbon"
 
 
-class FlowArrows:
-    """The arrows of one layer, in its renderer while the settings ask for them."""
+class SurfaceArrows:
+    """The arrows of one surface, in its renderer while the settings ask for them."""
+
+    def __init__(self, renderer: Any, settings: Settings) -> None:
+        self._renderer, self._settings = weakref.ref(renderer), settings
+        self._seeds: ArrowSeeds | None = None
+        self._drawn: tuple[Any, ...] = ()
+        self._parts: dict[TileKey | None, _Arrows] = {}
+
+    def look(
+        self,
+        layers: Mapping[TileKey | None, FlowLayer],
+        pyramid: Pyramid | None,
+        view: TileView,
+        place: Floats,
+    ) -> None:
+        """Have the arrows of a view on the layers of a surface at a place (4, 4)."""
+        renderer, base = self._renderer(), layers[None]
+        if renderer is None or not has_arrows(base.textures, self._settings):
+            self.close()
+            return
+        self._seeds = self._seeds or ArrowSeeds(base.textures.geometry)
+        seeds = self._seeds.seen(view, arrow_distance(self._settings))
+        drawn = (seeds, *layers.items())
+        if drawn != self._drawn:
+            self._drawn = drawn
+            shared = self._shared(seeds, layers, pyramid)
+            for key, part in list(self._parts.items()):
+                if key not in shared or part.layer is not layers[key]:
+                    renderer.RemoveActor(self._parts.pop(key).actor)
+            for key, data in shared.items():
+                if key not in self._parts:
+                    self._parts[key] = _Arrows(layers[key], renderer, self._settings)
+                    renderer.AddActor(self._parts[key].actor)
+                self._parts[key].set_data(data)
+        for part in self._parts.values():
+            part.look(place)
+
+    def close(self) -> None:
+        """Take the arrows out of the renderer."""
+        for part in self._parts.values():
+            if (renderer := self._renderer()) is not None:
+                renderer.RemoveActor(part.actor)
+        self._parts, self._seeds, self._drawn = {}, None, ()
+
+    def _shared(
+        self, seeds: Seeds, layers: Mapping[TileKey | None, FlowLayer], pyramid: Pyramid | None
+    ) -> dict[TileKey | None, dict[str, Floats]]:
+        """Share seeds among the layers: the finest that is there draws them."""
+        assert self._seeds is not None
+        result: dict[TileKey | None, dict[str, Floats]] = {}
+        keys = sorted((key for key in layers if key is not None), key=lambda key: key.level)
+        for key in keys:
+            geometry = layers[key].textures.geometry
+            if pyramid is None or not isinstance(geometry, SurfaceGeometry):
+                continue  # triangles of a level are not those of another
+            row, column = np.divmod(
+                self._seeds.corners[seeds.cell, 0], pyramid.shape(pyramid.depth)[1]
+            )
+            at = np.stack([column, row], axis=-1) + seeds.place
+            inside, corners, place = in_tile(pyramid, key, geometry, at)
+            result[key] = vertex_data(geometry, corners, place, seeds.radius[inside])
+            seeds = seeds[~inside]
+        result[None] = self._seeds.vertex_data(seeds)
+        return {key: data for key, data in result.items() if len(data["flowtexRadius"])}
+
+
+class _Arrows:
+    """The arrows of one layer, as an actor."""
 
     def __init__(self, layer: FlowLayer, renderer: Any, settings: Settings) -> None:
-        self._layer, self._renderer, self._settings = layer, weakref.ref(renderer), settings
-        self._seeds = ArrowSeeds(layer.textures.geometry)
-        self._drawn: tuple[Seeds, bytes] | None = None
+        self.layer, self._renderer, self._settings = layer, weakref.ref(renderer), settings
+        self._data: dict[str, Floats] = {}
+        self._anchor: Floats | None = None
         self._variant: frozenset[str] | None = None
         self.actor = pv.Actor(mapper=FlowMapper(pv.PolyData()))
         self.actor.mapper.scalar_visibility = False
@@ -61,61 +130,48 @@ class FlowArrows:
         write.CallDataType = VTK_OBJECT  # type: ignore[attr-defined]
         self.actor.mapper.AddObserver("UpdateShaderEvent", write)
 
-    def look(self, view: TileView, place: Any) -> None:
-        """Have the arrows of a view, on a surface at a place (4, 4)."""
-        layer, renderer = self._layer, self._renderer()
-        if renderer is None:
-            return
-        shown = has_arrows(layer.textures, self._settings)
-        if shown != bool(renderer.HasViewProp(self.actor)):
-            (renderer.AddActor if shown else renderer.RemoveActor)(self.actor)
-        if not shown:
-            return
-        geometry, anchor = layer.textures.geometry, layer.view.anchor
+    def set_data(self, data: dict[str, Floats]) -> None:
+        """Draw other seeds, of which shaders have this."""
+        self._data, self._anchor = data, None
+
+    def look(self, place: Floats) -> None:
+        """Follow the layer, on a surface at a place (4, 4)."""
+        geometry, anchor = self.layer.textures.geometry, self.layer.view.anchor
         matrix = np.eye(4)
         matrix[:3, :3] = geometry.frame.T
         matrix[:3, 3] = geometry.center + geometry.frame.T @ anchor
         self.actor.user_matrix = place @ matrix
-        seeds = self._seeds.seen(view, arrow_distance(self._settings))
-        if self._drawn != (drawn := (seeds, anchor.tobytes())):
-            self._drawn = drawn
-            self.actor.mapper.dataset = self._mesh(seeds)
+        if self._anchor is None or (anchor != self._anchor).any():
+            self._anchor = anchor.copy()
+            self.actor.mapper.dataset = self._mesh(anchor)
         self._write_text()
 
-    def close(self) -> None:
-        """Take the arrows out of the renderer."""
-        if (renderer := self._renderer()) is not None:
-            renderer.RemoveActor(self.actor)
-
-    def _mesh(self, seeds: Seeds) -> pv.PolyData:
+    def _mesh(self, anchor: Floats) -> pv.PolyData:
         """Ribbons of the seeds: two vertices at each end of a piece."""
-        geometry, count = self._layer.textures.geometry, 2 * (ARROW_PIECES + 1)
+        position, count = self._data["flowtexPosition"], 2 * (ARROW_PIECES + 1)
         number = np.arange(count)
         ribbon = np.stack([number // 2, 2 * (number % 2) - 1], axis=-1)
         strip = 2 * np.arange(ARROW_PIECES)[:, None] + [0, 1, 3, 2]
-        faces: Any = (np.arange(len(seeds.cell))[:, None, None] * count + strip).reshape(-1, 4)
-        position = np.repeat(seeds.position - self._layer.view.anchor, count, axis=0)
-        mesh = pv.PolyData.from_regular_faces(position, faces)
-        coordinate = self._seeds.between(geometry.coordinate.reshape(-1, 2), seeds)
-        arrays = {"Coordinate": coordinate, "Radius": seeds.radius}
-        if not geometry.planar:
-            arrays["Normal"] = self._seeds.normals(seeds)
-        if geometry.corners is not None:
-            arrays["Corners"] = geometry.corners[self._seeds.corners[seeds.cell, 0]]
-        for name, values in arrays.items():
-            mesh.point_data[f"flowtex{name}"] = np.repeat(values, count, axis=0).astype(np.float32)
-        mesh.point_data["flowtexRibbon"] = np.tile(ribbon, (len(seeds.cell), 1)).astype(np.float32)
-        mapper = self.actor.mapper
-        for name in ATTRIBUTES:
-            mapper.RemoveVertexAttributeMapping(name)
-            if name in mesh.point_data:
-                points = vtkDataObject.FIELD_ASSOCIATION_POINTS
-                mapper.MapDataArrayToVertexAttribute(name, name, points, -1)
+        faces: Any = (np.arange(len(position))[:, None, None] * count + strip).reshape(-1, 4)
+        mesh = pv.PolyData.from_regular_faces(np.repeat(position - anchor, count, axis=0), faces)
+        mapper, points = self.actor.mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
+        repeated = {name: np.repeat(self._data[name], count, axis=0) for name in self._read}
+        for name, values in {**repeated, RIBBON: np.tile(ribbon, (len(position), 1))}.items():
+            mesh.point_data[name] = values.astype(np.float32)
+            mapper.MapDataArrayToVertexAttribute(name, name, points, -1)
         return mesh
 
+    @property
+    def _read(self) -> list[str]:
+        """Names of what the shader reads beside positions."""
+        unread = {"flowtexPosition"}
+        if self.layer.textures.geometry.planar:
+            unread.add("flowtexNormal")
+        return [name for name in self._data if name not in unread]
+
     def _write_text(self) -> None:
-        textures = self._layer.textures
-        near = is_near(textures, self._settings, self._layer.view)
+        textures = self.layer.textures
+        near = is_near(textures, self._settings, self.layer.view)
         # In triangles the shader needs what only fragments have, to follow the velocity in a cell.
         near = near and textures.geometry.corners is None
         variant = variants(textures, unsteady=textures.store.steps > 1, near=near)
@@ -128,6 +184,6 @@ class FlowArrows:
             self.actor.add_shader_replacement(shader, mark, text, _feature_name=OWNER)
 
     def _before_draw(self, program: Any) -> None:
-        self._layer.before_draw(program)
+        self.layer.before_draw(program)
         if (renderer := self._renderer()) is not None and program.IsUniformUsed("u_picture"):
             write_uniform(program, "u_picture", tuple(map(float, renderer.GetSize())))

@@ -29,8 +29,8 @@ from flowtex.rendering.tile_choice import (
     wanted_tiles,
 )
 from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
-from flowtex.rendering.uniforms import ViewState, has_arrows
-from flowtex.rendering.vtk.arrows import FlowArrows
+from flowtex.rendering.uniforms import ViewState
+from flowtex.rendering.vtk.arrows import SurfaceArrows
 from flowtex.rendering.vtk.layer import FlowLayer, corrects_places
 from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
 from flowtex.settings import Settings
@@ -88,7 +88,7 @@ class FlowSurface:
         self._moment = (0, 0, 0.0)
         self._scalars: tuple[str, Callable[[FlowField], Floats]] | None = None
         self._drawn: tuple[Any, ...] = ()
-        self._arrows: FlowArrows | None = None
+        self._arrows = SurfaceArrows(renderer, settings)
         self._tiles: dict[TileKey, _TileActor] = {}
         self._loader = None if pyramid is None else self._loader_of(pyramid)
         self.full_height: int | None = None
@@ -126,7 +126,7 @@ class FlowSurface:
     def set_textures(self, textures: TextureSet, pyramid: Pyramid | None = None) -> None:
         """Draw another texture set from now on, of the same flow or of another one."""
         self._drop(list(self._tiles))
-        self._drop_arrows()
+        self._arrows.close()
         if self._loader is not None:
             self._loader.close()
         self._loader = None if pyramid is None else self._loader_of(pyramid)
@@ -167,7 +167,7 @@ class FlowSurface:
             for _, tag in self._observed:
                 renderer.RemoveObserver(tag)
         self._drop(list(self._tiles))
-        self._drop_arrows()
+        self._arrows.close()
         if self._loader is not None:
             self._loader.close()
         self._base.close()
@@ -216,10 +216,8 @@ class FlowSurface:
             layer.set_moment(*self._moment)
             layer.look()
         self._set_triangles(layers, shown, view)
-        if has_arrows(self._base.textures, self._settings) and self._arrows is None:
-            self._arrows = FlowArrows(self._base, renderer, self._settings)
-        if self._arrows is not None:
-            self._arrows.look(view, self._place)
+        pyramid = None if self._loader is None else self._loader.pyramid
+        self._arrows.look(layers, pyramid, view, self._place)
 
     def _cull(self) -> None:
         """Leave out the far side of a whole globe, which is hidden but would be shaded as well.
@@ -367,11 +365,6 @@ class FlowSurface:
             if key in keys:
                 drawn.layer.follow(base.mapper)
                 drawn.actor.SetPickable(base.GetPickable())
-
-    def _drop_arrows(self) -> None:
-        if self._arrows is not None:
-            self._arrows.close()
-        self._arrows = None
 
     def _drop(self, keys: list[TileKey]) -> None:
         renderer = self._renderer()
