@@ -1,12 +1,14 @@
-// Arrows that follow the flow, over the surface of one scene: an instance for each seed.
+// Arrows that follow the flow, over the surface of one scene: an instance for each seed. Those of a large
+// surface have the seeds of its root, and where a tile is drawn its paths.
 
-import { ArrowSeeds, type Seed, type View } from "./arrowseeds.ts";
+import { ArrowSeeds, between, type Pair, type Seed, type SeededSurface, type View } from "./arrowseeds.ts";
 import type { Graphics } from "./context.ts";
 import { coordinates } from "./mesh.ts";
-import type { Header, Part, Settings } from "./protocol.ts";
+import type { Data, Header, Part, Settings } from "./protocol.ts";
 import type { Program } from "./programs.ts";
+import { fullIndex, levelIndex, type TileKey } from "./tilechoice.ts";
 import { arrowDistance, hasArrows, type Uniform } from "./uniforms.ts";
-import { subtract, type Vector } from "./vectors.ts";
+import { add, cross, subtract, unit, type Vector } from "./vectors.ts";
 
 /** Numbers of a seed by the place of their attribute: position, coordinate, normal, corners and radius. */
 const SIZES: [attribute: number, size: number][] = [
@@ -19,6 +21,24 @@ const SIZES: [attribute: number, size: number][] = [
 const FLOAT_BYTES = 4;
 const STRIDE = SIZES.reduce((sum, [, size]) => sum + size, 0);
 
+/** What is drawn of a surface: all of it, or a tile. */
+export interface Layer {
+  readonly header: Header;
+  readonly parts: ReadonlyMap<string, Part>;
+  readonly tile: TileKey | null;
+}
+
+/** A seed between four nodes of a layer. */
+interface Placed {
+  corners: ArrayLike<number>;
+  place: Pair;
+  radius: number;
+}
+
+const isEqual = (a: readonly unknown[], b: readonly unknown[]) =>
+  a.length === b.length && a.every((each, n) => each === b[n]);
+const levelOf = ({ tile }: Layer) => tile?.[0] ?? Infinity;
+
 export class Arrows {
   private readonly graphics: Graphics;
   private readonly header: Header;
@@ -26,7 +46,10 @@ export class Arrows {
   private seeds: ArrowSeeds | null = null;
   private array: WebGLVertexArrayObject | null = null;
   private buffer: WebGLBuffer | null = null;
-  private drawn: { seeds: Seed[]; anchor: Vector } | null = null;
+  private known: SeededSurface | null = null;
+  /** Seeds as they were shared last, and as they lie in the buffer. */
+  private last: { seeds: Seed[]; layers: readonly Layer[]; shared: Map<Layer, Placed[]> } | null = null;
+  private drawn: { placed: Placed[]; anchor: Vector } | null = null;
 
   constructor(graphics: Graphics, header: Header, parts: ReadonlyMap<string, Part>) {
     this.graphics = graphics;
@@ -43,24 +66,46 @@ export class Arrows {
     return this.graphics.programs.get(shaders.arrowVertex, shaders.arrowFragment, ...variant);
   }
 
-  /** Draw above the surface, whose slices lie in their units. */
-  draw(program: Program, view: View, anchor: Vector, settings: Settings, values: Record<string, Uniform>): void {
+  /** Seeds of a view, and which of the layers draws each: the finest that is there. */
+  share<L extends Layer>(view: View, settings: Settings, layers: readonly L[]): Map<L, Placed[]> {
+    const { header, last } = this;
+    this.seeds ??= new ArrowSeeds(this.surface, header.constants.arrows);
+    const seeds = this.seeds.seen(view, arrowDistance(header, settings));
+    if (last?.seeds === seeds && isEqual(layers, last.layers)) return last.shared as Map<L, Placed[]>;
+    const { corners } = this.surface;
+    const whole = seeds.map(({ cell, place, radius }): Placed => {
+      return { corners: corners.subarray(4 * cell, 4 * cell + 4), place, radius };
+    });
+    const shared = new Map<L, Placed[]>(layers.map((layer) => [layer, []]));
+    const finest = [...layers].sort((a, b) => levelOf(a) - levelOf(b));
+    for (const seed of whole) {
+      for (const layer of finest) {
+        const placed = layer.tile ? this.inTile(seed, layer, layer.tile) : seed;
+        if (!placed) continue;
+        shared.get(layer)?.push(placed);
+        break;
+      }
+    }
+    this.last = { seeds, layers, shared };
+    return shared;
+  }
+
+  /** Draw some above the surface, whose slices lie in their units. */
+  draw(program: Program, placed: Placed[], anchor: Vector, values: Record<string, Uniform>): void {
     const { graphics } = this;
     const gl = graphics.context;
-    this.seeds ??= new ArrowSeeds(this.surface(), this.header.constants.arrows);
-    const seeds = this.seeds.seen(view, arrowDistance(this.header, settings));
     this.array ??= this.make();
     gl.bindVertexArray(this.array);
-    if (this.drawn?.seeds !== seeds || String(this.drawn.anchor) !== String(anchor)) {
+    if (this.drawn?.placed !== placed || String(this.drawn.anchor) !== String(anchor)) {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-      gl.bufferData(gl.ARRAY_BUFFER, this.numbers(seeds, anchor) as AllowSharedBufferSource, gl.DYNAMIC_DRAW);
-      this.drawn = { seeds, anchor };
+      gl.bufferData(gl.ARRAY_BUFFER, this.numbers(placed, anchor) as AllowSharedBufferSource, gl.DYNAMIC_DRAW);
+      this.drawn = { placed, anchor };
     }
     graphics.programs.use(program, values);
     gl.enable(gl.BLEND);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ZERO, gl.ONE);
     gl.depthMask(false);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 2 * (this.header.constants.arrows.pieces + 1), seeds.length);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 2 * (this.header.constants.arrows.pieces + 1), placed.length);
     gl.depthMask(true);
     gl.disable(gl.BLEND);
     gl.bindVertexArray(null);
@@ -68,13 +113,35 @@ export class Arrows {
 
   /** Drop what was made of the surface, which has changed. */
   forget(): void {
-    this.seeds = this.drawn = null;
+    this.known = this.seeds = this.last = this.drawn = null;
   }
 
   dispose(): void {
     this.graphics.free("Buffer", this.buffer);
     this.graphics.free("VertexArray", this.array);
-    this.array = this.buffer = this.seeds = this.drawn = null;
+    this.array = this.buffer = null;
+    this.forget();
+  }
+
+  /** A seed of the root of a grid in a tile; null where it is not there. */
+  private inTile({ corners, place, radius }: Placed, layer: Layer, [level, row, column]: TileKey): Placed | null {
+    const { geometry, pyramid, mesh } = this.header;
+    if (!pyramid || geometry.triangles) return null; // triangles of a level are not those of another
+    const side = mesh.tileCells * pyramid.tileBlocks;
+    const [rows, columns] = layer.header.geometry.shape;
+    const width = geometry.shape[1];
+    const line = (at: number, axis: number, tile: number, cells: number): Pair | null => {
+      const nodes = pyramid.shapes[0][axis];
+      const own = levelIndex(fullIndex(at, pyramid.depth, nodes), level, nodes) - tile * side;
+      const cell = Math.min(Math.max(Math.floor(own), 0), cells - 1);
+      return own < 0 || own > cells ? null : [cell, own - cell];
+    };
+    const i = line((corners[0] % width) + place[0], 1, column, columns - 1);
+    const j = line(Math.floor(corners[0] / width) + place[1], 0, row, rows - 1);
+    if (!i || !j) return null;
+    if (layer.parts.get("cells")?.data[j[0] * (columns - 1) + i[0]] === 0) return null;
+    const low = j[0] * columns + i[0];
+    return { corners: [low, low + 1, low + columns, low + columns + 1], place: [i[1], j[1]], radius };
   }
 
   private make(): WebGLVertexArrayObject {
@@ -93,30 +160,32 @@ export class Arrows {
     return array;
   }
 
-  private numbers(seeds: Seed[], anchor: Vector): Float32Array {
+  private numbers(placed: Placed[], anchor: Vector): Float32Array {
     const { geometry } = this.header;
-    const { seeds: made } = this;
-    const triangles = this.parts.get("triangles")?.data;
-    const places = geometry.triangles ? null : coordinates(geometry);
+    const nodes = this.nodes;
+    const coordinate = geometry.triangles ? null : coordinates(geometry);
     return Float32Array.from(
-      seeds.flatMap((seed) => {
-        const [i, j] = seed.place;
-        const first = 3 * seed.cell;
+      placed.flatMap(({ corners, place, radius }) => {
+        const [i, j] = place;
+        const [a, b, c, d] = Array.from(corners, (n) => [...nodes.subarray(3 * n, 3 * n + 3)] as Vector);
+        const across = cross(subtract(add(b, d), add(a, c)), subtract(add(c, d), add(a, b)));
         return [
-          ...subtract(seed.position, anchor),
-          ...((places && made?.between(places, seed, 2)) ?? [i * (1 - j), j]),
-          ...(made?.normal(seed) ?? [0, 0, 1]),
-          ...(triangles && geometry.triangles ? triangles.slice(first, first + 3) : [0, 0, 0]),
-          seed.radius,
+          ...subtract(between(nodes, corners, place, 3), anchor),
+          ...(coordinate ? between(coordinate, corners, place, 2) : [i * (1 - j), j]),
+          ...unit(across),
+          ...Array.from(corners).slice(0, 3),
+          radius,
         ];
       }),
     );
   }
 
-  private surface() {
-    const { geometry } = this.header;
-    const nodes = this.parts.get("position")?.data ?? new Float32Array();
-    return { geometry, nodes, corners: this.corners() };
+  private get nodes(): Data {
+    return this.parts.get("position")?.data ?? new Float32Array();
+  }
+
+  private get surface(): SeededSurface {
+    return (this.known ??= { geometry: this.header.geometry, nodes: this.nodes, corners: this.corners() });
   }
 
   /** Nodes at the corners of the cells that are drawn, at (0, 0), (1, 0), (0, 1) and (1, 1) of each. */

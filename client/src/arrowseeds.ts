@@ -4,7 +4,7 @@ import type { Data, Geometry, Header } from "./protocol.ts";
 import type { TileView } from "./tilechoice.ts";
 import { add, cross, dot, fromFrame, length, scale, subtract, type Vector } from "./vectors.ts";
 
-type Pair = [i: number, j: number];
+export type Pair = [i: number, j: number];
 
 /** A point of a surface: cell, place in it from 0 to 1, position in its frame, and radius. */
 export interface Seed {
@@ -63,27 +63,9 @@ export class ArrowSeeds {
     return this.last.seeds;
   }
 
-  /** Unit normal of the surface at a seed, in its own frame. */
-  normal({ cell }: Seed): Vector {
-    const across = cross(...this.sides(wholeCell(cell)));
-    return scale(across, 1 / Math.max(length(across), Number.MIN_VALUE));
-  }
-
-  /** What a seed has of what the nodes have, so many numbers each. */
-  between(nodal: Data, { cell, place }: Pick<Seed, "cell" | "place">, size: number): number[] {
-    const { corners } = this.surface;
-    const [i, j] = place;
-    const shares = [(1 - j) * (1 - i), (1 - j) * i, j * (1 - i), j * i];
-    const result = new Array<number>(size).fill(0);
-    for (let n = 0; n < CORNERS; n += 1) {
-      const at = size * corners[CORNERS * cell + n];
-      for (let k = 0; k < size; k += 1) result[k] += shares[n] * nodal[at + k];
-    }
-    return result;
-  }
-
   private position(cell: number, place: Pair): Vector {
-    return this.between(this.surface.nodes, { cell, place }, 3) as Vector;
+    const { nodes, corners } = this.surface;
+    return between(nodes, corners.subarray(CORNERS * cell, CORNERS * (cell + 1)), place, 3) as Vector;
   }
 
   private point(position: Vector): Vector {
@@ -233,6 +215,16 @@ export class ArrowSeeds {
   private area(part: Part): number {
     return length(cross(...this.sides(part)));
   }
+}
+
+/** What lies in a cell between its corners, of what the nodes have, so many numbers each. */
+export function between(nodal: Data, corners: ArrayLike<number>, [i, j]: Pair, size: number): number[] {
+  const shares = [(1 - j) * (1 - i), (1 - j) * i, j * (1 - i), j * i];
+  const result = new Array<number>(size).fill(0);
+  for (let n = 0; n < CORNERS; n += 1) {
+    for (let k = 0; k < size; k += 1) result[k] += shares[n] * nodal[size * corners[n] + k];
+  }
+  return result;
 }
 
 /** Points by cubes, to find the distance to the nearest one, up to the side of a cube. */

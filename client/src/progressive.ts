@@ -8,7 +8,7 @@ import type { Settings } from "./protocol.ts";
 import { COARSEST_SCALE, draftUniforms, learnedPrice, motionFactor, movingTime, quality, rowsIn } from "./quality.ts";
 import { reused, type Reuse } from "./reuse.ts";
 import type { Scene } from "./scene.ts";
-import { isNear, uniforms, type Moment, type ViewState } from "./uniforms.ts";
+import { hasArrows, isNear, uniforms, type Moment, type Uniform, type ViewState } from "./uniforms.ts";
 import { clamp, scale, subtract, toFrame } from "./vectors.ts";
 
 /** Milliseconds for a picture in motion of one of many views at least, and for a strip at rest. */
@@ -349,17 +349,30 @@ export class ProgressiveRenderer {
         layer.draw(shown[0], shown[1], view.anchor, true);
       }
     });
-    const arrows = scene.arrows.program(viewer.settings, isNear(scene.header, viewer.settings, view));
-    if (arrows) {
-      scene.bindTextures(shown[0], shown[1]);
-      const seen = { ...camera.sight(height / view.density), planes: camera.planes };
-      const values = { ...this.values(scene, scene, camera, view, samples, draft), u_picture: [width, height] };
-      scene.arrows.draw(arrows, seen, view.anchor, viewer.settings, values);
-    }
+    this.drawArrows(shown, view, region, (layer) => this.values(layer, scene, camera, view, samples, draft));
     bodies.draw(around, "clear");
     if (smooth) graphics.copySmooth(width, rows);
     // Reading a pixel waits until everything is drawn.
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
+  /** Draw arrows on what is drawn of the surface. */
+  private drawArrows(
+    shown: Moment,
+    view: ViewState,
+    { width, height }: Region,
+    values: (layer: Scene) => Record<string, Uniform>,
+  ): void {
+    const { scene, camera, settings } = this.viewer;
+    if (!scene || !camera || !hasArrows(scene.header, settings)) return;
+    const seen = { ...camera.sight(height / view.density), planes: camera.planes };
+    for (const [layer, placed] of scene.arrows.share(seen, settings, this.layers)) {
+      const { arrows, header } = layer;
+      const program = arrows.program(settings, isNear(header, settings, view));
+      if (!program || !placed.length) continue;
+      layer.bindTextures(shown[0], shown[1]);
+      arrows.draw(program, placed, view.anchor, { ...values(layer), u_picture: [width, height] });
+    }
   }
 
   /** All uniforms of a picture. */

@@ -9,6 +9,7 @@ import { coordinates, cornersAt, noiseCoordinates, positions, shares, type Corne
 import { MeshLevels, type Sight } from "./meshlevels.ts";
 import { SAMPLERS, type Program } from "./programs.ts";
 import { stepOf, type Data, type Header, type Part, type Settings } from "./protocol.ts";
+import type { TileKey } from "./tilechoice.ts";
 import { flowsOf, normalOf, positionOf, programsOf, Tracing, type Made } from "./tracer.ts";
 import {
   atVertices,
@@ -53,6 +54,7 @@ export class Scene {
   readonly earth: EarthLayer;
   readonly bodies: Bodies;
   readonly arrows: Arrows;
+  readonly tile: TileKey | null;
   anchor: Vector = [0, 0, 0];
   private readonly resources = new Map<string, Resource>();
   private scalarSteps = "";
@@ -63,7 +65,8 @@ export class Scene {
   private tracing = "";
   private readonly number = (count += 1);
 
-  constructor(graphics: Graphics, header: Header, parts: Map<string, Part>) {
+  constructor(graphics: Graphics, header: Header, parts: Map<string, Part>, tile: TileKey | null = null) {
+    this.tile = tile;
     this.graphics = graphics;
     this.header = header;
     this.parts = parts;

@@ -193,3 +193,10 @@ export function fullIndex(place: number, level: number, nodes: number): number {
   const low = Math.floor(place);
   return line(low) + (place - low) * (line(low + 1) - line(low));
 }
+
+/** Where a place among the lines of level 0 lies among those of a level. */
+export function levelIndex(place: number, level: number, nodes: number): number {
+  const step = 2 ** level;
+  const low = Math.max(Math.min(Math.floor(place / step), Math.ceil((nodes - 1) / step) - 1), 0);
+  return low + (place - low * step) / (Math.min((low + 1) * step, nodes - 1) - low * step);
+}

@@ -142,7 +142,7 @@ export class Tiles {
       tile.scene?.dispose();
       tile.ranges = own?.ranges;
       if (own) own.geometry.reach = header.geometry.reach;
-      tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null, bodies: null }, tile.parts);
+      tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null, bodies: null }, tile.parts, keyOf(name));
       this.giveMap(tile);
       this.giveLimits(tile);
     } else tile.scene?.forget(part.name);

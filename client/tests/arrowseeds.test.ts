@@ -17,6 +17,8 @@ const { limits, spacing, cases }: { limits: Header["constants"]["arrows"]; spaci
 
 const near = (a: number[], b: number[]) => a.every((x, n) => Math.abs(x - b[n]) <= 1e-6 * Math.abs(b[n]) + 1e-12);
 
+for (const { surface } of cases) surface.corners = Uint32Array.from(surface.corners);
+
 cases.forEach(({ surface, view, seeds }, n) => {
   test(`seeds are those of Python, in view ${n}`, () => {
     const found = new ArrowSeeds(surface, limits)

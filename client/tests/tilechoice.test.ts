@@ -7,6 +7,7 @@ import {
   cellPixels,
   cover,
   fullIndex,
+  levelIndex,
   Pyramid,
   wantedTiles,
   type TileView,
@@ -79,4 +80,11 @@ test("a place on a coarse level lies among all nodes", () => {
   assert.equal(fullIndex(1.5, 2, 10), 6);
   assert.equal(fullIndex(2.5, 2, 10), 8.5); // the last line is always there
   assert.equal(fullIndex(3, 2, 10), 9);
+});
+
+test("a place among the lines of a level is found again from that of level 0", () => {
+  for (const [place, level, nodes] of [[2.25, 3, 100], [12.9, 3, 100], [12.1, 3, 102], [0, 2, 5], [1, 2, 5]]) {
+    const found = levelIndex(fullIndex(place, level, nodes), level, nodes);
+    assert.ok(Math.abs(found - Math.min(place, Math.ceil((nodes - 1) / 2 ** level))) < 1e-12);
+  }
 });

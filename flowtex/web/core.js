@@ -216,9 +216,9 @@ push([first,count2])}return runs}function fromHalf(bits){let exponent=bits>>10&3
 size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var SINGLE=new Float32Array(1),BITS=new Uint32Array(
 SINGLE.buffer);function toHalf(x){SINGLE[0]=x;let sign=BITS[0]>>>16&32768,size=BITS[0]&2147483647;return size>=1199566848?
 sign|(size>2139095040?32256:31744):size<947912704?sign|Math.round(Math.abs(x)*2**24):sign|size-93952e4>>>13}function halved(texels,width,height,channels){
-let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between2=(n,few,many)=>{let x=(n+
+let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between3=(n,few,many)=>{let x=(n+
 .5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
-v2]=between2(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between2(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
+v2]=between3(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between3(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
 texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
 toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=5,ZERO_SHARE=1e-5,EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,
 uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-
@@ -358,8 +358,8 @@ length-1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-times2[step])<rea
 1];return[...times2.keys()].filter(isNeeded)}function stretches({slices},step,side,from,to){let{trace,times:times2}=slices;
 if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,1]}];let result2=[],{unit:unit2}=trace.timed,
 lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in times2),end=isLast?to:
-lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between2=isLast?[0,1]:[lagOf(n),end],isWhole=end>=to-LAG_ROUNDING*
-to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between2}),from=isWhole?to:end}return result2}
+lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between3=isLast?[0,1]:[lagOf(n),end],isWhole=end>=to-LAG_ROUNDING*
+to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between3}),from=isWhole?to:end}return result2}
 function programsOf({programs,floats:floats2},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,get=(fragment,...variant)=>{
 let names=variant.filter(name=>typeof name=="string"),program=programs.get(fullVertex,fragment,...names);if(program.error)
 throw new Error(`the tracer cannot be built: ${program.error}`);return program},target=floats2&&"FLOWTEX_FLOATS",polar=trace.
@@ -658,7 +658,9 @@ sort(([,a],[,b])=>b.pixels-a.pixels).map(([name])=>name)}function cover(chosen,r
 delete(name),chosen.get(name)?.finer.forEach(hide)},covered=name=>{let{needed=!1,finer=[]}=chosen.get(name)??{},done=finer.
 filter(covered);return name!==ROOT&&!needed&&done.length===finer.length?!0:name!==ROOT&&!ready(name)?(done.forEach(hide),
 !1):(shown.set(name,done),!0)};return covered(ROOT),shown}function fullIndex(place,level,nodes){let line=n=>Math.min(n*2**
-level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
+level,nodes-1),low=Math.floor(place);return line(low)+(place-low)*(line(low+1)-line(low))}function levelIndex(place,level,nodes){
+let step=2**level,low=Math.max(Math.min(Math.floor(place/step),Math.ceil((nodes-1)/step)-1),0);return low+(place-low*step)/
+(Math.min((low+1)*step,nodes-1)-low*step)}var SHARES=[0,0,1,0,0,1],SHARP=.86,MOST_SHARE=1-1e-7;function atVertices(values,triangles,size){let result2=new values.constructor(
 size*triangles.length),n=0;for(let node of triangles)for(let k=size*node;k<size*node+size;k+=1)result2[n++]=values[k];return result2}
 function vertexShares(count2){return Float32Array.from({length:SHARES.length*count2},(_,n)=>SHARES[n%SHARES.length])}function vertexNormals(normals,positions2,triangles){
 let result2=atVertices(normals,triangles,3),at=(values,n)=>[values[3*n],values[3*n+1],values[3*n+2]];for(let n=0;n<triangles.
@@ -672,8 +674,8 @@ this.shape=[mesh.shape[0],mesh.shape[1]],this.blocks=blocks.data}levels(){return
 let{blocks}=this,drawn=levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),index=new Uint32Array(3*blocks.length),
 end=0;for(let n=0;n<blocks.length;n+=1)if(blocks[n]&drawn)for(let k=0;k<3;k+=1)index[end++]=3*n+k;return index.slice(0,end)}};function pickedPoint(context,x,y){let{layers,camera,moment,anchor,canvas}=context,{graphics,header}=layers[0].scene,[program]=layers[0].
 scene.pickers,whole=projection(header.geometry,camera,anchor),matrix=atPixel(whole,[x,y],[canvas.width,canvas.height]),[
-before,after,between2]=moment,bits=graphics.numbers(()=>{layers[0].scene.bodies.hide(matrix,anchor),layers.forEach(({scene},n)=>{
-graphics.programs.use(program,{u_matrix:matrix,u_between:between2,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
+before,after,between3]=moment,bits=graphics.numbers(()=>{layers[0].scene.bodies.hide(matrix,anchor),layers.forEach(({scene},n)=>{
+graphics.programs.use(program,{u_matrix:matrix,u_between:between3,u_part:n}),scene.draw(before,after,anchor,!1)})});if(!bits[3])
 return null;let[u,v2]=new Float32Array(bits.buffer,0,2),layer=layers[bits[2]],{geometry}=layer.scene.header,place=geometry.
 triangles?placeIn(bits[3]-1,u,v2):placeAmong(geometry,u,v2),corners=layer.scene.cornersAt(place),position=positionAt(layer.
 scene,camera,corners,x,y),index=geometry.triangles?place:wholeIndex(header,layer,place);return{point:{position,index,values:valuesAt(
@@ -684,10 +686,10 @@ tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,leve
 j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
 geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
 ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){
-let{header,parts}=scene,{scalars}=header,[from,to,between2]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({
+let{header,parts}=scene,{scalars}=header,[from,to,between3]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({
 name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.
 map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+
-between2*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+between3*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
 subtract2(view.eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2?"ramp":s.kernel,kernel=signFree&&
 chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[
@@ -1183,7 +1185,7 @@ later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAS
 0];lastFrame=0;hasHeader=!1;setHeader(header){let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.
 every((t,n)=>t===this.times[n]))||!this.hasHeader)&&(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.
 times=times2}get varies(){return this.times.length>1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){
-return momentOf(this.times,this.time)}timeOf([before,after,between2]){return this.times[before]+between2*(this.times[after]-
+return momentOf(this.times,this.time)}timeOf([before,after,between3]){return this.times[before]+between3*(this.times[after]-
 this.times[before])}seek(time){this.time=clamp(time,...this.span)}stepFrom(count2){let{times:times2,time}=this,after=times2.
 findIndex(each=>count2>0?each>time:each>=time),steps=times2.length,at=after<0?steps:after;return times2[(count2>0?at:at-
 1+steps)%steps]}start(){this.playing=!0,this.lastFrame=0}range(settings){if(this.varies)return{first:this.span[0],last:this.
@@ -1305,11 +1307,13 @@ width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),
 header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
 samples||height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(
 around2);let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.
-use(program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)});let arrows=scene.
-arrows.program(viewer.settings,isNear(scene.header,viewer.settings,view));if(arrows){scene.bindTextures(shown[0],shown[1]);
-let seen={...camera.sight(height/view.density),planes:camera.planes},values={...this.values(scene,scene,camera,view,samples,
-draft),u_picture:[width,height]};scene.arrows.draw(arrows,seen,view.anchor,viewer.settings,values)}bodies.draw(around2,"\
-clear"),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}values({
+use(program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),this.drawArrows(
+shown,view,region,layer=>this.values(layer,scene,camera,view,samples,draft)),bodies.draw(around2,"clear"),smooth&&graphics.
+copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(shown,view,{width,height},values){
+let{scene,camera,settings}=this.viewer;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={...camera.
+sight(height/view.density),planes:camera.planes};for(let[layer,placed]of scene.arrows.share(seen,settings,this.layers)){
+let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));!program||!placed.length||(layer.
+bindTextures(shown[0],shown[1]),arrows.draw(program,placed,view.anchor,{...values(layer),u_picture:[width,height]}))}}values({
 header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.shape??null;return{
 ...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(
 header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.
@@ -1320,11 +1324,8 @@ coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canva
 0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
-view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}normal({cell}){let across=cross2(...this.sides(wholeCell(
-cell)));return scale2(across,1/Math.max(length2(across),Number.MIN_VALUE))}between(nodal,{cell,place},size){let{corners}=this.
-surface,[i,j]=place,shares2=[(1-j)*(1-i),(1-j)*i,j*(1-i),j*i],result2=new Array(size).fill(0);for(let n=0;n<CORNERS;n+=1){
-let at=size*corners[CORNERS*cell+n];for(let k=0;k<size;k+=1)result2[k]+=shares2[n]*nodal[at+k]}return result2}position(cell,place){
-return this.between(this.surface.nodes,{cell,place},3)}point(position){let{frame,center}=this.surface.geometry;return add(
+view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
+nodes,corners.subarray(CORNERS*cell,CORNERS*(cell+1)),place,3)}point(position){let{frame,center}=this.surface.geometry;return add(
 fromFrame(frame,position),center)}covers([last,least],[view,spacing]){let{closer}=this.limits;return this.cornersOf(view).
 every(point=>closer*least*pixelAt(last,point)<=spacing*pixelAt(view,point)&&this.sees(last,point,0))}cornersOf({planes}){
 let{center,extent}=this.surface.geometry,normal=n=>planes[n].slice(0,3),away=cross2(normal(0),normal(2)),reach=.5*extent*
@@ -1357,7 +1358,9 @@ b)>length2(a)?1:0,size=[...part.size];size[axis]*=.5;let low=[...part.low];retur
 part.key+OCTAVE_PRIME)},{...part,size,low,key:mixed(part.key+SEED_PRIME)}]}),small=parts.filter(part=>this.area(part)<=area);
 return this.divided([...small,...halves.map(([first])=>first),...halves.map(([,second])=>second)],area)}sides({cell,low,
 size}){let at=(i,j)=>this.position(cell,[low[0]+size[0]*i,low[1]+size[1]*j]);return[subtract2(at(1,.5),at(0,.5)),subtract2(
-at(.5,1),at(.5,0))]}area(part){return length2(cross2(...this.sides(part)))}},Neighbours=class{most;cubes=new Map;constructor(most){
+at(.5,1),at(.5,0))]}area(part){return length2(cross2(...this.sides(part)))}};function between2(nodal,corners,[i,j],size){
+let shares2=[(1-j)*(1-i),(1-j)*i,j*(1-i),j*i],result2=new Array(size).fill(0);for(let n=0;n<CORNERS;n+=1)for(let k=0;k<size;k+=
+1)result2[k]+=shares2[n]*nodal[size*corners[n]+k];return result2}var Neighbours=class{most;cubes=new Map;constructor(most){
 this.most=most}cube(point){return point.map(x=>Math.floor(x/this.most))}add(point){let key=cubeKey(...this.cube(point)),
 there=this.cubes.get(key);there?there.push(point):this.cubes.set(key,[point])}distance(point){let[i,j,k]=this.cube(point),
 nearest=this.most;for(let n=0;n<27;n+=1){let key=cubeKey(i+n%3-1,j+Math.floor(n/3)%3-1,k+Math.floor(n/9)-1);for(let other of this.
@@ -1366,26 +1369,39 @@ HASH_FACTORS=[739982445,695872825],HASH_SHIFT=15;function cubeKey(i,j,k){return 
 Math.imul(k,3407524639)}function mixed(key){let hash=key>>>0;for(let factor of HASH_FACTORS)hash=Math.imul(hash^hash>>>HASH_SHIFT,
 factor)>>>0;return(hash^hash>>>HASH_SHIFT)>>>0}var shareOf2=key=>key/2**32;function wholeCell(cell){return{cell,low:[0,0],
 size:[1,1],key:mixed(cell)}}var awayOf=({eye},point)=>eye?length2(subtract2(point,eye)):1,pixelOf=({halfHeight,pixels},away)=>2*
-halfHeight/pixels*away,pixelAt=(view,point)=>pixelOf(view,awayOf(view,point));var SIZES=[[0,3],[1,2],[2,3],[5,3],[6,1]],FLOAT_BYTES=4,STRIDE=SIZES.reduce((sum,[,size])=>sum+size,0),Arrows=class{graphics;header;parts;seeds=null;array=null;buffer=null;drawn=null;constructor(graphics,header,parts){
+halfHeight/pixels*away,pixelAt=(view,point)=>pixelOf(view,awayOf(view,point));var SIZES=[[0,3],[1,2],[2,3],[5,3],[6,1]],FLOAT_BYTES=4,STRIDE=SIZES.reduce((sum,[,size])=>sum+size,0),isEqual=(a,b)=>a.
+length===b.length&&a.every((each,n)=>each===b[n]),levelOf=({tile})=>tile?.[0]??1/0,Arrows=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}program(settings,isClose){let{shaders,geometry}=this.header;if(!hasArrows(
 this.header,settings))return null;let variant=isClose&&!geometry.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.
-get(shaders.arrowVertex,shaders.arrowFragment,...variant)}draw(program,view,anchor,settings,values){let{graphics}=this,gl=graphics.
-context;this.seeds??=new ArrowSeeds(this.surface(),this.header.constants.arrows);let seeds=this.seeds.seen(view,arrowDistance(
-this.header,settings));this.array??=this.make(),gl.bindVertexArray(this.array),(this.drawn?.seeds!==seeds||String(this.drawn.
-anchor)!==String(anchor))&&(gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer),gl.bufferData(gl.ARRAY_BUFFER,this.numbers(seeds,
-anchor),gl.DYNAMIC_DRAW),this.drawn={seeds,anchor}),graphics.programs.use(program,values),gl.enable(gl.BLEND),gl.blendFuncSeparate(
-gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),gl.depthMask(!1),gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,2*(this.
-header.constants.arrows.pieces+1),seeds.length),gl.depthMask(!0),gl.disable(gl.BLEND),gl.bindVertexArray(null)}forget(){
-this.seeds=this.drawn=null}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),
-this.array=this.buffer=this.seeds=this.drawn=null}make(){let gl=this.graphics.context,array=this.graphics.counted(gl.createVertexArray());
+get(shaders.arrowVertex,shaders.arrowFragment,...variant)}share(view,settings,layers){let{header,last}=this;this.seeds??=
+new ArrowSeeds(this.surface,header.constants.arrows);let seeds=this.seeds.seen(view,arrowDistance(header,settings));if(last?.
+seeds===seeds&&isEqual(layers,last.layers))return last.shared;let{corners}=this.surface,whole=seeds.map(({cell,place,radius})=>({
+corners:corners.subarray(4*cell,4*cell+4),place,radius})),shared2=new Map(layers.map(layer=>[layer,[]])),finest=[...layers].
+sort((a,b)=>levelOf(a)-levelOf(b));for(let seed of whole)for(let layer of finest){let placed=layer.tile?this.inTile(seed,
+layer,layer.tile):seed;if(placed){shared2.get(layer)?.push(placed);break}}return this.last={seeds,layers,shared:shared2},
+shared2}draw(program,placed,anchor,values){let{graphics}=this,gl=graphics.context;this.array??=this.make(),gl.bindVertexArray(
+this.array),(this.drawn?.placed!==placed||String(this.drawn.anchor)!==String(anchor))&&(gl.bindBuffer(gl.ARRAY_BUFFER,this.
+buffer),gl.bufferData(gl.ARRAY_BUFFER,this.numbers(placed,anchor),gl.DYNAMIC_DRAW),this.drawn={placed,anchor}),graphics.
+programs.use(program,values),gl.enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),
+gl.depthMask(!1),gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,2*(this.header.constants.arrows.pieces+1),placed.length),gl.
+depthMask(!0),gl.disable(gl.BLEND),gl.bindVertexArray(null)}forget(){this.known=this.seeds=this.last=this.drawn=null}dispose(){
+this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.buffer=null,this.forget()}inTile({
+corners,place,radius},layer,[level,row2,column]){let{geometry,pyramid,mesh}=this.header;if(!pyramid||geometry.triangles)
+return null;let side=mesh.tileCells*pyramid.tileBlocks,[rows,columns]=layer.header.geometry.shape,width=geometry.shape[1],
+line=(at,axis,tile,cells)=>{let nodes=pyramid.shapes[0][axis],own=levelIndex(fullIndex(at,pyramid.depth,nodes),level,nodes)-
+tile*side,cell=Math.min(Math.max(Math.floor(own),0),cells-1);return own<0||own>cells?null:[cell,own-cell]},i=line(corners[0]%
+width+place[0],1,column,columns-1),j=line(Math.floor(corners[0]/width)+place[1],0,row2,rows-1);if(!i||!j||layer.parts.get(
+"cells")?.data[j[0]*(columns-1)+i[0]]===0)return null;let low=j[0]*columns+i[0];return{corners:[low,low+1,low+columns,low+
+columns+1],place:[i[1],j[1]],radius}}make(){let gl=this.graphics.context,array=this.graphics.counted(gl.createVertexArray());
 this.buffer=this.graphics.counted(gl.createBuffer()),gl.bindVertexArray(array),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer);
 let offset=0;for(let[attribute,size]of SIZES)gl.enableVertexAttribArray(attribute),gl.vertexAttribPointer(attribute,size,
-gl.FLOAT,!1,STRIDE*FLOAT_BYTES,offset),gl.vertexAttribDivisor(attribute,1),offset+=size*FLOAT_BYTES;return array}numbers(seeds,anchor){
-let{geometry}=this.header,{seeds:made}=this,triangles=this.parts.get("triangles")?.data,places=geometry.triangles?null:coordinates(
-geometry);return Float32Array.from(seeds.flatMap(seed=>{let[i,j]=seed.place,first=3*seed.cell;return[...subtract2(seed.position,
-anchor),...(places&&made?.between(places,seed,2))??[i*(1-j),j],...made?.normal(seed)??[0,0,1],...triangles&&geometry.triangles?
-triangles.slice(first,first+3):[0,0,0],seed.radius]}))}surface(){let{geometry}=this.header,nodes=this.parts.get("positio\
-n")?.data??new Float32Array;return{geometry,nodes,corners:this.corners()}}corners(){let{geometry}=this.header,[rows,columns]=geometry.
+gl.FLOAT,!1,STRIDE*FLOAT_BYTES,offset),gl.vertexAttribDivisor(attribute,1),offset+=size*FLOAT_BYTES;return array}numbers(placed,anchor){
+let{geometry}=this.header,nodes=this.nodes,coordinate=geometry.triangles?null:coordinates(geometry);return Float32Array.
+from(placed.flatMap(({corners,place,radius})=>{let[i,j]=place,[a,b,c,d]=Array.from(corners,n=>[...nodes.subarray(3*n,3*n+
+3)]),across=cross2(subtract2(add(b,d),add(a,c)),subtract2(add(c,d),add(a,b)));return[...subtract2(between2(nodes,corners,
+place,3),anchor),...coordinate?between2(coordinate,corners,place,2):[i*(1-j),j],...unit(across),...Array.from(corners).slice(
+0,3),radius]}))}get nodes(){return this.parts.get("position")?.data??new Float32Array}get surface(){return this.known??=
+{geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry}=this.header,[rows,columns]=geometry.
 shape,result2=[];if(geometry.triangles){let nodes=this.parts.get("triangles")?.data??[];for(let n=0;n<nodes.length;n+=3)
 result2.push(nodes[n],nodes[n+1],nodes[n+2],nodes[n+2]);return Uint32Array.from(result2)}let cells=this.parts.get("cells")?.
 data;for(let n=0;n<(rows-1)*(columns-1);n+=1){if(cells&&!cells[n])continue;let low=n+Math.floor(n/(columns-1));result2.push(
@@ -1483,14 +1499,14 @@ Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coar
 n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,
 values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
-alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;anchor=[
-0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts){
-this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),this.bodies=
-new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts)}isReady(settings){let programs=[!1,!0].map(
-isClose=>this.arrows.program(settings,isClose));return this.earth.isReady&&this.bodies.isReady&&programs.every(program=>program?.
-ready??!0)}missing(before,after){let{geometry,slices,scalars,paper,pyramid,formula}=this.header,{trace}=slices,names=["m\
-esh",...trace?.parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.header.
-bodies?.runs.length&&names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
+alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;tile;anchor=[
+0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts,tile=null){
+this.tile=tile,this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),
+this.bodies=new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts)}isReady(settings){let programs=[
+!1,!0].map(isClose=>this.arrows.program(settings,isClose));return this.earth.isReady&&this.bodies.isReady&&programs.every(
+program=>program?.ready??!0)}missing(before,after){let{geometry,slices,scalars,paper,pyramid,formula}=this.header,{trace}=slices,
+names=["mesh",...trace?.parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.
+header.bodies?.runs.length&&names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
 [before,after]))trace?names.push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===
 2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cma\
 p"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(
@@ -1679,14 +1695,14 @@ let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(th
 h"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.
 get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().
 decode(part.data));tile.scene?.dispose(),tile.ranges=own?.ranges,own&&(own.geometry.reach=header.geometry.reach),tile.scene=
-own&&new Scene(graphics,{...header,...own,pyramid:null,bodies:null},tile.parts),this.giveMap(tile),this.giveLimits(tile)}else
-tile.scene?.forget(part.name);let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,
-steps));let shown=cover(this.chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.
-refine()}recolour(colours={}){let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.tiles.values()){
-let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.scalars,scalars)},
-colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);for(let name of["scalars","mesh"])scene.forget(name);if((steps.
-length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))&&(scalars.log===tile.scalars.log||
-scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.startsWith("scalars/"));for(let name of others)
+own&&new Scene(graphics,{...header,...own,pyramid:null,bodies:null},tile.parts,keyOf(name)),this.giveMap(tile),this.giveLimits(
+tile)}else tile.scene?.forget(part.name);let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(
+missing,steps));let shown=cover(this.chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&
+this.host.refine()}recolour(colours={}){let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.tiles.
+values()){let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.scalars,
+scalars)},colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);for(let name of["scalars","mesh"])scene.forget(
+name);if((steps.length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))&&(scalars.log===
+tile.scalars.log||scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.startsWith("scalars/"));for(let name of others)
 this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{parts:new Map,scene:void 0,scalars,used:this.count}}giveLimits(tile){
 let{mesh,scalars}=this.root.header;if(tile.scalars=scalars,!tile.scene)return;let range=tile.ranges?.[scalars.name??""],
 from=range&&{...scalars,low:range[0],high:range[1],log:!1};tile.scene.header.mesh=from?narrowed(this.limits,from,scalars):
@@ -1735,7 +1751,7 @@ return new Camera(state,limits,geometry.planar,aspect,earth&&!earth.map?earth.ra
 anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.
 frame,subtract2(focus,geometry.center)),range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);
 return{focus,anchor:isFar(subtract2(local,anchor))?isFar(local)?local:[0,0,0]:anchor,eye:camera.eye,between:shown[2],time:player.
-timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(rows*density,1)}}var[STILL_MS,STEADY_MS]=[160,400],isEqual=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(rows*density,1)}}var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;held=new HeldParts(
 this.graphics);parts=this.held.all;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
 this];renderer;busyUntil=0;isPainted=!0;firstCamera=null;keptCamera=null;next=[];constructor(element,options={}){this.options=
@@ -1772,12 +1788,12 @@ this.makeScene(this.header),this.requests.wantSteps(this.missing(this.player.mom
 name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
 this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?
 copyOf(state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.
-firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual(this.camera.state,state))return;this.camera.state=copyOf(
+firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(this.camera.state,state))return;this.camera.state=copyOf(
 state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.
 camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,
 aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,
 first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.
-keptCamera=null,this.panel.showAxes(),(!first||!isEqual(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){
+keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){
 return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
 this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.header??{};if(timeShift===
 null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=last?own:last)}step(count2){
@@ -1797,7 +1813,7 @@ this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!=
 dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.
 isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.
 stage,[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));width===this.canvas.width&&height===
-this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual(this.camera.
+this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.
 state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||
 !header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(
 this.stage.clientHeight,1)}lost(){this.scene=null,this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){

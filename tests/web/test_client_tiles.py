@@ -135,6 +135,23 @@ def test_the_picture_is_that_of_vtk(client: ClientPage, plotter: Any, name: str)
 
 
 @pytest.mark.browser
+@pytest.mark.parametrize("name", CAMERAS)
+def test_arrows_are_drawn_by_the_tiles_where_they_are(
+    client: ClientPage, plotter: Any, name: str
+) -> None:
+    options: dict[str, Any] = {"arrows": 24, "strength": 0.0}
+    viewer = mounted(client, CAMERAS[name], **options)
+    client.complete(viewer)
+    shares = "(n) => [...viewers[n].scene.arrows.last.shared.values()].map((seeds) => seeds.length)"
+    assert np.count_nonzero(client.page.evaluate(shares, viewer)) > 1
+    theirs, ours = client.pixels(viewer), drawn_by_vtk(plotter, CAMERAS[name], **options)
+    grey = np.abs(ours.astype(int) - np.rint(255 * np.array(COLOUR))).max(axis=-1)
+    assert (grey > 60).mean() > 0.05
+    off = np.abs(theirs.astype(int) - ours).max(axis=-1)
+    assert (off > 40).mean() < 0.005
+
+
+@pytest.mark.browser
 def test_colours_and_places_are_those_of_the_tiles(client: ClientPage, plotter: Any) -> None:
     options: dict[str, Any] = {"scalars": "speed", "cmap": "viridis", "strength": 0.0}
     viewer = mounted(client, CAMERAS["near"], **options)
