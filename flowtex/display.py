@@ -101,7 +101,7 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
     arguments = Options.split(**options)
     plotter = new_plotter(size, two_views=arguments.view.beside is not None)
     plotter.disable_anti_aliasing()
-    plotter.set_background(arguments.view.background)
+    plotter.set_background(arguments.view.ground)
     handles = add_scenes(plotter, mesh, arguments, bar_options)
     point_camera(plotter, handles[0].scene, arguments.view)
     plotter.show()

@@ -339,7 +339,11 @@ class ViewOptions:
             Camera.from_text,
         ),
     )
-    background: Any = _option("white", "Colour behind the surface.")
+    background: Any = _option(
+        None,
+        "Colour behind the surface; by default white, and in a browser that of the page around.",
+        Form("Colour behind the surface; white, or that of the page around, by default."),
+    )
     beside: Mapping[str, Any] | None = _option(
         None,
         "What is different in a second view to the right of the first one, such as "
@@ -349,11 +353,16 @@ class ViewOptions:
 
     def __post_init__(self) -> None:
         """Check what no part of a picture checks later."""
-        if self.background != "white":  # which loads nothing
+        if self.background is not None:
             rgb(self.background)
         if not (self.beside is None or isinstance(self.beside, Mapping)):
             msg = f"beside is {self.beside!r}; expected settings by name, such as {{'lod': False}}"
             raise FieldError(msg)
+
+    @property
+    def ground(self) -> Any:
+        """Colour behind the surface where no page is around."""
+        return "white" if self.background is None else self.background
 
     def first_camera(self, surface: Surface, aspect: float = 1.5) -> Camera:
         """Return the camera that the view begins with, for a picture of some width over height."""

@@ -3,12 +3,9 @@
 import { pointInPlane, type Camera } from "./camera.ts";
 import { withUnit } from "./dom.ts";
 import { lonLatOf } from "./lonlat.ts";
-import type { Header, Part } from "./protocol.ts";
+import type { AxesKind, Header, Part } from "./protocol.ts";
 import { degreeTicks, ticksOf, type Tick } from "./ticks.ts";
 import { clamp, length, subtract } from "./vectors.ts";
-
-export const AXES = ["ticks", "scale", "none"] as const;
-export type AxesKind = (typeof AXES)[number];
 
 const SVG = "http://www.w3.org/2000/svg";
 /** Parts of a border; values between their ends are interpolated linearly. */

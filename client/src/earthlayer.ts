@@ -154,7 +154,7 @@ export class EarthLayer {
     graphics.programs.use(program, {
       u_matrix: projection(geometry, camera, anchor),
       u_colour: earth.land,
-      u_ground: header.background,
+      u_ground: header.background ?? [1, 1, 1],
       u_lit: header.lighting,
       u_toEye: toFrame(geometry.frame, scale(camera.axes[2], -1)),
       ...(globe ? this.disc(camera, earth.radius, anchor) : {}),

@@ -24,6 +24,7 @@ const EVENTS = {
   onSetting: "setting",
   onPoint: "point",
   onControls: "controls",
+  onAxes: "axes",
   onFrame: "frame",
   onError: "error",
 } as const;
@@ -81,7 +82,7 @@ export class FlowtexView extends HTMLElement {
   paint(picture: ImageBitmap, gap: number, isSharp: boolean): void {
     const count = this.viewers.length;
     const width = (picture.width - (count - 1) * gap) / count;
-    this.viewers.forEach((viewer, n) => viewer.paint(picture, n * (width + gap), width, isSharp));
+    this.viewers.forEach((viewer, n) => viewer.painter.show?.(picture, n * (width + gap), width, isSharp));
   }
 
   /** End the views; an element that is only moved in its page keeps them. */

@@ -4,7 +4,7 @@ export type Timer = ReturnType<typeof setTimeout>;
 
 export class Lifetime {
   private readonly controller = new AbortController();
-  private readonly observers = new Set<ResizeObserver | IntersectionObserver>();
+  private readonly observers = new Set<{ disconnect(): void }>();
   private readonly timers = new Set<Timer>();
   private globalListeners = 0;
 
@@ -40,6 +40,12 @@ export class Lifetime {
 
   observe(observer: ResizeObserver | IntersectionObserver, element: Element): void {
     observer.observe(element);
+    this.observers.add(observer);
+  }
+
+  /** Observe changes of an element's own. */
+  watch(observer: MutationObserver, element: Element, what: MutationObserverInit): void {
+    observer.observe(element, what);
     this.observers.add(observer);
   }
 

@@ -68,15 +68,6 @@ async function fetchScene({ dataset: { scene = "" } }: HTMLElement): Promise<Sce
   return result;
 }
 
-/** Colour of the page around an element, from 0 to 1. */
-function groundAround(element: HTMLElement): number[] {
-  for (let at: HTMLElement | null = element.parentElement; at; at = at.parentElement) {
-    const [r, g, b, a = 1] = (getComputedStyle(at).backgroundColor.match(/[\d.]+/g) ?? []).map(Number);
-    if (a > 0) return [r / 255, g / 255, b / 255];
-  }
-  return [1, 1, 1];
-}
-
 class LiveView {
   private readonly element: HTMLElement;
   private readonly explanation: Explanation | null;
@@ -102,8 +93,7 @@ class LiveView {
     try {
       const data = await fetchScene(element);
       if (!this.isWanted) return;
-      const ground = groundAround(element);
-      for (const { header } of data) header.background = ground;
+      for (const { header } of data) header.background = null;
       const { explanation } = this;
       const view = (this.view = new FlowtexView());
       view.options = { guarded: true, label: element.dataset.label, ...explanation?.options };
@@ -140,12 +130,6 @@ class LiveView {
     this.view = null;
     delete this.element.dataset.live;
   }
-
-  /** Follow the page from light to dark. */
-  recolour(): void {
-    const background = groundAround(this.element);
-    for (const viewer of this.view?.viewers ?? []) viewer.recolour({ background });
-  }
 }
 
 /** Show the live views of this page, if it has any. */
@@ -154,9 +138,5 @@ export function showLiveViews(): void {
   if (!elements.length) return;
   window.flowtexScene = (name, scene) => scenes.get(name)?.(scene);
   window.flowtexPart = (digest, text) => texts.get(digest)?.(text);
-  const views = Array.from(elements, (element) => new LiveView(element));
-  const recolour = () => views.forEach((view) => view.recolour());
-  const attributeFilter = ["data-theme", "class"];
-  new MutationObserver(recolour).observe(document.documentElement, { attributeFilter });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolour);
+  for (const element of elements) new LiveView(element);
 }

@@ -2,10 +2,11 @@
 
 import type { CameraState } from "./camera.ts";
 import type { ColourChoice } from "./colours.ts";
+import type { Painter, View } from "./painter.ts";
 import type { Point } from "./picking.ts";
 import type { PixelPlace, Sample } from "./pixelsum.ts";
 import type { PointPath } from "./pointpath.ts";
-import type { Value } from "./protocol.ts";
+import type { AxesKind, Value } from "./protocol.ts";
 import type { PathSample } from "./samples.ts";
 import type { Source } from "./sources/source.ts";
 
@@ -62,11 +63,14 @@ export interface Options {
   reader?: Reader;
   /** Whether the host draws, and hands over pictures. */
   streamed?: boolean;
+  /** A painter of the host's own. */
+  painter?: (view: View) => Painter;
   /** Whether the name of the flow stands beside the view already. */
   named?: boolean;
   /** Colours are chosen, which the host changes. */
   onColours?: (choice: ColourChoice) => void;
   onControls?: (shown: boolean) => void;
+  onAxes?: (kind: AxesKind) => void;
   /** Whether nothing but the picture is shown. */
   bare?: boolean;
   /** Whether the host makes textures anew where a setting asks for it. */

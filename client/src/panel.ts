@@ -1,6 +1,6 @@
 // What is seen around the picture: the bar, the legend, the settings, the readout and messages.
 
-import { Axes, AXES, hasTicks, type AxesKind } from "./axes.ts";
+import { Axes, hasTicks } from "./axes.ts";
 import type { Camera } from "./camera.ts";
 import { ColourControls, type ColoursHost } from "./colourcontrols.ts";
 import { Controls, hasStreaming, type ControlsHost } from "./controls.ts";
@@ -13,7 +13,7 @@ import type { Options } from "./options.ts";
 import type { Point } from "./picking.ts";
 import type { Player } from "./player.ts";
 import { placeText, type PointCard } from "./pointcard.ts";
-import type { Header, Part, Settings } from "./protocol.ts";
+import { AXES, type AxesKind, type Header, type Part, type Settings } from "./protocol.ts";
 import STYLE from "./styles.css";
 
 /** Milliseconds for which a hint is shown; until lacking parts are named; in which a picture is saved. */
@@ -111,7 +111,9 @@ export class Panel {
     this.isShown = options.controls ?? true;
     this.axes = new Axes(viewer);
     viewer.lifetime.listen(this.axesMenu, "change", () => {
-      for (const { panel } of viewer.together) panel.chooseAxes(this.axesMenu.value as AxesKind);
+      const kind = this.axesMenu.value as AxesKind;
+      for (const { panel } of viewer.together) panel.chooseAxes(kind);
+      options.onAxes?.(kind);
     });
     this.controls = new Controls(viewer);
     this.colours = new ColourControls(viewer);
@@ -302,7 +304,7 @@ export class Panel {
   }
 
   /** Choose what stands at the borders of the picture. */
-  private chooseAxes(kind: AxesKind): void {
+  chooseAxes(kind: AxesKind | null): void {
     this.axesKind = kind;
     this.arrange();
   }
@@ -311,7 +313,7 @@ export class Panel {
   showAxes(): void {
     const { header } = this.viewer;
     const usual = header && hasTicks(header) ? "ticks" : "none";
-    const kind = this.axesKind ?? usual;
+    const kind = this.axesKind ?? header?.axes ?? usual;
     const shown = this.isFramed ? kind : "none";
     this.axesMenu.value = kind;
     this.viewer.root.dataset.axes = shown;
@@ -380,11 +382,6 @@ export class Panel {
     this.wait([], true);
     this.note.hidden = true;
     delete this.viewer.root.dataset.failed;
-  }
-
-  failWithout(): void {
-    const remedy = "Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.";
-    this.fail("This browser has no WebGL2, which the picture is drawn with.", remedy);
   }
 
   fail(problem: string, detail: string): void {

@@ -29,18 +29,22 @@ export interface DrawContext {
   readonly graphics: Graphics;
   readonly canvas: HTMLCanvasElement;
   readonly settings: Settings;
-  readonly scene: Scene | null;
-  /** Choose what is drawn at a moment: the whole, or the root and the tiles of a large surface. */
-  arrange(shown: Moment): Scene[];
   readonly camera: Camera | null;
   readonly player: { varies: boolean; playing: boolean };
   /** Whether a hand moves the view or a control. */
   readonly isHeld: boolean;
-  /** Whether outlines are smoothed. */
-  readonly smooth: boolean;
   /** Pixels of the canvas along one of the page. */
   readonly ratio: number;
   view(shown: Moment, density: number): ViewState;
+}
+
+/** What is drawn of a surface. */
+interface Content {
+  readonly scene: Scene | null;
+  /** Choose what is drawn at a moment: the whole, or the root and the tiles of a large surface. */
+  arrange(shown: Moment): Scene[];
+  /** Whether outlines are smoothed. */
+  readonly smooth: boolean;
 }
 
 /** What is drawn of a picture. */
@@ -54,6 +58,7 @@ interface Region {
 
 export class ProgressiveRenderer {
   private readonly viewer: DrawContext;
+  private readonly content: Content;
   private readonly graphics: Graphics;
   private readonly canvas: HTMLCanvasElement;
   private readonly pen: Pen;
@@ -81,13 +86,12 @@ export class ProgressiveRenderer {
   /** Milliseconds that each strip and each draft takes, however few its pixels, and the triangles that it has. */
   private fixed = { strip: 4, draft: 4 };
   private triangles = 0;
-  /** Number of full pictures. */
-  frames = 0;
   /** Whether the picture on show has fewer pixels or samples than the full one. */
   private isCoarse = false;
 
-  constructor(viewer: DrawContext) {
+  constructor(viewer: DrawContext, content: Content) {
     this.viewer = viewer;
+    this.content = content;
     this.graphics = viewer.graphics;
     this.canvas = viewer.canvas;
     this.pen = penOf(this.canvas);
@@ -119,15 +123,8 @@ export class ProgressiveRenderer {
     back.height = height;
   }
 
-  /** Show a part of a picture that was drawn elsewhere. */
-  show(picture: ImageBitmap, left: number, width: number, isSharp: boolean): void {
-    const { canvas, pen } = this;
-    pen?.drawImage(picture, left, 0, width, picture.height, 0, 0, canvas.width, canvas.height);
-    if (isSharp) this.frames += 1;
-  }
-
   dispose(): void {
-    for (const canvas of [this.canvas, this.back, this.last, this.coarse, this.front]) canvas.width = canvas.height = 0;
+    for (const canvas of [this.back, this.last, this.coarse, this.front]) canvas.width = canvas.height = 0;
   }
 
   /** Go on with the picture until a time; tells whether it is complete. */
@@ -152,7 +149,7 @@ export class ProgressiveRenderer {
 
   private arrange(shown: Moment): void {
     this.isRefined = false;
-    this.layers = this.viewer.arrange(shown);
+    this.layers = this.content.arrange(shown);
   }
 
   /** A picture in the time that there is. */
@@ -186,7 +183,7 @@ export class ProgressiveRenderer {
       this.pen.setTransform(1, 0, 0, 1, 0, 0);
     }
     this.isCoarse = best.scale < 1 || best.samples < samples;
-    const isWhole = !this.isCoarse && !this.viewer.smooth;
+    const isWhole = !this.isCoarse && !this.content.smooth;
     if (isWhole) this.complete();
     this.drawLines(shown);
     return isWhole && !this.isRefined;
@@ -195,7 +192,8 @@ export class ProgressiveRenderer {
   /** One more strip of the full picture, which is shown when it is complete. */
   private strip(program: Program, shown: Moment): boolean {
     const { width, height } = this.canvas;
-    const { smooth, settings } = this.viewer;
+    const { settings } = this.viewer;
+    const { smooth } = this.content;
     const samples = Number(settings.samples);
     if (this.rowsDone >= height) this.rowsDone = 0;
     if (this.rowsDone === 0) {
@@ -225,7 +223,8 @@ export class ProgressiveRenderer {
   /** Put the lines of a map, and labels, on the picture: all its pixels are theirs, in drafts as well. */
   private drawLines(shown: Moment): void {
     const { front, frontPen, graphics } = this;
-    const { scene, camera, ratio } = this.viewer;
+    const { camera, ratio } = this.viewer;
+    const { scene } = this.content;
     const { width, height } = this.canvas;
     if (!scene || !camera || !frontPen) return;
     const { earth, bodies } = scene;
@@ -253,7 +252,6 @@ export class ProgressiveRenderer {
     const { camera, player } = this.viewer;
     this.rowsDone = this.canvas.height;
     this.isCoarse = false;
-    this.frames += 1;
     this.draftVersion = this.version;
     this.lastPen?.drawImage(this.canvas, 0, 0);
     if (camera && !player.playing) {
@@ -264,7 +262,8 @@ export class ProgressiveRenderer {
   /** How the last full picture lies in the present view, where it serves. */
   private reuse(): Reuse | null {
     const { lastCamera } = this;
-    const { scene, camera } = this.viewer;
+    const { camera } = this.viewer;
+    const { scene } = this.content;
     if (!scene?.header.geometry.planar || !camera || !lastCamera) return null;
     if (!camera.state.parallel || !lastCamera.state.parallel) return null;
     const { geometry } = scene.header;
@@ -317,7 +316,8 @@ export class ProgressiveRenderer {
   /** Draw some rows of a picture. */
   private render(program: Program, shown: Moment, region: Region, samples: number, smooth = false) {
     const { graphics, viewer } = this;
-    const { camera, scene } = viewer;
+    const { camera } = viewer;
+    const { scene } = this.content;
     if (!camera || !scene) return;
     const gl = graphics.context;
     const { width, height, top, rows } = region;
@@ -335,7 +335,7 @@ export class ProgressiveRenderer {
     gl.depthFunc(gl.LESS);
     gl.disable(gl.BLEND);
     gl.disable(gl.CULL_FACE);
-    const [r, g, b] = scene.header.background;
+    const [r, g, b] = scene.header.background ?? [1, 1, 1];
     gl.clearColor(r, g, b, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const draft = samples !== viewer.settings.samples || height !== this.canvas.height;
@@ -363,7 +363,8 @@ export class ProgressiveRenderer {
     { width, height }: Region,
     values: (layer: Scene) => Record<string, Uniform>,
   ): void {
-    const { scene, camera, settings } = this.viewer;
+    const { camera, settings } = this.viewer;
+    const { scene } = this.content;
     if (!scene || !camera || !hasArrows(scene.header, settings)) return;
     const seen = { ...camera.sight(height / view.density), planes: camera.planes };
     for (const [layer, placed] of scene.arrows.share(seen, settings, this.layers)) {
@@ -393,7 +394,7 @@ export class ProgressiveRenderer {
       u_mapped: header.scalars.name !== null,
       u_colour: header.colour,
       u_lit: header.lighting,
-      u_ground: header.background,
+      u_ground: header.background ?? [1, 1, 1],
       u_opacity: bodies.areBehind ? 1 : header.opacity,
       u_toEye: toFrame(header.geometry.frame, scale(camera.axes[2], -1)),
     };

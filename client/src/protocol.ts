@@ -104,6 +104,10 @@ export interface Shading {
   values: number[];
 }
 
+/** What stands at the borders of a picture: coordinates, the length of a bar, or nothing. */
+export const AXES = ["ticks", "scale", "none"] as const;
+export type AxesKind = (typeof AXES)[number];
+
 /** Lines of the Earth, by the names of their parts. */
 export const EARTH_LINES = ["coastlines", "graticule"] as const;
 export type EarthLines = (typeof EARTH_LINES)[number];
@@ -306,7 +310,8 @@ export interface Header {
     diverging: string[];
   };
   colour: number[];
-  background: number[];
+  /** Null where it is that of the page around the view. */
+  background: number[] | null;
   lighting: boolean;
   opacity: number;
   paper: Paper | null;
@@ -333,6 +338,8 @@ export interface Header {
   mesh: MeshLimits;
   /** What is added to the time of the first view, in a second one; null if that has its own. */
   timeShift?: number | null;
+  /** What stands at the borders of the picture; what suits the surface where nobody says. */
+  axes?: AxesKind | null;
   /** Null for a flow that is elsewhere. */
   earth: Earth | null;
   bodies: BodiesHeader | null;

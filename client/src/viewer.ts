@@ -1,22 +1,23 @@
 // One scene in an element.
 //
-//   header, parts --> Viewer --> Scene (buffers, textures) --> Graphics (context, programs) --> canvas
-//                       |          uniforms() of header, settings and view
+//   header, parts --> Viewer --> Painter --> canvas
+//                       |          by WebGL2 (webgl2painter.ts), or pictures of the host (streamedpainter.ts)
 //                     Camera, Player, Panel (what is seen around the picture), Pointers
 
 import { coloursOf, recoloured, type ColourChoice } from "./colours.ts";
 import { copyOf, isSamePlace, type Camera, type CameraState } from "./camera.ts";
 import { FRAME_MS, sharedGraphics, type Graphics, type User } from "./context.ts";
 import { groundAt } from "./earthlayer.ts";
+import { Ground } from "./ground.ts";
 import { HeldParts } from "./heldparts.ts";
 import { Lifetime } from "./lifetime.ts";
 import type { Options } from "./options.ts";
 import { Panel } from "./panel.ts";
-import { pickedPoint, type Found, type Point } from "./picking.ts";
+import type { Painter, View } from "./painter.ts";
+import type { Found, Point } from "./picking.ts";
 import { Player } from "./player.ts";
 import { PointCard } from "./pointcard.ts";
 import { Pointers } from "./pointers.ts";
-import { ProgressiveRenderer } from "./progressive.ts";
 import {
   EARTH_LINES,
   FORMAT,
@@ -26,21 +27,21 @@ import {
   type Settings,
   type Value,
 } from "./protocol.ts";
-import { CARD_PRICE_MS } from "./quality.ts";
-import { Scene } from "./scene.ts";
+import type { Scene } from "./scene.ts";
 import { Requests } from "./sources/source.ts";
-import { Tiles } from "./tiles.ts";
-import type { Program } from "./programs.ts";
-import { isNear, variantOf, type Moment, type ViewState } from "./uniforms.ts";
+import { StreamedPainter } from "./streamedpainter.ts";
+import type { Tiles } from "./tiles.ts";
+import type { Moment, ViewState } from "./uniforms.ts";
 import type { Vector } from "./vectors.ts";
 import { placedCamera, viewState } from "./viewstate.ts";
+import { WebGL2Painter } from "./webgl2painter.ts";
 
 /** For which a view that was moved, or data that have changed, count as changing. */
 const [STILL_MS, STEADY_MS] = [160, 400];
 
 const isEqual = (a: unknown, b: unknown) => JSON.stringify(a) === JSON.stringify(b);
 
-export class Viewer implements User {
+export class Viewer implements User, View {
   readonly options: Options;
   readonly requests: Requests;
   readonly graphics: Graphics = sharedGraphics();
@@ -57,24 +58,21 @@ export class Viewer implements User {
   readonly parts = this.held.all;
   header: Header | null = null;
   settings: Settings = {};
-  scene: Scene | null = null;
-  tiles: Tiles | null = null;
   camera: Camera | null = null;
-  /** Whether the full picture is shown. */
+  /** Whether the full picture is shown, and number of full ones. */
   sharp = false;
+  frames = 0;
   isVisible = true;
-  shown: Moment | null = null;
   /** The views that stand beside each other. */
   together: Viewer[] = [this];
-  private readonly renderer: ProgressiveRenderer;
+  readonly painter: Painter;
+  private readonly page: Ground;
+  /** Whether the picture has the ground of the page. */
+  private isOnPage = false;
   private busyUntil = 0;
-  /** Whether the host has drawn what it was last asked for. */
-  private isPainted = true;
   /** The camera that the scene came with, and the one that looks at it where that is another one. */
   private firstCamera: CameraState | null = null;
   private keptCamera: CameraState | null = null;
-  /** Steps that the player goes on to. */
-  private next: number[] = [];
 
   constructor(element: HTMLElement, options: Options = {}) {
     this.options = options;
@@ -88,13 +86,14 @@ export class Viewer implements User {
     // JupyterLab has shortcuts of its own for the keys that move the view.
     root.setAttribute("data-lm-suppress-shortcuts", "true");
     root.setAttribute("role", "application");
-    this.renderer = new ProgressiveRenderer(this);
     this.panel = new Panel(this);
+    const make = options.painter ?? ((view) => new (options.streamed ? StreamedPainter : WebGL2Painter)(view));
+    this.painter = make(this);
     element.append(root);
+    this.page = new Ground(root, this.lifetime, () => this.isOnPage && this.recolour({ background: null }));
     this.pointers = new Pointers(this);
     this.graphics.users.add(this);
     this.observe();
-    if (!this.graphics.gl && !options.streamed) this.panel.failWithout();
   }
 
   private observe(): void {
@@ -114,7 +113,7 @@ export class Viewer implements User {
   /** What is still held, for tests. */
   stats() {
     const { objects, users } = this.graphics;
-    return { ...this.lifetime.stats(), objects, users: users.size, frames: this.renderer.frames };
+    return { ...this.lifetime.stats(), objects, users: users.size, frames: this.frames };
   }
 
   dispose(): void {
@@ -122,13 +121,10 @@ export class Viewer implements User {
     this.player.playing = false;
     this.lifetime.end();
     this.requests.stop();
-    this.tiles?.dispose();
-    this.tiles = null;
-    this.scene?.dispose();
-    this.scene = null;
+    this.painter.dispose?.();
     this.held.clear();
     this.graphics.leave(this);
-    this.renderer.dispose();
+    this.canvas.width = this.canvas.height = 0;
     this.root.remove();
   }
 
@@ -143,11 +139,12 @@ export class Viewer implements User {
     const isSame = old?.generation !== undefined && old.generation === header.generation;
     if (isSame) return this.recolour(coloursOf(header));
     if (old) this.holdDraft(STEADY_MS);
+    header = { ...header, ...this.grounded(header) };
     this.header = header;
     this.settings = { ...header.settings, ...header.own };
     this.player.setHeader(header);
     this.requests.setHeader(header);
-    this.makeScene(header);
+    this.painter.open?.(header);
     const isElsewhere = !old || !isSamePlace(old.geometry, header.geometry);
     if (isElsewhere) {
       this.keptCamera = old && keepsCamera ? this.cameraState : null;
@@ -163,13 +160,22 @@ export class Viewer implements User {
   }
 
   /** Draw the same arrays in other colours, of which a part of the header tells. */
-  recolour(colours: Partial<Header>): void {
+  recolour(changes: Partial<Header>): void {
     if (!this.header) return;
+    const colours = this.grounded(changes);
     Object.assign(this.header, colours);
     for (const name of ["scalars", "mesh"]) this.scene?.forget(name);
     this.tiles?.recolour(colours);
     this.panel.showLegend();
     this.change();
+  }
+
+  /** Colours whose ground is that of the page, unless it is another one. */
+  private grounded(colours: Partial<Header>): Partial<Header> {
+    this.page.update();
+    if (colours.background === undefined) return colours;
+    this.isOnPage = colours.background === null;
+    return { ...colours, background: colours.background ?? this.page.colour };
   }
 
   /** Colour as a person chooses, or ask the host to. */
@@ -181,14 +187,6 @@ export class Viewer implements User {
       if (part) viewer.setPart(part);
       viewer.recolour(colours);
     }
-  }
-
-  private makeScene(header: Header): void {
-    this.tiles?.dispose();
-    this.scene?.dispose();
-    if (this.options.streamed) return;
-    this.scene = new Scene(this.graphics, header, this.parts);
-    this.tiles = new Tiles(this, this.scene);
   }
 
   setPart(part: NamedPart): void {
@@ -203,7 +201,8 @@ export class Viewer implements User {
     this.change();
   }
 
-  private trim(): void {
+  /** Hold no more time steps than are needed. */
+  trim(): void {
     this.held.trim(this.header, this.options.source, this.player.moment.slice(0, 2));
   }
 
@@ -219,8 +218,7 @@ export class Viewer implements User {
   private renew(): void {
     this.held.clear((name) => /^(flow|scalars)\//.test(name));
     this.requests.stop();
-    if (this.header) this.makeScene(this.header);
-    this.requests.wantSteps(this.missing(this.player.moment.slice(0, 2)));
+    if (this.header) this.painter.open?.(this.header);
   }
 
   /** Follow the setting of another view, unless it is this one's own. */
@@ -265,7 +263,7 @@ export class Viewer implements User {
   }
 
   /** Look from where the scene says, or so that the whole surface is seen. */
-  private place(): void {
+  place(): void {
     const { header, firstCamera: first, keptCamera: kept, aspect } = this;
     const nodes = this.parts.get("position")?.data;
     if (!header || !nodes) return;
@@ -369,7 +367,7 @@ export class Viewer implements User {
 
   /** Draw another picture when its turn comes. */
   change(cameraOnly = false): void {
-    this.renderer.restart(cameraOnly);
+    this.painter.restart?.(cameraOnly);
     this.card.draw();
     this.panel.showAxes();
     this.setSharp(false);
@@ -378,21 +376,26 @@ export class Viewer implements User {
 
   /** Draw the picture once more, as more of the surface is there. */
   refine(): void {
-    this.renderer.refine();
+    this.painter.refine?.();
     this.setSharp(false);
     this.request();
-  }
-
-  /** Choose what is drawn at a moment: the whole, or the root and the tiles of a large surface. */
-  arrange(shown: Moment): Scene[] {
-    const scenes = this.tiles?.arrange(shown) ?? [];
-    this.root.dataset.tiles = String(this.tiles?.pending ?? 0);
-    return scenes;
   }
 
   /** Draw at once, as far as there is time. */
   draw(): void {
     this.frame(performance.now(), performance.now() + FRAME_MS);
+  }
+
+  /** The picture has gone on, and may be complete: the full one. */
+  painted(isComplete: boolean): void {
+    this.root.dataset.drawn = "true"; // coarse or not
+    if (isComplete) {
+      this.frames += 1;
+      this.root.dataset.frames = String(this.frames);
+      this.panel.clear();
+      this.setSharp(!this.playing);
+    }
+    if (!this.sharp) this.request();
   }
 
   private setSharp(sharp: boolean): void {
@@ -404,7 +407,8 @@ export class Viewer implements User {
     this.options.onFrame?.();
   }
 
-  private request(): void {
+  /** Have `frame` called. */
+  request(): void {
     if (!this.lifetime.isOver && this.isVisible) this.graphics.request(this);
   }
 
@@ -413,19 +417,14 @@ export class Viewer implements User {
     const { clientWidth, clientHeight } = this.stage;
     const [width, height] = [clientWidth, clientHeight].map((n) => Math.max(Math.round(n * ratio), 1));
     if (width === this.canvas.width && height === this.canvas.height) return;
-    this.renderer.resize(width, height);
+    const { painter, canvas } = this;
+    if (painter.resize) painter.resize(width, height);
+    else [canvas.width, canvas.height] = [width, height];
     if (this.camera) {
       this.camera.aspect = this.aspect;
       if (isEqual(this.camera.state, this.camera.start)) this.place();
     }
     this.change();
-  }
-
-  /** Whether outlines are smoothed in the full picture: on a processor it would take many times as long. */
-  get smooth(): boolean {
-    const { header } = this;
-    if (this.options.smooth !== undefined || !header) return this.options.smooth ?? false;
-    return this.program(header).price < CARD_PRICE_MS;
   }
 
   /** Pixels of the canvas along one of the page. */
@@ -434,37 +433,27 @@ export class Viewer implements User {
   }
 
   lost(): void {
-    this.scene = null; // buffers and textures are lost with the context
-    if (this.header) this.makeScene(this.header);
+    // Buffers and textures are lost with the context.
+    if (this.header) this.painter.open?.(this.header);
     this.setSharp(false);
+  }
+
+  /** What is on the graphics card, where the browser draws. */
+  get scene(): Scene | null {
+    return this.painter.scene ?? null;
+  }
+
+  get tiles(): Tiles | null {
+    return this.painter.tiles ?? null;
+  }
+
+  get shown(): Moment | null {
+    return this.painter.shown ?? null;
   }
 
   /** Names of the parts that the present moment lacks. */
   get lacking(): string[] {
-    const [before, after] = this.player.moment;
-    return this.scene?.missing(before, after) ?? [];
-  }
-
-  /** Ask for the parts of the steps that are missing, and trace them until a time; gives what can be shown. */
-  private available(until: number): Moment | null {
-    const { header, scene, player, shown, lacking } = this;
-    if (!header || !scene) return null;
-    const moment = player.moment;
-    const ahead = player.playing ? [1, 2].map((n) => (moment[1] + n) % header.slices.steps) : [];
-    const steps = this.missing([moment[0], moment[1], ...this.next, ...ahead]);
-    const { isComing } = this.options;
-    if (steps.length && this.requests.hasSteps && !isComing?.()) this.requests.wantSteps(steps);
-    const isMade = !lacking.length && scene.make(moment.slice(0, 2), until);
-    this.root.dataset.lacking = String(lacking.length || Number(!isMade));
-    this.panel.wait(lacking, isMade, this.renderer.leavesOut);
-    // A picture that was begun before the slices were there shows another moment.
-    if (isMade && String(moment.slice(0, 2)) !== String(shown?.slice(0, 2))) {
-      this.trim();
-      this.change();
-    }
-    if (isMade) return (this.shown = moment);
-    if (!lacking.length) this.request();
-    return shown && scene.isMade(shown.slice(0, 2)) ? shown : null;
+    return this.painter.lacking ?? [];
   }
 
   /** Go on without a tile at some steps, or a step, that a host could not give, and say why once. */
@@ -473,93 +462,25 @@ export class Viewer implements User {
     this.panel.tell(reason);
   }
 
-  /** Steps that have to come before some can be shown. */
-  private missing(steps: number[]): number[] {
-    return [...new Set(steps.flatMap((step) => this.scene?.lacking(step) ?? []))];
-  }
-
   frame(now: number, until: number): void {
-    if (this.options.streamed) return this.wait(now);
-    if (this.lifetime.isOver || this.graphics.isLost || !this.graphics.gl || !this.isVisible) return;
-    if (!this.header || !this.scene || this.canvas.width < 2) return;
+    if (this.lifetime.isOver) return;
     try {
-      this.advance(now);
-      this.drawPicture(this.header, until);
+      this.painter.frame(now, until);
     } catch (error) {
       this.pause();
       this.panel.fail("The picture could not be drawn.", String(error));
     }
   }
 
-  /** Have a place, and go on with time once the picture before is there. */
-  private wait(now: number): void {
-    if (!this.camera) this.place();
-    if (this.playing && this.isPainted) this.advance(now);
-  }
-
-  /** Show a part of a picture that the host has drawn. */
-  paint(picture: ImageBitmap, left: number, width: number, isSharp: boolean): void {
-    this.renderer.show(picture, left, width, isSharp);
-    this.isPainted = true;
-    this.root.dataset.drawn = "true";
-    this.root.dataset.frames = String(this.renderer.frames);
-    this.panel.wait([], true, !isSharp);
-    if (isSharp) this.panel.clear();
-    this.setSharp(isSharp && !this.playing);
-    if (this.playing) this.request();
-  }
-
-  /** The program that draws at the present settings, from near or from afar. */
-  private program(header: Header, isClose = this.isClose(header)): Program {
-    const { vertex, fragment } = header.shaders;
-    const variant = variantOf(header, this.settings, isClose);
-    return this.graphics.programs.get(vertex, fragment, ...variant);
-  }
-
-  private isClose(header: Header): boolean {
-    if (!this.camera) return false;
-    const view = this.view([0, 0, 0], this.ratio);
-    // Where there are tiles hardly anything of the root is seen.
-    const tiles = this.tiles?.layers.slice(1).map(({ scene }) => scene.header) ?? [];
-    return (tiles.length ? tiles : [header]).some((part) => isNear(part, this.settings, view));
-  }
-
-  /** Go on with the picture until a time. */
-  private drawPicture(header: Header, until: number): void {
-    const shown = this.available(until);
-    if (!this.camera) this.place();
-    const program = this.program(header); // built while parts come and slices are made
-    this.scene?.prepare();
-    if (!shown || !this.camera) return;
-    if (program.error) return this.panel.fail("The shader does not compile with this graphics driver.", program.error);
-    if (!program.ready || !this.scene?.isReady(this.settings)) return this.request();
-    const isComplete = !this.sharp && this.renderer.draw(program, shown, until);
-    this.root.dataset.drawn = "true"; // coarse or not
-    if (isComplete) {
-      this.root.dataset.frames = String(this.renderer.frames);
-      this.panel.clear();
-      void this.scene.pickers; // the pointer asks for them next,
-      if (header.slices.critical) this.program(header, true); // and the wheel for this
-      this.setSharp(!this.playing);
-    }
-    if (!this.sharp) this.request();
-  }
-
-  /** Go on with the time or the clock. */
-  private advance(now: number): void {
-    const { player, options } = this;
-    const isMade = (steps: number[]) => {
-      this.next = steps;
-      if (options.streamed) return true;
-      return !this.missing(steps).length && !!this.scene?.make(steps, now);
-    };
-    this.next = [];
-    this.isPainted = false;
+  /** Go on with the time or the clock, to steps that the painter can show. */
+  advance(now: number): void {
+    const { player, options, painter } = this;
+    const isMade = (steps: number[]) => painter.make?.(steps, now) ?? true;
     if (!player.playing || !player.advance(now, isMade)) return;
     if (player.varies) options.onTime?.(player.time);
     else options.onClock?.(player.clock);
     this.panel.tick();
-    this.renderer.restart();
+    painter.restart?.(false);
     this.setSharp(false);
   }
 
@@ -571,10 +492,9 @@ export class Viewer implements User {
     return viewState({ header, camera, anchor, player, rows: this.stage.clientHeight }, shown, density);
   }
 
-  /** Whether the programs that find points are built. */
+  /** Whether points can be found in the picture. */
   get canPick(): boolean {
-    const { scene, graphics } = this;
-    return !!scene && !graphics.isLost && !!graphics.gl && scene.pickers.every(({ ready }) => ready);
+    return this.painter.canPick ?? false;
   }
 
   /** Point of the surface at (x, y), from -1 to 1, right and up. */
@@ -588,11 +508,8 @@ export class Viewer implements User {
     return header && camera && groundAt(header, camera, x, y);
   }
 
-  /** The same, and where in what is drawn. */
+  /** The same as `point`, and where in what is drawn. */
   find(x: number, y: number): Found | null {
-    const { tiles, camera, shown, canvas } = this;
-    if (!tiles?.layers.length || !camera || !shown || !this.canPick) return null;
-    const { anchor } = this.view(shown, 1);
-    return pickedPoint({ layers: tiles.layers, camera, moment: shown, anchor, canvas }, x, y);
+    return this.canPick ? (this.painter.find?.(x, y) ?? null) : null;
   }
 }

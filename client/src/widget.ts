@@ -6,7 +6,7 @@ import { sharedGraphics } from "./context.ts";
 import { pictureOf } from "./dom.ts";
 import { FlowtexView } from "./element.ts";
 import { throttled, type Timer } from "./lifetime.ts";
-import { decoded, type Header, type NamedPart, type PartInfo, type Value } from "./protocol.ts";
+import { decoded, type AxesKind, type Header, type NamedPart, type PartInfo, type Value } from "./protocol.ts";
 import { Messages, type Loaded } from "./sources/messages.ts";
 import type { Viewer } from "./viewer.ts";
 
@@ -171,6 +171,7 @@ class WidgetView {
     hear<unknown>("point", (point) => this.send("point", point));
     hear<[string, Value]>("setting", ([name, value]) => this.send(name, value));
     hear<boolean>("controls", (shown) => this.send("bar", shown));
+    hear<AxesKind>("axes", (kind) => this.send("axes", kind));
     hear("frame", () => this.planFrame());
     return view.viewers;
   }
@@ -248,6 +249,7 @@ class WidgetView {
     this.follow("clock", (clock) => viewers.forEach((viewer) => viewer.setClock(Number(clock))));
     this.follow("playing", (playing) => (playing ? first.play() : first.pause()));
     this.follow("bar", (shown) => first.panel.toggle(Boolean(shown)));
+    this.follow("axes", (kind) => viewers.forEach(({ panel }) => panel.chooseAxes(kind as AxesKind | null)));
   }
 
   private resize(): void {
@@ -270,6 +272,7 @@ class WidgetView {
       camera: cameraOf(model.get("camera")),
       time: (model.get("time") as number | undefined) ?? 0,
       clock: (model.get("clock") as number | undefined) ?? 0,
+      axes: (model.get("axes") as AxesKind | null | undefined) ?? null,
     };
     this.viewers[n].setHeader({ ...header, ...now }, true);
     for (const delivery of this.early.splice(0)) this.take(delivery);

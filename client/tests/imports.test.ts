@@ -8,7 +8,7 @@ import { test } from "node:test";
 const FOLDER = new URL("../src/", import.meta.url);
 /** Layers, the lowest first. */
 const LAYERS = [
-  "vectors half ticks dom keyboard lifetime pathlines reuse sources/store modules.d app/vue",
+  "vectors half ticks dom keyboard lifetime ground pathlines reuse sources/store modules.d app/vue",
   "camera",
   "protocol",
   "uniforms quality",
@@ -22,7 +22,9 @@ const LAYERS = [
   "bodies",
   "scene",
   "tiles",
-  "picking pointpath pixelsum progressive options",
+  "picking pointpath pixelsum progressive",
+  "painter",
+  "options streamedpainter webgl2painter",
   "controls colourcontrols pointcard axes",
   "panel pointers",
   "viewer",

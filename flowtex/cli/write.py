@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -144,6 +144,10 @@ def export(
             help="Address of a pyramid for browsers, https://… or ./…: the page reads it there."
         ),
     ] = None,
+    axes: Annotated[
+        Literal["ticks", "scale", "none"] | None,
+        Parameter(group=PICTURE, help="What stands at the borders; ticks on flat surfaces."),
+    ] = None,
     flow: Annotated[FieldFlags | None, FLAT] = None,
     look: Annotated[LookFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
@@ -164,9 +168,8 @@ def export(
         say(f"{describe(field)}{some}: about {size / 1e6:.1f} MB")
 
     with writing(output):
-        page = write_page(
-            field, output, steps=steps, title=title, store=store, announce=announce, **options
-        )
+        own: dict[str, Any] = {"steps": steps, "title": title, "store": store, "axes": axes}
+        page = write_page(field, output, announce=announce, **own, **options)
     seconds = time.perf_counter() - start
     say((str(output), "bold"), "  ", (f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s", "dim"))
     return 0

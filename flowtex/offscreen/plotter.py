@@ -75,7 +75,7 @@ class OffscreenPlotter:
                 self._plotter.enable_anti_aliasing("msaa", multi_samples=OUTLINE_SAMPLES)
             else:
                 self._plotter.disable_anti_aliasing()
-            self._plotter.set_background(options.view.background)
+            self._plotter.set_background(options.view.ground)
             self.handles = add_scenes(
                 self._plotter, field, options, scalar_bar_args, labels=not annotations
             )
@@ -116,7 +116,7 @@ class OffscreenPlotter:
                 view,
                 handle.scene,
                 read_camera(self._plotter.camera),
-                background=self._view.background,
+                background=self._view.ground,
                 label=difference_text(handle.scene, changes),
                 legend=self._legend,
             )

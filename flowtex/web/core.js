@@ -220,33 +220,34 @@ let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*
 .5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
 v2]=between3(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between3(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
 texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=5,ZERO_SHARE=1e-5,EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,
-uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-
-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({
-low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;
-return[told(low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){
-return Number(name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.
-choices[Number(number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){
-let[kind,level,row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:
-null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.
-byteLength):new Uint8Array(bytes),{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a pa\
-rt has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,digest,data:new Type(view.
-slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.
-map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,info.differences===void 0?decoded(info,
-bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+new DataView(file.buffer,file.byteOffset).getUint32(
-0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),first]}async function partOfText(info,text){let letters=atob(
-text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob(
-[packed]).stream().pipeThrough(new DecompressionStream("gzip"));return partOfPlanes(info,new Uint8Array(await new Response(
-unpacked).arrayBuffer()))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{
-shape:shape2,differences=[0,0],scale:scale3=null}=info,count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?planes.
-length/count2:1;if(!(width in UNSIGNED))throw new Error(`the part "${info.name}" is not packed as it tells`);let[line,channels]=shape2.
-length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](count2);for(let c=0,from=0;c<channels;c+=1)
-for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count2+from]<<
-8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<
-count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<count2;first+=
-row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=numbers[n-channels];return decoded(info,scale3?floats(numbers,
-scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){let channels=units.length;return numbers instanceof
-Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=5,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,
+uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({
+low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.
+max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(
+high)),told=value=>Math.abs(value)<least?0:value;return[told(low),told(high)]}function isSignFree(header){return header.
+variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function isOfStep(name,step,{
+scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(number)]?.steps??scalars.steps;return kind===
+"scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,row2,column,...rest]=name.split("/");return kind===
+"tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?
+new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape:shape2,digest}=info,
+Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);
+return{name,shape:shape2,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(
+new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=
+info.bytes,info.differences===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+
+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),
+first]}async function partOfText(info,text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.
+length;n+=1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream(
+"gzip"));return partOfPlanes(info,new Uint8Array(await new Response(unpacked).arrayBuffer()))}var UNSIGNED={1:Uint8Array,
+2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{shape:shape2,differences=[0,0],scale:scale3=null}=info,
+count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(
+`the part "${info.name}" is not packed as it tells`);let[line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(
+-2),numbers=new UNSIGNED[width](count2);for(let c=0,from=0;c<channels;c+=1)for(let n=c;n<count2;n+=channels,from+=1){let bits=0;
+for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count2+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*
+channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<
+differences[1];order+=1)for(let first=0;first<count2;first+=row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=
+numbers[n-channels];return decoded(info,scale3?floats(numbers,scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){
+let channels=units.length;return numbers instanceof Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):
+Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
 data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];return result2}function grid(us,vs){let result2=new Float32Array(
 2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
 shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},(_,n)=>(n+before+.5)/size);return grid(
@@ -281,9 +282,9 @@ lineFragment}=this.header.shaders;return!this.lines.length||this.graphics.progra
 camera,anchor}){let{header,graphics}=this,{earth,shaders,geometry}=header;if(!earth?.land)return;let globe=earth.map===null;
 if(!(globe?earth.below:this.parts.has("land")))return;let gl=graphics.context,defines=globe?["FLOWTEX_GLOBE"]:[],program=graphics.
 programs.get(shaders.groundVertex,shaders.groundFragment,...defines);if(program.ready){if(graphics.programs.use(program,
-{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.background,u_lit:header.lighting,u_toEye:toFrame(
-geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.radius,anchor):{}}),globe){let drawn=this.take(
-"disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(gl.TRIANGLE_STRIP,0,4)}else{let drawn=this.
+{u_matrix:projection(geometry,camera,anchor),u_colour:earth.land,u_ground:header.background??[1,1,1],u_lit:header.lighting,
+u_toEye:toFrame(geometry.frame,scale2(camera.axes[2],-1)),...globe?this.disc(camera,earth.radius,anchor):{}}),globe){let drawn=this.
+take("disc",anchor,()=>this.emptyArray());gl.bindVertexArray(drawn.array),gl.drawArrays(gl.TRIANGLE_STRIP,0,4)}else{let drawn=this.
 take("land",anchor,()=>this.landOf(anchor));gl.bindVertexArray(drawn.array),gl.depthMask(!1),gl.drawElements(gl.TRIANGLES,
 drawn.count,gl.UNSIGNED_INT,0),gl.depthMask(!0)}gl.bindVertexArray(null)}}horizon(camera){let{earth}=this.header;if(!earth||
 earth.map)return null;let{radius}=earth,[x,y,z,w]=camera.eye,away=w*Math.hypot(x,y,z);return[...unit([x,y,z]),away?-(radius**
@@ -306,7 +307,18 @@ cells.data:cellCorners(cells);gl.bindVertexArray(drawn.array);let points=positio
 [this.buffer(gl.ARRAY_BUFFER,points),this.buffer(gl.ELEMENT_ARRAY_BUFFER,corners)],drawn.count=corners.length,gl.enableVertexAttribArray(
 0),gl.vertexAttribPointer(0,3,gl.FLOAT,!1,0,0),drawn}};function cellCorners({data,shape:[rows,columns]}){let corners=[];
 for(let n=0;n<rows*columns;n+=1){if(!data[n])continue;let low=n+Math.floor(n/columns),high=low+columns+1;corners.push(low,
-low+1,high+1,low,high+1,high)}return Uint32Array.from(corners)}function makeLayers(gl,texture,size){let{width,height,layers,channels,levels}=size,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),
+low+1,high+1,low,high+1,high)}return Uint32Array.from(corners)}var WHITE=[1,1,1],DARK=.5,THEME=["class","style","data-theme","data-jp-theme-light","data-vscode-theme-kind"],isDarkWished=()=>matchMedia(
+"(prefers-color-scheme: dark)");function groundAround(element){let colours=[];for(let at=element;at;){colours.push(getComputedStyle(
+at).backgroundColor);let root=at.getRootNode();at=at.parentElement??(root instanceof ShadowRoot?root.host:null)}let pen=new OffscreenCanvas(
+1,1).getContext("2d",{willReadFrequently:!0});if(!pen)return WHITE;let{colorScheme}=getComputedStyle(document.documentElement),
+isDark=colorScheme.includes("dark")&&(!colorScheme.includes("light")||isDarkWished().matches);for(let colour of[isDark?"\
+#121212":"white",...colours.reverse()])pen.fillStyle=colour,pen.fillRect(0,0,1,1);return Array.from(pen.getImageData(0,0,
+1,1).data.subarray(0,3),value=>value/255)}var Ground=class{colour=WHITE;root;constructor(root,lifetime,changed){this.root=
+root;let look=()=>{let before=String(this.colour);this.update(),String(this.colour)!==before&&changed()},observer=new MutationObserver(
+look);for(let element of[document.documentElement,document.body])lifetime.watch(observer,element,{attributeFilter:THEME});
+lifetime.listen(isDarkWished(),"change",look)}update(){let{root}=this;if(!root.parentElement)return;this.colour=groundAround(
+root.parentElement);let[r,g,b]=this.colour.map(value=>Math.round(255*value));root.classList.toggle("flowtex-dark",(.299*
+r+.587*g+.114*b)/255<DARK),root.style.setProperty("--ground",`rgb(${r} ${g} ${b})`)}};function makeLayers(gl,texture,size){let{width,height,layers,channels,levels}=size,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),
 mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(width,height)>most||layers>mostLayers)throw new Error(
 `a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most} x ${most}\
  in ${mostLayers}; show fewer nodes`);let target=gl.TEXTURE_2D_ARRAY;gl.bindTexture(target,texture),gl.texStorage3D(target,
@@ -441,12 +453,12 @@ let values=memory?named("scalars/"):[];for(let other of values)isOfStep(other,st
 controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
 1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
 ()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
-timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}stats(){
-let{globalListeners:listeners,observers,timers}=this;return{listeners,observers:observers.size,timers:timers.size}}end(){
-this.controller.abort(),this.globalListeners=0;for(let observer of this.observers)observer.disconnect();this.observers.clear();
-for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};function throttled(later,wait,call){let next=null,
-running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;next=null,call(value),later(run,wait)};return value=>{
-next={value},running||run()}}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
+timer),this.timers.delete(timer))}observe(observer,element){observer.observe(element),this.observers.add(observer)}watch(observer,element,what){
+observer.observe(element,what),this.observers.add(observer)}stats(){let{globalListeners:listeners,observers,timers}=this;
+return{listeners,observers:observers.size,timers:timers.size}}end(){this.controller.abort(),this.globalListeners=0;for(let observer of this.
+observers)observer.disconnect();this.observers.clear();for(let timer of this.timers)clearTimeout(timer);this.timers.clear()}};
+function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
+next=null,call(value),later(run,wait)};return value=>{next={value},running||run()}}function dom(kind,attributes={},children=[]){let element=document.createElement(kind);for(let[name,value]of Object.entries(
 attributes))element.setAttribute(name,value);return element.append(...children),element}var ICONS={play:"M8 5.2v13.6L19 \
 12z",pause:"M8.5 6v12M15.5 6v12",previous:"M17 6v12l-9-6zM6.5 6v12",next:"M7 6v12l9-6zM17.5 6v12",home:"M4 11.5 12 5l8 6\
 .5M6.5 10v9h11v-9",lod:"M12 3.8l8 4.1-8 4.1-8-4.1zM4 12.2l8 4.1 8-4.1M4 16.3l8 4.1 8-4.1",levels:"M3.5 18a8.5 8.5 0 0 1 \
@@ -496,16 +508,16 @@ most);if(!(!chosen||chosen.length<3))return chosen.map(value=>({value,text:textO
 abs(value)){if(value===0)return"0";let digits=-Math.floor(Math.log10(step)+SAME),isHalf=Math.abs(step*10**digits-2.5)<SAME?
 1:0;if(size>=LARGE||size<SMALL){let mantissa=Math.max(Math.floor(Math.log10(Math.abs(value))+SAME)+digits+isHalf,0),[number,
 power]=value.toExponential(Math.min(mantissa,15)).split("e");return`${minus(number)}e${Number(power)}`}return minus(value.
-toFixed(Math.max(digits+isHalf,0)))}var minus=text=>text.replace("-","−");var AXES=["ticks","scale","none"],SVG="http://www.w3.org/2000/svg",PARTS=48,LEAST_SHARE=.999,[LETTER_PX,GAP_PX,ROW_PX]=[
-6.5,14,34],TICK_PX=4,ASIDE_PX=42,[MOST_TICKS,BAR_PX,BAR_SHARE]=[9,140,.3],MIDDLE_SHARE=.02,COORDINATES=["x","y","z"],fitting=(name,room)=>name.
-length*LETTER_PX>room?name.replace(/ .*/,""):name;function placedTicks({values,letters},most){let finite=values.filter(Number.
-isFinite);if(finite.length<2)return[];let[low,high]=[Math.min(...finite),Math.max(...finite)];return(letters?degreeTicks(
-low,high,letters,most):ticksOf(low,high,!1,most)).flatMap(tick=>{let n=values.findIndex((value,at)=>isBetween(tick.value,
-value,values[at+1]));if(n<0)return[];let part=(tick.value-values[n])/(values[n+1]-values[n]||1);return[{...tick,share:(n+
-part)/(values.length-1)}]})}var isBetween=(value,a,b)=>Math.min(a,b)<=value&&value<=Math.max(a,b);function hasTicks({geometry,
-earth}){return geometry.planar&&(!earth||earth.map!==null)}var Axes=class{element=document.createElementNS(SVG,"svg");host;constructor(host){
-this.host=host,this.element.setAttribute("class","axes"),this.element.setAttribute("aria-hidden","true")}draw(kind){let{
-header,camera,stage}=this.host;this.element.replaceChildren();let[width,height]=[stage.clientWidth,stage.clientHeight];if(kind===
+toFixed(Math.max(digits+isHalf,0)))}var minus=text=>text.replace("-","−");var SVG="http://www.w3.org/2000/svg",PARTS=48,LEAST_SHARE=.999,[LETTER_PX,GAP_PX,ROW_PX]=[6.5,14,34],TICK_PX=4,ASIDE_PX=42,
+[MOST_TICKS,BAR_PX,BAR_SHARE]=[9,140,.3],MIDDLE_SHARE=.02,COORDINATES=["x","y","z"],fitting=(name,room)=>name.length*LETTER_PX>
+room?name.replace(/ .*/,""):name;function placedTicks({values,letters},most){let finite=values.filter(Number.isFinite);if(finite.
+length<2)return[];let[low,high]=[Math.min(...finite),Math.max(...finite)];return(letters?degreeTicks(low,high,letters,most):
+ticksOf(low,high,!1,most)).flatMap(tick=>{let n=values.findIndex((value,at)=>isBetween(tick.value,value,values[at+1]));if(n<
+0)return[];let part=(tick.value-values[n])/(values[n+1]-values[n]||1);return[{...tick,share:(n+part)/(values.length-1)}]})}
+var isBetween=(value,a,b)=>Math.min(a,b)<=value&&value<=Math.max(a,b);function hasTicks({geometry,earth}){return geometry.
+planar&&(!earth||earth.map!==null)}var Axes=class{element=document.createElementNS(SVG,"svg");host;constructor(host){this.
+host=host,this.element.setAttribute("class","axes"),this.element.setAttribute("aria-hidden","true")}draw(kind){let{header,
+camera,stage}=this.host;this.element.replaceChildren();let[width,height]=[stage.clientWidth,stage.clientHeight];if(kind===
 "none"||!header||!camera||!width||!height)return;if(this.element.style.cssText=`width: ${width}px; height: ${height}px`,
 kind==="scale")return this.drawBar(header,camera,width,height);let below=borderOf(this.host,[-1,-1],[1,-1]),aside=borderOf(
 this.host,[-1,-1],[-1,1]);below&&this.drawBelow(below,width,height),aside&&this.drawAside(aside,height)}drawBelow(border,width,height){
@@ -832,14 +844,14 @@ SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(n
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
-  --ground: var(--jp-layout-color1, #ffffff);
+  --ground: #ffffff; /* that of the page, once it is known */
   --edge: color-mix(in srgb, var(--ink) 14%, transparent);
   --hover: color-mix(in srgb, var(--ink) 9%, transparent);
   --accent: var(--jp-brand-color1, #0f766e);
   --shadow: 0 4px 18px rgb(16 24 40 / 0.16);
   --glass: color-mix(in srgb, var(--ground) 78%, transparent);
   --above-bar: 56px;
-  color-scheme: light dark;
+  color-scheme: light;
   position: relative;
   display: grid;
   grid-template: auto minmax(0, 1fr) auto / minmax(0, 1fr);
@@ -855,14 +867,12 @@ SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(n
   user-select: none;
   -webkit-user-select: none;
 }
-@media (prefers-color-scheme: dark) {
-  :host {
-    --ink: var(--jp-ui-font-color1, #e8edf2);
-    --quiet: var(--jp-ui-font-color2, #a3b0bd);
-    --ground: var(--jp-layout-color1, #151a21);
-    --accent: var(--jp-brand-color1, #4fd1c5);
-    --shadow: 0 4px 18px rgb(0 0 0 / 0.35);
-  }
+:host(.flowtex-dark) {
+  --ink: var(--jp-ui-font-color1, #e8edf2);
+  --quiet: var(--jp-ui-font-color2, #a3b0bd);
+  --accent: var(--jp-brand-color1, #4fd1c5);
+  --shadow: 0 4px 18px rgb(0 0 0 / 0.35);
+  color-scheme: dark;
 }
 :host(:focus-visible)::after {
   content: ""; position: absolute; inset: 0; z-index: 1; pointer-events: none;
@@ -1006,7 +1016,7 @@ path.solid { fill: currentColor; }
 .track { display: flex; align-items: center; gap: 8px; min-width: 90px; width: 260px; flex: 0 1 auto; padding: 0 6px 0 4\
 px; }
 .time { flex: none; white-space: nowrap; }
-.track:has(input:disabled) { opacity: 0.45; }
+.track input:disabled { opacity: 0.45; }
 input[type="range"] {
   appearance: none; -webkit-appearance: none; flex: 1; min-width: 0; width: 100%; height: 18px;
   margin: 0; background: none; cursor: pointer; accent-color: var(--accent);
@@ -1110,32 +1120,32 @@ alert"});doing=dom("span",{role:"status"});count=dom("span",{"aria-hidden":"true
 hint glass",hidden:""},[HINT]);bar;handle;playButton;stepButtons;toggles;gear;slider=dom("input",{type:"range",...TIME_RANGE});timeText=dom(
 "span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;constructor(viewer){
 this.viewer=viewer;let{root,stage,canvas,options}=viewer;this.isShown=options.controls??!0,this.axes=new Axes(viewer),viewer.
-lifetime.listen(this.axesMenu,"change",()=>{for(let{panel}of viewer.together)panel.chooseAxes(this.axesMenu.value)}),this.
-controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.button("show","Show the bar (h)",
-()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button("play","Play (space)",()=>viewer.
-togglePlaying()),this.stepButtons=[this.button("previous","A step back (,)",()=>viewer.step(-1)),this.button("next","A s\
-tep on (.)",()=>viewer.step(1))],viewer.lifetime.listen(this.paceMenu,"change",()=>viewer.player.pace=Number(this.paceMenu.
-value)),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.value)));let toggle=name=>()=>viewer.
-choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of detail",toggle("lod")),show_level:this.
-button("levels","Show level",toggle("show_level"))},this.gear=this.button("settings","Settings",()=>this.fold(!this.isOpen)),
-this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flowtex-bare",options.bare??!1);let shadow=root.
-attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,controls,head,bar,handle,busy,hintBox,told,
-note}=this,{card}=viewer;stage.className="stage",stage.append(canvas,card.overlay,this.axes.element,card.element,busy,hintBox,
-told),shadow.append(dom("div",{class:"top"},[head,legend.element]),stage,bar,handle),shadow.append(controls.element,note),
-viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){let button=dom("button",
-{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.listen(button,"click",
-press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-label":"Controls"},[this.
-stepButtons[0],this.playButton,this.stepButtons[1],this.track,this.button("home","Show everything (0)",()=>viewer.reset()),
-this.toggles.lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{this.save()}),this.button(
-"full","Fill the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.toggle())])}build(){let{
-header}=this.viewer;if(!header)return;this.note.hidden=!0;let isOther=this.controls.build(header);isOther&&this.controls.
-element.prepend(...this.colours.rows,this.axesRow,this.paceRow),isOther&&this.parameters.replaceChildren(...this.controls.
-parameters),this.showLegend(),this.update(),this.arrange()}update(){let{header,settings}=this.viewer,{playing,varies}=this.
-viewer.player;this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();for(let[name,
-button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?"P\
-ause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,this.
-playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=this.
-track.hidden=this.paceRow.hidden=!varies&&!streams;for(let button of this.stepButtons)button.hidden=!varies;this.paceMenu.
+lifetime.listen(this.axesMenu,"change",()=>{let kind=this.axesMenu.value;for(let{panel}of viewer.together)panel.chooseAxes(
+kind);options.onAxes?.(kind)}),this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.
+button("show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button(
+"play","Play (space)",()=>viewer.togglePlaying()),this.stepButtons=[this.button("previous","A step back (,)",()=>viewer.
+step(-1)),this.button("next","A step on (.)",()=>viewer.step(1))],viewer.lifetime.listen(this.paceMenu,"change",()=>viewer.
+player.pace=Number(this.paceMenu.value)),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.
+value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of d\
+etail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button("setting\
+s","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flo\
+wtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,
+controls,head,bar,handle,busy,hintBox,told,note}=this,{card}=viewer;stage.className="stage",stage.append(canvas,card.overlay,
+this.axes.element,card.element,busy,hintBox,told),shadow.append(dom("div",{class:"top"},[head,legend.element]),stage,bar,
+handle),shadow.append(controls.element,note),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){
+let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
+listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
+label":"Controls"},[this.stepButtons[0],this.playButton,this.stepButtons[1],this.track,this.button("home","Show everythi\
+ng (0)",()=>viewer.reset()),this.toggles.lod,this.toggles.show_level,this.gear,this.button("save","Save the picture",()=>{
+this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),this.button("hide","Hide the bar (h)",()=>this.
+toggle())])}build(){let{header}=this.viewer;if(!header)return;this.note.hidden=!0;let isOther=this.controls.build(header);
+isOther&&this.controls.element.prepend(...this.colours.rows,this.axesRow,this.paceRow),isOther&&this.parameters.replaceChildren(
+...this.controls.parameters),this.showLegend(),this.update(),this.arrange()}update(){let{header,settings}=this.viewer,{playing,
+varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();
+for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?
+"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,
+this.playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=
+this.track.hidden=this.paceRow.hidden=!varies&&!streams;for(let button of this.stepButtons)button.hidden=!varies;this.paceMenu.
 value=String(this.viewer.player.pace),this.slider.disabled=!varies&&settings.motion==="off";let width=header&&this.date(
 header)?.length||8+withUnit("",header?.slices.timeUnit??"").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.
 tick()}name(){let{header,settings,root,options}=this.viewer,differences=(header?.differs??[]).filter(name2=>name2 in settings).
@@ -1160,12 +1170,12 @@ this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isSh
 viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{header,options,root}=this.viewer;
 return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&root.clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){
 this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&hasTicks(header)?"ticks":"none",kind=this.
-axesKind??usual,shown=this.isFramed?kind:"none";this.axesMenu.value=kind,this.viewer.root.dataset.axes=shown,this.axes.draw(
-shown)}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.bar.hidden=!(this.
-isShown||follows&&this.isFramed)||!isReady,this.bar.style.visibility=follows?"hidden":"",this.handle.hidden=this.isShown||
-!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||!this.
-isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),root.classList.toggle("flowtex-fram\
-ed",this.isFramed),this.showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1){
+axesKind??header?.axes??usual,shown=this.isFramed?kind:"none";this.axesMenu.value=kind,this.viewer.root.dataset.axes=shown,
+this.axes.draw(shown)}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.
+bar.hidden=!(this.isShown||follows&&this.isFramed)||!isReady,this.bar.style.visibility=follows?"hidden":"",this.handle.hidden=
+this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||
+!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),root.classList.toggle("flowte\
+x-framed",this.isFramed),this.showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1){
 let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?
 "playing":"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?pending&&(doing="Loading tiles"):doing="Trac\
 ing paths";let count2=doing==="Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==
@@ -1175,13 +1185,11 @@ viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", 
 mplete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=
 shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.
 add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.
-root.dataset.failed}failWithout(){this.fail("This browser has no WebGL2, which the picture is drawn with.","Turn on hard\
-ware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}fail(problem,detail){this.note.replaceChildren(
-dom("strong",{},[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed=
-"true",this.viewer.options.onError?.(problem,detail)}fullscreen(){let{root,together}=this.viewer;toggleFullscreen(together.
-length>1&&root.parentElement||root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),
-name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.
-later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
+root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.
+note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true",this.viewer.options.onError?.(problem,detail)}fullscreen(){
+let{root,together}=this.viewer;toggleFullscreen(together.length>1&&root.parentElement||root)}async save(){let{viewer}=this,
+href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
+dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
 0];lastFrame=0;hasHeader=!1;setHeader(header){let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.
 every((t,n)=>t===this.times[n]))||!this.hasHeader)&&(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.
 times=times2}get varies(){return this.times.length>1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){
@@ -1237,7 +1245,100 @@ camera.pan(x,y),viewer.reportCamera()}else if(command==="closer"||command==="far
 camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(command==="whole")viewer.reset();else if(command===
 "next"||command==="previous")viewer.step(command==="next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.
 lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.
-follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
+follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],PATH_SHARE=.99,OPERATIONS=new Map(Object.
+entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
+b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.min(a,b),
+max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
+sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function compiled(tree){if(typeof tree=="number")return()=>tree;
+if(typeof tree=="string")return values=>values[tree];let[name,...parts]=tree,call=OPERATIONS.get(String(name));if(!call)
+throw new Error(`the formula has the operation "${name}", which this client does not know`);let[first,second,...rest]=parts.
+map(compiled);return second?rest.length?name==="where"?values=>first(values)?second(values):rest[0](values):values=>rest.
+reduce((sum,part)=>call(sum,part(values)),call(first(values),second(values))):values=>call(first(values),second(values)):
+values=>call(first(values))}var Grid=class{header;formula;rates;constructor(header,formula){[this.header,this.formula]=[
+header,formula],this.rates=formula.trees.map(compiled)}at(axis,level,line){let[low,high]=this.formula.ends[1-axis],cells=(this.
+header.geometry.shape[axis]-1)*2**this.doublings(level);return line===cells?high:low+(high-low)*line/cells}doublings(level){
+return(this.header.pyramid?.depth??0)-level}shape(level){return this.header.geometry.shape.map(n=>(n-1)*2**this.doublings(
+level)+1)}local(level,row2,column){let{center,frame}=this.header.geometry;return toFrame(frame,subtract2([this.at(1,level,
+column),this.at(0,level,row2),0],center))}flow({level,from,to},step,parameters){let[rows,columns]=[to[0]-from[0]+1,to[1]-
+from[1]+1],{speed:{typical},slices}=this.header,share=2**-this.doublings(level),size=(slices.trace?.unit??1)*share,[dx,dy]=[
+1,0].map(axis=>this.at(axis,level,1)-this.at(axis,level,0)),data=new Float32Array(3*rows*columns),speeds=new Float32Array(
+rows*columns),values={...parameters,t:slices.times[step]},[xName,yName]=this.formula.names;for(let j=0,n=0;j<rows;j+=1){
+values[yName]=this.at(0,level,from[0]+j);for(let i=0;i<columns;i+=1,n+=1){values[xName]=this.at(1,level,from[1]+i);let[u,
+v2]=this.rates.map(rate=>rate(values)),speed=Math.hypot(u,v2);speed>0&&speed<1e30&&(speeds[n]=speed,data.set([u/dx*size/
+speed,v2/dy*size/speed,speed/typical],3*n))}}return{flow:{data,shape:[rows,columns,3]},speeds}}padded({level,from,to}){let middle=this.
+local(level,.5*(from[0]+to[0]),.5*(from[1]+to[1])),[rows,columns]=[to[0]-from[0]+3,to[1]-from[1]+3],data=new Float32Array(
+3*rows*columns);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3)data.set(subtract2(this.local(level,from[0]+
+j-1,from[1]+i-1),middle),n);return{middle,part:{data,shape:[rows,columns,3]}}}};function placesOf(header){let{formula,mesh}=header;
+if(!formula)return null;let grid2=new Grid(header,formula);return(level,row2,column)=>{let shape2=grid2.shape(level),corner=far=>grid2.
+local(level,Math.min((row2+far)*mesh.tileCells,shape2[0]-1),Math.min((column+far)*mesh.tileCells,shape2[1]-1)),[low,high]=[
+corner(0),corner(1)],cell=Math.hypot(...subtract2(grid2.local(level,0,1),grid2.local(level,0,0))),own=low.map((x,k)=>.5*
+(x+high[k])),{center,frame}=header.geometry;return[...[0,1,2].map(k=>center[k]+own.reduce((sum,x,m)=>sum+frame[3*m+k]*x,
+0)),.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var FormulaSource=class{hasSteps=!0;atOnce=2;header;grid;parameters={};state="";constructor(header,formula){
+this.header=header,this.grid=new Grid(header,formula),this.follow(header.settings)}follow(settings){let own=Object.entries(
+settings).filter(([name])=>name.startsWith(PARAMETER));this.parameters=Object.fromEntries(own.map(([name,value])=>[name.
+slice(PARAMETER.length),Number(value)]));let before=this.state;return this.state=JSON.stringify([this.header.formula,this.
+header.geometry,this.parameters]),before!==this.state}load=(key,steps)=>Promise.resolve(key?this.tile(key,steps):this.whole(
+steps));whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,
+from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
+return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
+shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
+start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
+w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
+{mesh,pyramid,geometry,slices,scalars}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("a formula comes withou\
+t its levels");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(
+at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.
+map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-
+from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),
+share=2**-grid2.doublings(level),longest=PATH_SHARE*pyramid.pathCells,lags=[...slices.lags.filter(lag=>lag<longest),longest],
+texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(
+shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.
+length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,
+nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.
+unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,
+steps,drawn,shape2,prefix),speeds=parts[1].data;return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.
+named(`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),
+this.named(`${prefix}mesh`,this.blocks(key,shape2,speeds,scalars.high-scalars.low)),...parts]}blocks(key,shape2,speeds,range){
+let{mesh,pyramid}=this.header,most=Math.log2(mesh.tileCells),[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
+size=2*(most+1)+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??
+1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],bend=0;for(let j=1;j<
+mesh.tileCells;j+=1)for(let i=1;i<mesh.tileCells;i+=1){let[y,x]=[row2*mesh.tileCells+j,column*mesh.tileCells+i];if(y>=shape2[0]-
+1||x>=shape2[1]-1)continue;let n=y*shape2[1]+x,across=by=>Math.abs(speeds[n-by]-2*speeds[n]+speeds[n+by]);bend=Math.max(
+bend,across(1)+across(shape2[1]))}let levels=Array.from({length:most+1},(_,level)=>level?bend*4**level/8/(range||1):0),where=place?.(
+key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set([...levels.map(()=>0),...levels,...where],block*size)}
+return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
+now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
+Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
+taker}want(jobs){this.jobs=jobs;let names=new Set(jobs.map(String));for(let[name,controller]of this.running)names.has(name)||
+(this.running.delete(name),controller.abort());this.next()}stop(){this.want([]),this.failed=new Failures}next(){for(let job of this.
+jobs){if(this.running.size>=(this.source()?.atOnce??AT_ONCE))return;!this.running.has(String(job))&&!this.failed.has(String(
+job))&&this.run(job)}}async run(job){let{taker}=this,source=this.source();if(!source)return;let[key,steps]=job,controller=new AbortController,
+{signal}=controller,has=part=>key?taker.tiles?.has(nameOf(key),part)??!1:taker.parts.has(part);this.running.set(String(job),
+controller);try{let parts=await source.load(key,steps,signal,has);if(!signal.aborted)for(let part of parts)taker.setPart(
+part)}catch(error){signal.aborted||this.fail(job,error)}signal.aborted||(this.running.delete(String(job)),this.failed.has(
+String(job))||(this.jobs=this.jobs.filter(other=>String(other)!==String(job))),this.next())}fail(job,error){let[key,steps]=job;
+this.failed.add(String(job)),setTimeout(()=>this.next(),FAILED_MS+SPARE_MS);let isAway=error.fault==="unreachable",name=key&&
+!isAway?nameOf(key):void 0;this.taker.lack(wordsOf(key?COARSE:ABSENT_STEP,error),name,steps)}};function wordsOf(what,error){
+let{fault,message=String(error),detail=""}=error;return console.warn(message,detail),fault==="other"?message:`${what}: ${message}`}
+var Requests=class{tiles;wholes;given;formula=null;constructor(source,taker){this.given=source,this.tiles=new Queue(()=>this.
+source,taker),this.wholes=new Queue(()=>this.source,taker)}get source(){return this.formula??this.given}get hasSteps(){return this.
+source?.hasSteps??!1}setHeader(header){this.stop(),this.formula=header.formula?new FormulaSource(header,header.formula):
+null}follow(settings){return this.formula?.follow(settings)??!1}open(){let{taker}=this.tiles;this.source?.open?.().catch(
+error=>taker.lack(wordsOf(ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.want(keys.map(key=>[key,steps]))}wantSteps(steps){
+let before=this.wholes.jobs.flatMap(([,some])=>some);if(steps.every(step=>before.includes(step)))return;let wanted=[...new Set(
+[...steps,...before])].slice(0,steps.length+SPARE_STEPS);this.wholes.want(wanted.map(step=>[null,[step]]))}stop(){this.tiles.
+stop(),this.wholes.stop()}};var StreamedPainter=class{view;isPainted=!0;constructor(view){this.view=view}resize(width,height){let{canvas}=this.view,
+before=new OffscreenCanvas(Math.max(canvas.width,1),Math.max(canvas.height,1));before.getContext("2d")?.drawImage(canvas,
+0,0),[canvas.width,canvas.height]=[width,height],this.pen?.drawImage(before,0,0,width,height)}get pen(){return this.view.
+canvas.getContext("2d",{alpha:!1})}frame(now){let{view}=this;view.camera||view.place(),!(!view.player.playing||!this.isPainted)&&
+(this.isPainted=!1,view.advance(now))}show(picture,left,width,isSharp){let{view}=this,{canvas,panel}=view;this.pen?.drawImage(
+picture,left,0,width,picture.height,0,0,canvas.width,canvas.height),this.isPainted=!0,panel.wait([],!0,!isSharp),view.painted(
+isSharp)}};function placedCamera({geometry,limits,earth},first,nodes,aspect){let state=firstLook(geometry,limits,first,nodes,aspect);
+return new Camera(state,limits,geometry.planar,aspect,earth&&!earth.map?earth.radius:0)}function viewState({header,camera,
+anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.
+frame,subtract2(focus,geometry.center)),range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);
+return{focus,anchor:isFar(subtract2(local,anchor))?isFar(local)?local:[0,0,0]:anchor,eye:camera.eye,between:shown[2],time:player.
+timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(rows*density,1)}}function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
 ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
 return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
 b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
@@ -1248,80 +1349,79 @@ if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]
 abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0,0],[width,0],[0,height],[width,height]].
 every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
 4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_LEAST_MS=14,STRIP_MS=40,ALIKE=1.3,FEW_TRIANGLES=5e4,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext("2d",{alpha:!1}),
-ProgressiveRenderer=class{viewer;graphics;canvas;pen;back=document.createElement("canvas");backPen=penOf(this.back);last=document.
+ProgressiveRenderer=class{viewer;content;graphics;canvas;pen;back=document.createElement("canvas");backPen=penOf(this.back);last=document.
 createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.createElement("canvas");coarsePen=penOf(
 this.coarse);front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed={
-strip:4,draft:4};triangles=0;frames=0;isCoarse=!1;constructor(viewer){this.viewer=viewer,this.graphics=viewer.graphics,this.
-canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){cameraOnly||(this.lastCamera=null),this.version+=
-1,this.rowsDone=0}refine(){this.rowsDone>=this.canvas.height?this.rowsDone=0:this.isRefined=!0}resize(width,height){let{
-canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.backPen?.drawImage(canvas,0,0),canvas.width=
-last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(back,0,0,width,height),back.width=width,
-back.height=height}show(picture,left,width,isSharp){let{canvas,pen}=this;pen?.drawImage(picture,left,0,width,picture.height,
-0,0,canvas.width,canvas.height),isSharp&&(this.frames+=1)}dispose(){for(let canvas of[this.canvas,this.back,this.last,this.
-coarse,this.front])canvas.width=canvas.height=0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==
-this.version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&
-!this.isRefined;while(!complete&&performance.now()<until);return complete}get isMoving(){return this.viewer.player.playing||
-this.viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.
-viewer.arrange(shown)}draft(program,shown,moving){let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),
-crowd=moving?this.graphics.waiting.size+1:1;this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(
-samples),isPlaying=this.viewer.player.playing&&!this.viewer.isHeld,time=movingTime(price,this.fixed.draft,width*height,samples,
-isPlaying),budget=Math.max(time/crowd,MOVING_LEAST_MS),best=quality(price,this.fixed.draft,width*height,samples,budget),
-w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.
-scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,
-()=>{this.render(program,shown,region,best.samples),this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=
-!reuse.shifts,this.pen.setTransform(...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),
-this.isCoarse=best.scale<1||best.samples<samples;let isWhole=!this.isCoarse&&!this.viewer.smooth;return isWhole&&this.complete(),
-this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){let{width,height}=this.canvas,{smooth,settings}=this.
-viewer,samples=Number(settings.samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(shown),
-this.isRefined))return!1;this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.
-rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed.strip,width,samples),most),region={width,
-height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);
-let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=
-rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(shown),!0)}drawLines(shown){
-let{front,frontPen,graphics}=this,{scene,camera,ratio}=this.viewer,{width,height}=this.canvas;if(!scene||!camera||!frontPen)
-return;let{earth,bodies}=scene;if(!earth.lines.length&&!bodies.labels.length)return;let{state,aspect}=camera,look=JSON.stringify(
-[state,aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),
-{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,
-front.height=height,earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(
-canvas,0,top,width,height,0,0,width,height)}),bodies.drawLabels(frontPen,{camera,anchor,width,height,ratio}),this.frontLook=
-look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.isCoarse=
-!1,this.frames+=1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.playing&&(this.
-lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{scene,camera}=this.
-viewer;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;
-let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),
-[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,
-this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies?motionFactor(
-samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.now()-started,pixels=region.
-width*region.rows,factor=this.factor(samples),fixed=region.rows<region.height?this.fixed.strip:this.fixed.draft;program.
-price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.layers.reduce(
-(sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.warm&&share<
-ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row2={width,height,top:0,rows:1},[w,h]=[width,height].map(n=>Math.
-max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row2,1),this.triangles=triangles;let fixed=[
-row2,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(program,shown,region,
-1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){
-let{graphics,viewer}=this,{camera,scene}=viewer;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,
-view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),
-canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
-gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,
-width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.
-header.background;gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.
-samples||height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(
-around2);let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.
-use(program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),this.drawArrows(
+strip:4,draft:4};triangles=0;isCoarse=!1;constructor(viewer,content){this.viewer=viewer,this.content=content,this.graphics=
+viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){cameraOnly||(this.lastCamera=
+null),this.version+=1,this.rowsDone=0}refine(){this.rowsDone>=this.canvas.height?this.rowsDone=0:this.isRefined=!0}resize(width,height){
+let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.backPen?.drawImage(canvas,0,0),canvas.
+width=last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(back,0,0,width,height),back.width=
+width,back.height=height}dispose(){for(let canvas of[this.back,this.last,this.coarse,this.front])canvas.width=canvas.height=
+0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==this.version)return this.draft(program,shown,
+moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.isRefined;while(!complete&&performance.
+now()<until);return complete}get isMoving(){return this.viewer.player.playing||this.viewer.isHeld}get leavesOut(){return this.
+isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.content.arrange(shown)}draft(program,shown,moving){
+let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1;this.
+arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),isPlaying=this.viewer.player.playing&&
+!this.viewer.isHeld,time=movingTime(price,this.fixed.draft,width*height,samples,isPlaying),budget=Math.max(time/crowd,MOVING_LEAST_MS),
+best=quality(price,this.fixed.draft,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.
+round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={
+width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),
+this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
+...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),this.isCoarse=best.scale<1||best.
+samples<samples;let isWhole=!this.isCoarse&&!this.content.smooth;return isWhole&&this.complete(),this.drawLines(shown),isWhole&&
+!this.isRefined}strip(program,shown){let{width,height}=this.canvas,{settings}=this.viewer,{smooth}=this.content,samples=Number(
+settings.samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(shown),this.isRefined))return!1;
+this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:
+height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed.strip,width,samples),most),region={width,height,top:this.rowsDone,
+rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);let drawn=smooth?{...region,
+height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?
+!1:(this.pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,
+{camera,ratio}=this.viewer,{scene}=this.content,{width,height}=this.canvas;if(!scene||!camera||!frontPen)return;let{earth,
+bodies}=scene;if(!earth.lines.length&&!bodies.labels.length)return;let{state,aspect}=camera,look=JSON.stringify([state,aspect,
+width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;
+canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,front.height=height,
+earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,
+height,0,0,width,height)}),bodies.drawLabels(frontPen,{camera,anchor,width,height,ratio}),this.frontLook=look}this.pen?.
+drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.isCoarse=!1,this.draftVersion=
+this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,
+camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{camera}=this.viewer,{scene}=this.content;if(!scene?.
+header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;let{geometry}=scene.
+header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,
+camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){
+let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){
+let started=performance.now();draw();let spent=performance.now()-started,pixels=region.width*region.rows,factor=this.factor(
+samples),fixed=region.rows<region.height?this.fixed.strip:this.fixed.draft;program.price=learnedPrice(program.price,spent,
+fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.layers.reduce((sum,layer)=>sum+layer.triangles,0),share=(triangles+
+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.warm&&share<ALIKE&&share>1/ALIKE)return;let{width,height}=this.
+canvas,row2={width,height,top:0,rows:1},[w,h]=[width,height].map(n=>Math.max(Math.round(n*COARSEST_SCALE),1));program.warm||
+this.render(program,shown,row2,1),this.triangles=triangles;let fixed=[row2,{width:w,height:h,top:0,rows:h}].map(region=>{
+let started=performance.now();return this.render(program,shown,region,1),clamp(performance.now()-started,.5,500)});this.
+fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){let{graphics,viewer}=this,
+{camera}=viewer,{scene}=this.content;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,view=viewer.
+view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<
+height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,
+null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.
+enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background??
+[1,1,1];gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||
+height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);
+let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.use(
+program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),this.drawArrows(
 shown,view,region,layer=>this.values(layer,scene,camera,view,samples,draft)),bodies.draw(around2,"clear"),smooth&&graphics.
 copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(shown,view,{width,height},values){
-let{scene,camera,settings}=this.viewer;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={...camera.
-sight(height/view.density),planes:camera.planes};for(let[layer,placed]of scene.arrows.share(seen,settings,this.layers)){
-let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));!program||!placed.length||(layer.
-bindTextures(shown[0],shown[1]),arrows.draw(program,placed,view.anchor,{...values(layer),u_picture:[width,height]}))}}values({
+let{camera,settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={
+...camera.sight(height/view.density),planes:camera.planes};for(let[layer,placed]of scene.arrows.share(seen,settings,this.
+layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));!program||!placed.length||
+(layer.bindTextures(shown[0],shown[1]),arrows.draw(program,placed,view.anchor,{...values(layer),u_picture:[width,height]}))}}values({
 header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.shape??null;return{
 ...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(
 header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.
-background,u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){
-if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;
-if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,
-coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,
-0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
+-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
+graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,
+coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
+[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
@@ -1452,13 +1552,13 @@ data,size,type],n)=>{let made=buffer(data);return gl.enableVertexAttribArray(n),
 gl.FLOAT,0,0),made});buffers.push(buffer(corners,gl.ELEMENT_ARRAY_BUFFER));let lines=array(),ends=buffer(atEnds(points,pieces,
 3)),paints=buffer(atEnds(colours,pieces,4));for(let n=0;n<4;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(n,
 1);return gl.bindVertexArray(null),{faces,pieces:lines,ends,colours:paints,buffers:[...buffers,ends,paints]}}};function css([
-r,g,b,opacity=1]){return`rgb(${[r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var PLACE2=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
+r,g,b,opacity=1]){return`rgb(${[r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var PLACE3=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
-{blocks}=this.mesh,count2=this.rows.length*this.columns.length,size=blocks.length/count2,last=(size-PLACE2)/2-1;return Int8Array.
+{blocks}=this.mesh,count2=this.rows.length*this.columns.length,size=blocks.length/count2,last=(size-PLACE3)/2-1;return Int8Array.
 from({length:count2},(_,block)=>{let record=blocks.subarray(size*block,size*(block+1)),[x,y,z,radius,cell]=record.subarray(
-size-PLACE2),near=limits.leastDistance*radius,away=eye?Math.max(length2(subtract2(eye,[x,y,z]))-radius,near):1,scale3=.5*
+size-PLACE3),near=limits.leastDistance*radius,away=eye?Math.max(length2(subtract2(eye,[x,y,z]))-radius,near):1,scale3=.5*
 pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;level+=1){let error=record[level+1],colourError=record[last+
 2+level],side=cell*scale3*2**(level+1);if(!(error*scale3<=limits.maxErrorPixels&&colourError<=limits.maxColourError||Number.
 isFinite(error)&&side<=1)||side>limits.maxSideHeights*pixels)break}return level})}triangles(levels,joins){let sizes=Array.
@@ -1604,89 +1704,7 @@ e",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap
 gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){
 return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&
 (this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,
-this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE3,HALF_ONE]=[3,5,15360],PATH_SHARE=.99,OPERATIONS=new Map(Object.
-entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
-b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.min(a,b),
-max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
-sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function compiled(tree){if(typeof tree=="number")return()=>tree;
-if(typeof tree=="string")return values=>values[tree];let[name,...parts]=tree,call=OPERATIONS.get(String(name));if(!call)
-throw new Error(`the formula has the operation "${name}", which this client does not know`);let[first,second,...rest]=parts.
-map(compiled);return second?rest.length?name==="where"?values=>first(values)?second(values):rest[0](values):values=>rest.
-reduce((sum,part)=>call(sum,part(values)),call(first(values),second(values))):values=>call(first(values),second(values)):
-values=>call(first(values))}var Grid=class{header;formula;rates;constructor(header,formula){[this.header,this.formula]=[
-header,formula],this.rates=formula.trees.map(compiled)}at(axis,level,line){let[low,high]=this.formula.ends[1-axis],cells=(this.
-header.geometry.shape[axis]-1)*2**this.doublings(level);return line===cells?high:low+(high-low)*line/cells}doublings(level){
-return(this.header.pyramid?.depth??0)-level}shape(level){return this.header.geometry.shape.map(n=>(n-1)*2**this.doublings(
-level)+1)}local(level,row2,column){let{center,frame}=this.header.geometry;return toFrame(frame,subtract2([this.at(1,level,
-column),this.at(0,level,row2),0],center))}flow({level,from,to},step,parameters){let[rows,columns]=[to[0]-from[0]+1,to[1]-
-from[1]+1],{speed:{typical},slices}=this.header,share=2**-this.doublings(level),size=(slices.trace?.unit??1)*share,[dx,dy]=[
-1,0].map(axis=>this.at(axis,level,1)-this.at(axis,level,0)),data=new Float32Array(3*rows*columns),speeds=new Float32Array(
-rows*columns),values={...parameters,t:slices.times[step]},[xName,yName]=this.formula.names;for(let j=0,n=0;j<rows;j+=1){
-values[yName]=this.at(0,level,from[0]+j);for(let i=0;i<columns;i+=1,n+=1){values[xName]=this.at(1,level,from[1]+i);let[u,
-v2]=this.rates.map(rate=>rate(values)),speed=Math.hypot(u,v2);speed>0&&speed<1e30&&(speeds[n]=speed,data.set([u/dx*size/
-speed,v2/dy*size/speed,speed/typical],3*n))}}return{flow:{data,shape:[rows,columns,3]},speeds}}padded({level,from,to}){let middle=this.
-local(level,.5*(from[0]+to[0]),.5*(from[1]+to[1])),[rows,columns]=[to[0]-from[0]+3,to[1]-from[1]+3],data=new Float32Array(
-3*rows*columns);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3)data.set(subtract2(this.local(level,from[0]+
-j-1,from[1]+i-1),middle),n);return{middle,part:{data,shape:[rows,columns,3]}}}};function placesOf(header){let{formula,mesh}=header;
-if(!formula)return null;let grid2=new Grid(header,formula);return(level,row2,column)=>{let shape2=grid2.shape(level),corner=far=>grid2.
-local(level,Math.min((row2+far)*mesh.tileCells,shape2[0]-1),Math.min((column+far)*mesh.tileCells,shape2[1]-1)),[low,high]=[
-corner(0),corner(1)],cell=Math.hypot(...subtract2(grid2.local(level,0,1),grid2.local(level,0,0))),own=low.map((x,k)=>.5*
-(x+high[k])),{center,frame}=header.geometry;return[...[0,1,2].map(k=>center[k]+own.reduce((sum,x,m)=>sum+frame[3*m+k]*x,
-0)),.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var FormulaSource=class{hasSteps=!0;atOnce=2;header;grid;parameters={};state="";constructor(header,formula){
-this.header=header,this.grid=new Grid(header,formula),this.follow(header.settings)}follow(settings){let own=Object.entries(
-settings).filter(([name])=>name.startsWith(PARAMETER));this.parameters=Object.fromEntries(own.map(([name,value])=>[name.
-slice(PARAMETER.length),Number(value)]));let before=this.state;return this.state=JSON.stringify([this.header.formula,this.
-header.geometry,this.parameters]),before!==this.state}load=(key,steps)=>Promise.resolve(key?this.tile(key,steps):this.whole(
-steps));whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,
-from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
-return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
-shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
-start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
-w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
-{mesh,pyramid,geometry,slices,scalars}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("a formula comes withou\
-t its levels");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(
-at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.
-map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-
-from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),
-share=2**-grid2.doublings(level),longest=PATH_SHARE*pyramid.pathCells,lags=[...slices.lags.filter(lag=>lag<longest),longest],
-texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(
-shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.
-length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,
-nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.
-unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,
-steps,drawn,shape2,prefix),speeds=parts[1].data;return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.
-named(`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),
-this.named(`${prefix}mesh`,this.blocks(key,shape2,speeds,scalars.high-scalars.low)),...parts]}blocks(key,shape2,speeds,range){
-let{mesh,pyramid}=this.header,most=Math.log2(mesh.tileCells),[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
-size=2*(most+1)+PLACE3,data=new Float32Array(rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??
-1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],bend=0;for(let j=1;j<
-mesh.tileCells;j+=1)for(let i=1;i<mesh.tileCells;i+=1){let[y,x]=[row2*mesh.tileCells+j,column*mesh.tileCells+i];if(y>=shape2[0]-
-1||x>=shape2[1]-1)continue;let n=y*shape2[1]+x,across=by=>Math.abs(speeds[n-by]-2*speeds[n]+speeds[n+by]);bend=Math.max(
-bend,across(1)+across(shape2[1]))}let levels=Array.from({length:most+1},(_,level)=>level?bend*4**level/8/(range||1):0),where=place?.(
-key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set([...levels.map(()=>0),...levels,...where],block*size)}
-return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
-face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
-now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
-Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
-taker}want(jobs){this.jobs=jobs;let names=new Set(jobs.map(String));for(let[name,controller]of this.running)names.has(name)||
-(this.running.delete(name),controller.abort());this.next()}stop(){this.want([]),this.failed=new Failures}next(){for(let job of this.
-jobs){if(this.running.size>=(this.source()?.atOnce??AT_ONCE))return;!this.running.has(String(job))&&!this.failed.has(String(
-job))&&this.run(job)}}async run(job){let{taker}=this,source=this.source();if(!source)return;let[key,steps]=job,controller=new AbortController,
-{signal}=controller,has=part=>key?taker.tiles?.has(nameOf(key),part)??!1:taker.parts.has(part);this.running.set(String(job),
-controller);try{let parts=await source.load(key,steps,signal,has);if(!signal.aborted)for(let part of parts)taker.setPart(
-part)}catch(error){signal.aborted||this.fail(job,error)}signal.aborted||(this.running.delete(String(job)),this.failed.has(
-String(job))||(this.jobs=this.jobs.filter(other=>String(other)!==String(job))),this.next())}fail(job,error){let[key,steps]=job;
-this.failed.add(String(job)),setTimeout(()=>this.next(),FAILED_MS+SPARE_MS);let isAway=error.fault==="unreachable",name=key&&
-!isAway?nameOf(key):void 0;this.taker.lack(wordsOf(key?COARSE:ABSENT_STEP,error),name,steps)}};function wordsOf(what,error){
-let{fault,message=String(error),detail=""}=error;return console.warn(message,detail),fault==="other"?message:`${what}: ${message}`}
-var Requests=class{tiles;wholes;given;formula=null;constructor(source,taker){this.given=source,this.tiles=new Queue(()=>this.
-source,taker),this.wholes=new Queue(()=>this.source,taker)}get source(){return this.formula??this.given}get hasSteps(){return this.
-source?.hasSteps??!1}setHeader(header){this.stop(),this.formula=header.formula?new FormulaSource(header,header.formula):
-null}follow(settings){return this.formula?.follow(settings)??!1}open(){let{taker}=this.tiles;this.source?.open?.().catch(
-error=>taker.lack(wordsOf(ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.want(keys.map(key=>[key,steps]))}wantSteps(steps){
-let before=this.wholes.jobs.flatMap(([,some])=>some);if(steps.every(step=>before.includes(step)))return;let wanted=[...new Set(
-[...steps,...before])].slice(0,steps.length+SPARE_STEPS);this.wholes.want(wanted.map(step=>[null,[step]]))}stop(){this.tiles.
-stop(),this.wholes.stop()}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;limits;constructor(host,root){
 this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
 !1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
@@ -1746,45 +1764,68 @@ tile,`${each}/${step}`);let values=[...parts.keys()].filter(each=>isOfStep(each,
 this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.byteLength;bytes+=scene?.tracedBytes??0,bytes>
 (this.host.options.source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
 tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
-part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};function placedCamera({geometry,limits,earth},first,nodes,aspect){let state=firstLook(geometry,limits,first,nodes,aspect);
-return new Camera(state,limits,geometry.planar,aspect,earth&&!earth.map?earth.radius:0)}function viewState({header,camera,
-anchor,player,rows},shown,density){let{geometry,constants}=header,focus=camera.state.focal_point,local=toFrame(geometry.
-frame,subtract2(focus,geometry.center)),range=constants.anchorRange*2*camera.height,isFar=v2=>v2.some(c=>Math.abs(c)>range);
-return{focus,anchor:isFar(subtract2(local,anchor))?isFar(local)?local:[0,0,0]:anchor,eye:camera.eye,between:shown[2],time:player.
-timeOf(shown),clock:player.clock,density,pixel:2*camera.height/Math.max(rows*density,1)}}var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var WebGL2Painter=class{scene=null;tiles=null;shown=null;view;renderer;next=[];constructor(view){this.view=view,this.renderer=
+new ProgressiveRenderer(view,this),!view.graphics.gl&&view.panel.fail("This browser has no WebGL2, which the picture is \
+drawn with.","Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}open(header){let{
+view}=this;this.leave(),this.scene=new Scene(view.graphics,header,view.parts),this.tiles=new Tiles(view,this.scene)}leave(){
+this.tiles?.dispose(),this.scene?.dispose(),this.tiles=this.scene=null}dispose(){this.leave(),this.renderer.dispose()}restart(cameraOnly){
+this.renderer.restart(cameraOnly)}resize(width,height){this.renderer.resize(width,height)}refine(){this.renderer.refine()}arrange(shown){
+let scenes2=this.tiles?.arrange(shown)??[];return this.view.root.dataset.tiles=String(this.tiles?.pending??0),scenes2}get smooth(){
+let{header,options}=this.view;return options.smooth!==void 0||!header?options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get lacking(){
+let[before,after]=this.view.player.moment;return this.scene?.missing(before,after)??[]}missing(steps){return[...new Set(
+steps.flatMap(step=>this.scene?.lacking(step)??[]))]}make(steps,until){return this.next=steps,!this.missing(steps).length&&
+!!this.scene?.make(steps,until)}available(until){let{view,scene,shown,lacking}=this,{header,player}=view;if(!header||!scene)
+return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.slices.steps):[],steps=this.
+missing([moment[0],moment[1],...this.next,...ahead]);steps.length&&view.requests.hasSteps&&!view.options.isComing?.()&&view.
+requests.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until);return view.root.dataset.lacking=
+String(lacking.length||+!isMade),view.panel.wait(lacking,isMade,this.renderer.leavesOut),isMade&&String(moment.slice(0,2))!==
+String(shown?.slice(0,2))&&(view.trim(),view.change()),isMade?this.shown=moment:(lacking.length||view.request(),shown&&scene.
+isMade(shown.slice(0,2))?shown:null)}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(
+header,this.view.settings,isClose);return this.view.graphics.programs.get(vertex,fragment,...variant)}isClose(header){let{
+view}=this;if(!view.camera)return!1;let seen=view.view([0,0,0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.
+header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(part,view.settings,seen))}frame(now,until){let{view,scene}=this,
+{graphics,header}=view;if(graphics.isLost||!graphics.gl||!view.isVisible||!header||!scene||view.canvas.width<2)return;this.
+next=[],view.advance(now);let shown=this.available(until);view.camera||view.place();let program=this.program(header);if(scene.
+prepare(),!shown||!view.camera)return;if(program.error)return view.panel.fail("The shader does not compile with this gra\
+phics driver.",program.error);if(!program.ready||!scene.isReady(view.settings))return view.request();let isComplete=!view.
+sharp&&this.renderer.draw(program,shown,until);isComplete&&(scene.pickers,header.slices.critical&&this.program(header,!0)),
+view.painted(isComplete)}get canPick(){let{scene,view}=this,{graphics}=view;return!!scene&&!graphics.isLost&&!!graphics.
+gl&&scene.pickers.every(({ready})=>ready)}find(x,y){let{tiles,shown,view}=this,{camera,canvas}=view;if(!tiles?.layers.length||
+!camera||!shown)return null;let{anchor}=view.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,
+canvas},x,y)}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;held=new HeldParts(
-this.graphics);parts=this.held.all;header=null;settings={};scene=null;tiles=null;camera=null;sharp=!1;isVisible=!0;shown=null;together=[
-this];renderer;busyUntil=0;isPainted=!0;firstCamera=null;keptCamera=null;next=[];constructor(element,options={}){this.options=
-options,this.requests=new Requests(options.source??null,this);let{root}=this;root.className="flowtex",root.tabIndex=0,Object.
-assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.setAttribute("data-lm-suppress-shortcuts","tr\
-ue"),root.setAttribute("role","application"),this.renderer=new ProgressiveRenderer(this),this.panel=new Panel(this),element.
-append(root),this.pointers=new Pointers(this),this.graphics.users.add(this),this.observe(),!this.graphics.gl&&!options.streamed&&
-this.panel.failWithout()}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.panel.arrange()),
-root),lifetime.observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(entries=>{this.
-isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,root),lifetime.
-listen(document,"visibilitychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){let{objects,
-users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,frames:this.renderer.frames}}dispose(){this.
-lifetime.isOver||(this.player.playing=!1,this.lifetime.end(),this.requests.stop(),this.tiles?.dispose(),this.tiles=null,
-this.scene?.dispose(),this.scene=null,this.held.clear(),this.graphics.leave(this),this.renderer.dispose(),this.root.remove())}setHeader(header,keepsCamera=!1){
-if(header.format!==FORMAT){let fault=`The scene has format ${header.format}, and this client reads format ${FORMAT}.`;return this.
-panel.fail(fault,"Use the client of the flowtex that made the scene.")}this.requests.stop();let old=this.header;if(old?.
-generation!==void 0&&old.generation===header.generation)return this.recolour(coloursOf(header));old&&this.holdDraft(STEADY_MS),
-this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.requests.setHeader(
-header),this.makeScene(header);let isElsewhere=!old||!isSamePlace(old.geometry,header.geometry);isElsewhere&&(this.keptCamera=
-old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.camera]=[this.keptCamera?null:header.camera,null]),old&&old.
-generation!==header.generation&&this.held.clear(name=>isElsewhere&&!keepsCamera||name.includes("/")),this.panel.build(),
-this.resize(),this.change()}recolour(colours){if(this.header){Object.assign(this.header,colours);for(let name of["scalar\
-s","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}}chooseColours(choice){
-if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
-let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}makeScene(header){
-this.tiles?.dispose(),this.scene?.dispose(),!this.options.streamed&&(this.scene=new Scene(this.graphics,header,this.parts),
-this.tiles=new Tiles(this,this.scene))}setPart(part){let{name}=part,tile=tilePart(name);if(tile)return void this.tiles?.
-setPart(tile[0],{...part,name:tile[1]});this.held.set(part)&&(this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.
-recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change())}trim(){this.held.trim(this.
-header,this.options.source,this.player.moment.slice(0,2))}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
-settings[name]===value)||(Object.assign(this.settings,settings),this.requests.follow(this.settings)&&this.renew(),this.panel.
-update(),this.change())}renew(){this.held.clear(name=>/^(flow|scalars)\//.test(name)),this.requests.stop(),this.header&&
-this.makeScene(this.header),this.requests.wantSteps(this.missing(this.player.moment.slice(0,2)))}followSetting(name,value){
+this.graphics);parts=this.held.all;header=null;settings={};camera=null;sharp=!1;frames=0;isVisible=!0;together=[this];painter;page;isOnPage=!1;busyUntil=0;firstCamera=null;keptCamera=null;constructor(element,options={}){
+this.options=options,this.requests=new Requests(options.source??null,this);let{root}=this;root.className="flowtex",root.
+tabIndex=0,Object.assign(root.dataset,{sharp:"false",frames:"0",tiles:"0",lacking:"0"}),root.setAttribute("data-lm-suppr\
+ess-shortcuts","true"),root.setAttribute("role","application"),this.panel=new Panel(this);let make=options.painter??(view=>new(options.
+streamed?StreamedPainter:WebGL2Painter)(view));this.painter=make(this),element.append(root),this.page=new Ground(root,this.
+lifetime,()=>this.isOnPage&&this.recolour({background:null})),this.pointers=new Pointers(this),this.graphics.users.add(this),
+this.observe()}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.panel.arrange()),root),lifetime.
+observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(entries=>{this.isVisible=entries[entries.
+length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,root),lifetime.listen(document,"visibili\
+tychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){let{objects,users}=this.graphics;
+return{...this.lifetime.stats(),objects,users:users.size,frames:this.frames}}dispose(){this.lifetime.isOver||(this.player.
+playing=!1,this.lifetime.end(),this.requests.stop(),this.painter.dispose?.(),this.held.clear(),this.graphics.leave(this),
+this.canvas.width=this.canvas.height=0,this.root.remove())}setHeader(header,keepsCamera=!1){if(header.format!==FORMAT){let fault=`\
+The scene has format ${header.format}, and this client reads format ${FORMAT}.`;return this.panel.fail(fault,"Use the cl\
+ient of the flowtex that made the scene.")}this.requests.stop();let old=this.header;if(old?.generation!==void 0&&old.generation===
+header.generation)return this.recolour(coloursOf(header));old&&this.holdDraft(STEADY_MS),header={...header,...this.grounded(
+header)},this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),this.requests.
+setHeader(header),this.painter.open?.(header);let isElsewhere=!old||!isSamePlace(old.geometry,header.geometry);isElsewhere&&
+(this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.camera]=[this.keptCamera?null:header.camera,
+null]),old&&old.generation!==header.generation&&this.held.clear(name=>isElsewhere&&!keepsCamera||name.includes("/")),this.
+panel.build(),this.resize(),this.change()}recolour(changes){if(!this.header)return;let colours=this.grounded(changes);Object.
+assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.
+panel.showLegend(),this.change()}grounded(colours){return this.page.update(),colours.background===void 0?colours:(this.isOnPage=
+colours.background===null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){if(this.options.
+onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,
+part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){let{
+name}=part,tile=tilePart(name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});this.held.set(part)&&
+(this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&
+this.panel.showLegend(),this.change())}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(0,
+2))}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.
+settings,settings),this.requests.follow(this.settings)&&this.renew(),this.panel.update(),this.change())}renew(){this.held.
+clear(name=>/^(flow|scalars)\//.test(name)),this.requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){
 name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
 this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?
 copyOf(state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.
@@ -1806,50 +1847,28 @@ varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.
 this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.
 playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??
 this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=performance.now()+duration}get isHeld(){
-return performance.now()<this.busyUntil}change(cameraOnly=!1){this.renderer.restart(cameraOnly),this.card.draw(),this.panel.
-showAxes(),this.setSharp(!1),this.request()}refine(){this.renderer.refine(),this.setSharp(!1),this.request()}arrange(shown){
-let scenes2=this.tiles?.arrange(shown)??[];return this.root.dataset.tiles=String(this.tiles?.pending??0),scenes2}draw(){
-this.frame(performance.now(),performance.now()+FRAME_MS)}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.
-dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.
-isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.
-stage,[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));width===this.canvas.width&&height===
-this.canvas.height||(this.renderer.resize(width,height),this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.
-state,this.camera.start)&&this.place()),this.change())}get smooth(){let{header}=this;return this.options.smooth!==void 0||
-!header?this.options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get ratio(){return this.canvas.height/Math.max(
-this.stage.clientHeight,1)}lost(){this.scene=null,this.header&&this.makeScene(this.header),this.setSharp(!1)}get lacking(){
-let[before,after]=this.player.moment;return this.scene?.missing(before,after)??[]}available(until){let{header,scene,player,
-shown,lacking}=this;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+
-n)%header.slices.steps):[],steps=this.missing([moment[0],moment[1],...this.next,...ahead]),{isComing}=this.options;steps.
-length&&this.requests.hasSteps&&!isComing?.()&&this.requests.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.
-slice(0,2),until);return this.root.dataset.lacking=String(lacking.length||+!isMade),this.panel.wait(lacking,isMade,this.
-renderer.leavesOut),isMade&&String(moment.slice(0,2))!==String(shown?.slice(0,2))&&(this.trim(),this.change()),isMade?this.
-shown=moment:(lacking.length||this.request(),shown&&scene.isMade(shown.slice(0,2))?shown:null)}lack(reason,tile,steps=[]){
-tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}missing(steps){return[...new Set(steps.flatMap(step=>this.
-scene?.lacking(step)??[]))]}frame(now,until){if(this.options.streamed)return this.wait(now);if(!(this.lifetime.isOver||this.
-graphics.isLost||!this.graphics.gl||!this.isVisible)&&!(!this.header||!this.scene||this.canvas.width<2))try{this.advance(
-now),this.drawPicture(this.header,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(
-error))}}wait(now){this.camera||this.place(),this.playing&&this.isPainted&&this.advance(now)}paint(picture,left,width,isSharp){
-this.renderer.show(picture,left,width,isSharp),this.isPainted=!0,this.root.dataset.drawn="true",this.root.dataset.frames=
-String(this.renderer.frames),this.panel.wait([],!0,!isSharp),isSharp&&this.panel.clear(),this.setSharp(isSharp&&!this.playing),
-this.playing&&this.request()}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(
-header,this.settings,isClose);return this.graphics.programs.get(vertex,fragment,...variant)}isClose(header){if(!this.camera)
-return!1;let view=this.view([0,0,0],this.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??[];return(tiles.
-length?tiles:[header]).some(part=>isNear(part,this.settings,view))}drawPicture(header,until){let shown=this.available(until);
-this.camera||this.place();let program=this.program(header);if(this.scene?.prepare(),!shown||!this.camera)return;if(program.
-error)return this.panel.fail("The shader does not compile with this graphics driver.",program.error);if(!program.ready||
-!this.scene?.isReady(this.settings))return this.request();let isComplete=!this.sharp&&this.renderer.draw(program,shown,until);
-this.root.dataset.drawn="true",isComplete&&(this.root.dataset.frames=String(this.renderer.frames),this.panel.clear(),this.
-scene.pickers,header.slices.critical&&this.program(header,!0),this.setSharp(!this.playing)),this.sharp||this.request()}advance(now){
-let{player,options}=this,isMade=steps=>(this.next=steps,options.streamed?!0:!this.missing(steps).length&&!!this.scene?.make(
-steps,now));this.next=[],this.isPainted=!1,!(!player.playing||!player.advance(now,isMade))&&(player.varies?options.onTime?.(
-player.time):options.onClock?.(player.clock),this.panel.tick(),this.renderer.restart(),this.setSharp(!1))}view(shown,density){
-let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is nothing to look at yet");let anchor=scene?.
-anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},shown,density)}get canPick(){
-let{scene,graphics}=this;return!!scene&&!graphics.isLost&&!!graphics.gl&&scene.pickers.every(({ready})=>ready)}point(x,y){
-return this.find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
-let{tiles,camera,shown,canvas}=this;if(!tiles?.layers.length||!camera||!shown||!this.canPick)return null;let{anchor}=this.
-view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,canvas},x,y)}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
-controls",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
+return performance.now()<this.busyUntil}change(cameraOnly=!1){this.painter.restart?.(cameraOnly),this.card.draw(),this.panel.
+showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.setSharp(!1),this.request()}draw(){this.
+frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.dataset.drawn="true",isComplete&&(this.
+frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear(),this.setSharp(!this.playing)),this.sharp||this.
+request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.
+update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){
+let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].
+map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;
+painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=
+this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),this.change()}get ratio(){return this.canvas.height/
+Math.max(this.stage.clientHeight,1)}lost(){this.header&&this.painter.open?.(this.header),this.setSharp(!1)}get scene(){return this.
+painter.scene??null}get tiles(){return this.painter.tiles??null}get shown(){return this.painter.shown??null}get lacking(){
+return this.painter.lacking??[]}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){
+if(!this.lifetime.isOver)try{this.painter.frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could \
+not be drawn.",String(error))}}advance(now){let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;
+!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),
+this.panel.tick(),painter.restart?.(!1),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||
+!camera)throw new Error("there is nothing to look at yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,
+anchor,player,rows:this.stage.clientHeight},shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.
+find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
+return this.canPick?this.painter.find?.(x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+controls",onAxes:"axes",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
 height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.
 map(({source})=>source),isSame=this.shown.length===scenes2.length&&this.shown.every(({source},n)=>source===sources[n]);if(this.
@@ -1859,8 +1878,8 @@ viewers)requests?.open()}open(count2,own=()=>({})){this.dispose();for(let n=0;n<
 follows:this.first}:{},viewer=new Viewer(this,{...this.options,...this.reports(n),...own(n),...follower});Object.assign(
 viewer.root.style,{flex:"1 1 0",minWidth:"0"}),this.viewers.push(viewer)}for(let viewer of this.viewers)viewer.together=
 this.viewers}paint(picture,gap,isSharp){let count2=this.viewers.length,width=(picture.width-(count2-1)*gap)/count2;this.
-viewers.forEach((viewer,n)=>viewer.paint(picture,n*(width+gap),width,isSharp))}dispose(){for(let viewer of this.viewers)
-viewer.dispose();this.viewers=[]}reports(n){let tell=(name,...values)=>{this.options[name]?.(...values);let detail=values.
+viewers.forEach((viewer,n)=>viewer.painter.show?.(picture,n*(width+gap),width,isSharp))}dispose(){for(let viewer of this.
+viewers)viewer.dispose();this.viewers=[]}reports(n){let tell=(name,...values)=>{this.options[name]?.(...values);let detail=values.
 length>1?values:values[0];this.dispatchEvent(new CustomEvent(EVENTS[name],{detail}))},names=Object.keys(EVENTS),told=Object.
 fromEntries(names.map(name=>[name,(...values)=>tell(name,...values)])),follow=call=>{for(let[m,other]of this.viewers.entries())
 m!==n&&call(other)};return{...told,onCamera:camera=>{follow(other=>other.setCamera(camera)),tell("onCamera",camera)},onTime:time=>{
@@ -1959,25 +1978,21 @@ let{headers,parts}=await handedOver(scene,scenes),apart=digest=>handedOver(scene
 known=new Map,result2=headers.map(header=>({header:{...headers[0],...header},parts:[]})),read=async(info,text)=>partOfText(
 info,text??await apart(info.digest));return await Promise.all(parts.map(async([view,info,text])=>{let part=known.get(info.
 digest)??read(info,text);known.set(info.digest,part),result2[view].parts.push({...await part,name:info.name})})),result2}
-function groundAround(element){for(let at=element.parentElement;at;at=at.parentElement){let[r,g,b,a=1]=(getComputedStyle(
-at).backgroundColor.match(/[\d.]+/g)??[]).map(Number);if(a>0)return[r/255,g/255,b/255]}return[1,1,1]}var LiveView=class{element;explanation;view=null;isWanted=!1;isLoading=!1;constructor(element){
-this.element=element,this.explanation=element.closest(EXPLAINED)&&new Explanation(element);let within=heights=>({rootMargin:`${100*
-heights}% 0%`}),observe=(heights,call)=>new IntersectionObserver(([entry])=>call(entry.isIntersecting),within(heights)).
-observe(element);observe(LOADED_HEIGHTS,isNear2=>isNear2&&void this.show()),observe(KEPT_HEIGHTS,isNear2=>isNear2||this.
-leave())}async show(){if(this.isWanted=!0,this.view||this.isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await fetchScene(
-element);if(!this.isWanted)return;let ground=groundAround(element);for(let{header}of data)header.background=ground;let{explanation}=this,
-view=this.view=new FlowtexView;view.options={guarded:!0,label:element.dataset.label,...explanation?.options},element.append(
-view),view.scenes=data,explanation?.attach(view),this.watch()}catch(error){element.title=`This view is a picture only: ${error instanceof
-Error?error.message:error}`}finally{this.isLoading=!1}}watch(){let{element}=this,look=()=>{if(element.querySelector('[da\
-ta-sharp="false"]'))return;seen.disconnect(),element.dataset.live="true";let isCalm=matchMedia("(prefers-reduced-motion:\
- reduce)").matches;"plays"in element.dataset&&!isCalm&&this.view?.first.play()},seen=new MutationObserver(look);seen.observe(
-element,{subtree:!0,attributeFilter:["data-sharp"]})}leave(){this.isWanted=!1,this.view&&(this.view.dispose(),this.view.
-remove(),this.view=null,delete this.element.dataset.live)}recolour(){let background=groundAround(this.element);for(let viewer of this.
-view?.viewers??[])viewer.recolour({background})}};function showLiveViews(){let elements=document.querySelectorAll(".flow\
-tex-live");if(!elements.length)return;window.flowtexScene=(name,scene)=>scenes.get(name)?.(scene),window.flowtexPart=(digest,text)=>texts.
-get(digest)?.(text);let views=Array.from(elements,element=>new LiveView(element)),recolour=()=>views.forEach(view=>view.
-recolour()),attributeFilter=["data-theme","class"];new MutationObserver(recolour).observe(document.documentElement,{attributeFilter}),
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change",recolour)}var Embedded=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(header,packed,known,texts2){this.header=
+var LiveView=class{element;explanation;view=null;isWanted=!1;isLoading=!1;constructor(element){this.element=element,this.
+explanation=element.closest(EXPLAINED)&&new Explanation(element);let within=heights=>({rootMargin:`${100*heights}% 0%`}),
+observe=(heights,call)=>new IntersectionObserver(([entry])=>call(entry.isIntersecting),within(heights)).observe(element);
+observe(LOADED_HEIGHTS,isNear2=>isNear2&&void this.show()),observe(KEPT_HEIGHTS,isNear2=>isNear2||this.leave())}async show(){
+if(this.isWanted=!0,this.view||this.isLoading)return;this.isLoading=!0;let{element}=this;try{let data=await fetchScene(element);
+if(!this.isWanted)return;for(let{header}of data)header.background=null;let{explanation}=this,view=this.view=new FlowtexView;
+view.options={guarded:!0,label:element.dataset.label,...explanation?.options},element.append(view),view.scenes=data,explanation?.
+attach(view),this.watch()}catch(error){element.title=`This view is a picture only: ${error instanceof Error?error.message:
+error}`}finally{this.isLoading=!1}}watch(){let{element}=this,look=()=>{if(element.querySelector('[data-sharp="false"]'))
+return;seen.disconnect(),element.dataset.live="true";let isCalm=matchMedia("(prefers-reduced-motion: reduce)").matches;"\
+plays"in element.dataset&&!isCalm&&this.view?.first.play()},seen=new MutationObserver(look);seen.observe(element,{subtree:!0,
+attributeFilter:["data-sharp"]})}leave(){this.isWanted=!1,this.view&&(this.view.dispose(),this.view.remove(),this.view=null,
+delete this.element.dataset.live)}};function showLiveViews(){let elements=document.querySelectorAll(".flowtex-live");if(elements.
+length){window.flowtexScene=(name,scene)=>scenes.get(name)?.(scene),window.flowtexPart=(digest,text)=>texts.get(digest)?.(
+text);for(let element of elements)new LiveView(element)}}var Embedded=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(header,packed,known,texts2){this.header=
 header,this.known=known,this.texts=texts2;for(let part of packed){let[{name,digest},text]=part,tile=tilePart(name)?.[0];
 tile?this.tiles.set(tile,[...this.tiles.get(tile)??[],part]):this.parts.push(part),tile&&text&&texts2.set(digest,text)}}load=(key,steps)=>{
 let needed=((key&&this.tiles.get(nameOf(key)))??[]).filter(([{name}])=>{let part=tilePart(name)?.[1]??"",step=stepOf(part),
@@ -2031,32 +2046,34 @@ r")??!0,onColours:changes=>model.send({kind:"appearance",changes})},view.open(co
 addEventListener(name,event=>take(event.detail)),slowly=(name,wait)=>{hear(name,throttled((call,delay)=>view.first.lifetime.
 later(call,delay),wait,value=>this.send(name,value)))};return slowly("camera",CAMERA_MS),slowly("time",TIME_MS),slowly("\
 clock",TIME_MS),hear("playing",playing=>this.send("playing",playing)),hear("point",point=>this.send("point",point)),hear(
-"setting",([name,value])=>this.send(name,value)),hear("controls",shown=>this.send("bar",shown)),hear("frame",()=>this.planFrame()),
-view.viewers}send(name,value){this.sent.set(name,JSON.stringify(value)),this.model.set(name,value),this.model.save_changes()}planFrame(){
-let{lifetime}=this.first;lifetime.cancel(this.frameTimer);let wait=this.hasSentFrame?STILL_MS2:0;this.frameTimer=lifetime.
-later(()=>{this.sendFrame()},wait)}async sendFrame(){let{first,viewers}=this;if(!viewers.every(({sharp})=>sharp))return;
-let{dataset}=first.root,{frames}=dataset;this.hasSentFrame=!0;let data=await(await pictureOf(viewers,1/first.ratio,STILL_FORMAT)).
-arrayBuffer();first.lifetime.isOver||(this.model.send({kind:"frame"},void 0,[data]),dataset.still=frames)}becomeLive(){let{
-root}=this.first;if(root.dataset.live||root.dataset.failed)return;root.dataset.live="true";let still=`[data-flowtex~="${String(
-this.model.get("_key"))}"]`;this.sheet.insertRule(`${still}, :is(.jp-OutputArea-child, .output_area):has(> * > ${still})\
- { display: none !important }`)}listen(event,call){this.handlers.some(([other])=>other===event)||(this.handlers.push([event,
-call]),this.model.on(event,call))}follow(name,take){this.listen(`change:${name}`,()=>{let value=this.model.get(name);this.
-sent.get(name)!==JSON.stringify(value)&&take(value),this.sent.delete(name)})}connect(){let{viewers,first}=this;this.listen(
-"msg:custom",(message,buffers)=>{hasParts(message)&&this.take(opened(message,buffers)),message?.kind==="loaded"&&this.sources[message.
-view??0]?.end(message),message?.kind==="error"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.
-forEach((_,n)=>this.listen(`change:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),
-this.follow("camera",value=>{let camera=cameraOf(value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.
-follow("time",time=>viewers.forEach(viewer=>viewer.setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.
-setClock(Number(clock)))),this.follow("playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.
-panel.toggle(!!shown))}resize(){let[width,height]=this.model.get("size")??[0,0],{style,parentElement}=this.view;style.width=
-width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX2}px`,parentElement?.classList.toggle("flowtex-room",!width)}takeHeader(n){
-let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??[],values=rows.map(row2=>[
-row2.name,model.get(row2.name)??row2.default]),now={shaders:model.get("_shaders")[n],settings:Object.fromEntries(values),
-camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0};this.viewers[n].setHeader({...header,
-...now},!0);for(let delivery of this.early.splice(0))this.take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.
-viewers)viewer.followSetting(name,value)})}take(delivery){let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.
-header?viewer.header.generation??0:-1;if(delivery.generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.
-generation!==generation&&name.includes("/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.
-lacking.filter(name=>!isOld(name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,
-view:delivery.view})}dispose(){for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.
-adoptedStyleSheets=document.adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};document.readyState==="loading"?document.addEventListener("DOMContentLoaded",showLiveViews):showLiveViews();return __toCommonJS(core_exports);})();
+"setting",([name,value])=>this.send(name,value)),hear("controls",shown=>this.send("bar",shown)),hear("axes",kind=>this.send(
+"axes",kind)),hear("frame",()=>this.planFrame()),view.viewers}send(name,value){this.sent.set(name,JSON.stringify(value)),
+this.model.set(name,value),this.model.save_changes()}planFrame(){let{lifetime}=this.first;lifetime.cancel(this.frameTimer);
+let wait=this.hasSentFrame?STILL_MS2:0;this.frameTimer=lifetime.later(()=>{this.sendFrame()},wait)}async sendFrame(){let{
+first,viewers}=this;if(!viewers.every(({sharp})=>sharp))return;let{dataset}=first.root,{frames}=dataset;this.hasSentFrame=
+!0;let data=await(await pictureOf(viewers,1/first.ratio,STILL_FORMAT)).arrayBuffer();first.lifetime.isOver||(this.model.
+send({kind:"frame"},void 0,[data]),dataset.still=frames)}becomeLive(){let{root}=this.first;if(root.dataset.live||root.dataset.
+failed)return;root.dataset.live="true";let still=`[data-flowtex~="${String(this.model.get("_key"))}"]`;this.sheet.insertRule(
+`${still}, :is(.jp-OutputArea-child, .output_area):has(> * > ${still}) { display: none !important }`)}listen(event,call){
+this.handlers.some(([other])=>other===event)||(this.handlers.push([event,call]),this.model.on(event,call))}follow(name,take){
+this.listen(`change:${name}`,()=>{let value=this.model.get(name);this.sent.get(name)!==JSON.stringify(value)&&take(value),
+this.sent.delete(name)})}connect(){let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&
+this.take(opened(message,buffers)),message?.kind==="loaded"&&this.sources[message.view??0]?.end(message),message?.kind===
+"error"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.forEach((_,n)=>this.listen(`change:${HEADERS[n]}`,
+()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",value=>{let camera=cameraOf(value);
+camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.forEach(viewer=>viewer.setTime(
+Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(clock)))),this.follow("playing",
+playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(!!shown)),this.follow("axes",kind=>viewers.
+forEach(({panel})=>panel.chooseAxes(kind)))}resize(){let[width,height]=this.model.get("size")??[0,0],{style,parentElement}=this.
+view;style.width=width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX2}px`,parentElement?.classList.toggle("flowt\
+ex-room",!width)}takeHeader(n){let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??
+[],values=rows.map(row2=>[row2.name,model.get(row2.name)??row2.default]),now={shaders:model.get("_shaders")[n],settings:Object.
+fromEntries(values),camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0,axes:model.
+get("axes")??null};this.viewers[n].setHeader({...header,...now},!0);for(let delivery of this.early.splice(0))this.take(delivery);
+for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,value)})}take(delivery){
+let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.header.generation??0:-1;if(delivery.
+generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.generation!==generation&&name.includes(
+"/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.lacking.filter(name=>!isOld(
+name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){
+for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.adoptedStyleSheets=document.
+adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};document.readyState==="loading"?document.addEventListener("DOMContentLoaded",showLiveViews):showLiveViews();return __toCommonJS(core_exports);})();

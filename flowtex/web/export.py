@@ -37,7 +37,7 @@ from flowtex.web import preview
 from flowtex.web.assets import asset, client_script
 from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
 from flowtex.web.source import TileSource
-from flowtex.web.view import WebView, browser_options, web_views
+from flowtex.web.view import WebView, browser_options, checked_axes, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75
@@ -90,6 +90,7 @@ def export(
     steps: int | None = None,
     title: str | None = None,
     store: str | None = None,
+    axes: str | None = None,
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
@@ -119,6 +120,9 @@ def export(
         Address at which browsers find the store that ``mesh`` names, such as
         ``"https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"``, or from the page on,
         ``"./flow.zarr"``. Whoever opens the page has to be allowed to read it.
+    axes
+        What stands at the borders of the picture: ``"ticks"`` of the coordinates, a ``"scale"``
+        bar, or ``"none"``; by default ticks where the surface is flat or a map.
     announce
         Called with the estimated size in bytes and the number of steps before the work begins.
     {options}
@@ -147,7 +151,8 @@ def export(
     views = web_views(shown, arguments, steps=steps)
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        return write_page(views, path, camera=camera, title=title, store=store, announce=announce)
+        look = {"camera": camera, "title": title, "axes": checked_axes(axes)}
+        return write_page(views, path, store=store, announce=announce, **look)
     finally:
         for view in views:
             view.close()
@@ -251,16 +256,19 @@ def page_pieces(
     time: float | None = None,
     clock: float = 0.0,
     title: str | None = None,
+    axes: str | None = None,
     picture: bytes | None = None,
     link: StoreLink | None = None,
 ) -> Iterator[str]:
     """Give the text of a page piece by piece; each array is packed when it is reached.
 
-    Camera, time and clock are those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG
-    that is shown until the page has drawn, made here where there is none. ``link`` tells where
-    the rest is, and ``scenes`` are then of :func:`linked_data`.
+    ``axes`` is that of :func:`export`. Camera, time and clock are those of
+    :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page has drawn,
+    made here where there is none. ``link`` tells where the rest is, and ``scenes`` are then of
+    :func:`linked_data`.
     """
-    headers = _headers(views, scenes, link, title, camera=camera, time=time, clock=clock)
+    now = {"camera": camera, "time": time, "clock": clock}
+    headers = _headers(views, scenes, link, title, axes=axes, **now)
     if picture is None:
         picture = preview.preview_png(
             views[0], PREVIEW, camera=headers[0]["camera"], time=time, coarser=1
@@ -302,6 +310,8 @@ def _headers(
     scenes: Sequence[ClientData],
     link: StoreLink | None,
     title: str | None,
+    *,
+    axes: str | None = None,
     **shown: Any,
 ) -> list[Header]:
     headers = [
@@ -310,6 +320,8 @@ def _headers(
     ]
     for n, header in enumerate(headers):
         header["name"] = str(title or "") or header["name"]
+        if axes is not None:
+            header["axes"] = axes
         if link is not None:
             header["store"] = store_header(views[n], scenes[n], link)
         if len(views) > 1:
@@ -325,7 +337,11 @@ def _values(
     headers: Sequence[Header], title: str, picture: bytes, link: StoreLink | None
 ) -> dict[str, str]:
     """Return what the page's template asks for."""
-    background = "#" + "".join(f"{round(255 * c):02x}" for c in headers[0]["background"])
+    ground = headers[0]["background"]
+    # A browser has a colour of its own for light and for dark pages.
+    background = (
+        "Canvas" if ground is None else f"rgb({' '.join(f'{255 * c:.0f}' for c in ground)})"
+    )
     opened = "" if link is None else "flowtexStore.open"
     client = f"{client_script(with_store=link is not None)}\nflowtex.openPage({opened});\n"
     script = "\n" + client.replace("</script", r"<\/script").replace("<!--", r"<\!--")

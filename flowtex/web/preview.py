@@ -35,6 +35,8 @@ NODES, SAMPLES = 3_000, 17
 WIDEST_SPACING = 0.7
 #: Pixels of the picture by one that NumPy draws, along each side.
 COARSER = 2
+#: Ground that is not seen where it is that of the page around.
+WHITE = (1.0, 1.0, 1.0)
 
 
 def preview_png(
@@ -66,7 +68,8 @@ def preview_png(
     palette[corner : corner + 3] = picture[0, 0].tolist()  # the ground keeps its very colour
     reduced.putpalette(palette)
     file = io.BytesIO()
-    reduced.save(file, "PNG", optimize=True)
+    is_page = scene.colours.background is None and (picture[0, 0] == 255).all()
+    reduced.save(file, "PNG", optimize=True, **({"transparency": corner // 3} if is_page else {}))
     return file.getvalue()
 
 
@@ -99,7 +102,7 @@ def _drawn(
         view=ViewState(between=between),
         steps=steps,
     )
-    ground = scene.colours.background
+    ground = scene.colours.background or WHITE
     drawn = picture.rgb(_colour(scene, picture, steps, between), ground)
     opacity = scene.colours.opacity
     if opacity == 1:

@@ -9,6 +9,7 @@ from typing import Any
 
 from flowtex._util.arguments import checked_count
 from flowtex._util.colours import colour_table, rgb
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
@@ -16,6 +17,9 @@ from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
 from flowtex.tiles import Pyramid
+
+#: What may stand at the borders of a picture: coordinates, the length of a bar, or nothing.
+AXES = ("ticks", "scale", "none")
 
 
 class WebView:
@@ -31,7 +35,7 @@ class WebView:
         self,
         scene: Scene,
         *,
-        background: Any = "white",
+        background: Any | None = None,
         steps: int | None = None,
         own: Collection[str] = (),
         bodies: Bodies | None = None,
@@ -40,7 +44,7 @@ class WebView:
         self.own_settings = tuple(name for name in own if name in TABLE)
         self.own_appearance = tuple(name for name in own if name not in TABLE)
         self._times = even_steps(len(scene.field.times), steps)
-        self._background = rgb(background)
+        self._background = None if background is None else rgb(background)
 
     @property
     def field(self) -> FlowField:
@@ -91,7 +95,9 @@ class WebView:
         self.scene.close()
 
 
-def colours_of(scene: Scene, field: FlowField, background: tuple[float, float, float]) -> Colours:
+def colours_of(
+    scene: Scene, field: FlowField, background: tuple[float, float, float] | None
+) -> Colours:
     """Return the colours of a scene on its field, or on a coarser form of it."""
     look, name = scene.appearance, scene.scalar_name
     low, high = scene.scalar_limits
@@ -136,6 +142,14 @@ def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
             }
         )
     return tuple(choices)
+
+
+def checked_axes(axes: Any) -> str | None:
+    """Return what stands at the borders of a picture, or ``None`` for what suits the surface."""
+    if axes is not None and axes not in AXES:
+        msg = f"axes is {axes!r}; expected {', '.join(map(repr, AXES))}, or None"
+        raise FieldError(msg)
+    return None if axes is None else str(axes)
 
 
 def browser_options(mesh: Any, **options: Any) -> tuple[Any, Options]:

@@ -28,7 +28,7 @@ from flowtex.settings import TABLE
 from flowtex.textures.images import load_image
 from flowtex.web.assets import client_module
 from flowtex.web.export import PREVIEW, page_text, write_page
-from flowtex.web.view import browser_options, web_views
+from flowtex.web.view import browser_options, checked_axes, web_views
 from flowtex.widget.display import Displayed
 from flowtex.widget.host import Host
 from flowtex.widget.panel import make_panel
@@ -70,6 +70,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         Width and height in pixels of the page; a width of 0 fills the cell.
     bar
         Whether the bar of controls is shown on the picture.
+    axes
+        What stands at the borders of the picture: ``"ticks"`` of the coordinates, a ``"scale"``
+        bar, or ``"none"``; ``None`` for ticks where the surface is flat or a map.
 
     Examples
     --------
@@ -94,6 +97,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     point = traitlets.Dict(allow_none=True, default_value=None).tag(sync=True, echo_update=False)
     size = SizeTrait().tag(sync=True)
     bar = traitlets.Bool(default_value=True).tag(sync=True)
+    axes = traitlets.Unicode(allow_none=True, default_value=None).tag(sync=True)
 
     @accepts_options(FieldOptions, Appearance, ViewOptions)
     def __init__(
@@ -105,6 +109,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         *,
         size: tuple[int, int] = (0, 400),
         bar: bool = True,
+        axes: str | None = None,
         **options: Any,
     ) -> None:
         """Make a widget from a mesh or a field.
@@ -114,7 +119,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         mesh
             What ``plotter.flowtex.add`` takes, or a plotter that has a flow texture: the widget
             then looks as the plotter does, with the other meshes and the labels on it.
-        size, bar
+        size, bar, axes
             As the attributes of these names.
         {options}
         **settings
@@ -144,6 +149,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             time=self.scene.time,
             size=size,
             bar=bar,
+            axes=axes,
             **dict(self.settings),
         )
         for number, header in enumerate(self._views.headers):
@@ -193,6 +199,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             Title of the page; the name of the field by default.
         """
         now: dict[str, Any] = {"camera": dict(self.camera), "time": self.time, "clock": self.clock}
+        now["axes"] = self.axes
         picture = self._picture(timeout_s=0.0)
         if path is None:
             return page_text(self._views.views, title=title, picture=picture, **now)
@@ -230,6 +237,13 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         if proposal["value"] == "image" and views is not None and views.first.image is None:
             raise TraitValueError(NO_IMAGE)
         return proposal["value"]
+
+    @traitlets.validate("axes")
+    def _check_axes(self, proposal: Any) -> str | None:
+        try:
+            return checked_axes(proposal["value"])
+        except FieldError as error:
+            raise TraitValueError(str(error)) from error
 
     @traitlets.validate("time")
     def _check_time(self, proposal: Any) -> float:

@@ -32,6 +32,7 @@ SIZE = {"width": 960, "height": 480}
 WATCH = Watch((240, 130, 600, 336), "RGB")
 #: The first view of the page.
 VIEW = "document.querySelector('.flowtex-views').first"
+AXE = Path(__file__).parents[2] / "client" / "node_modules" / "axe-core" / "axe.min.js"
 ADDRESS = re.compile(r"http://\S+").search
 
 
@@ -170,6 +171,31 @@ def test_what_has_the_focus_has_a_ring(page: Page) -> None:
             view = page.evaluate("() => document.activeElement.matches(':has(> *), .flowtex')")
             assert page.evaluate(rings) or view
     page.evaluate("() => document.activeElement.blur()")
+
+
+def test_axe_finds_nothing(page: Page) -> None:
+    """In light and dark, with all unfolded; that phones cannot zoom in is trame's own."""
+    if not AXE.exists():
+        pytest.skip("npm has not fetched the client's tools: sh tools/client.sh .venv/bin")
+    page.evaluate(AXE.read_text("utf-8"))
+    rules = "{ rules: { 'meta-viewport': { enabled: false } } }"
+
+    def faults() -> list[Any]:
+        found = page.evaluate(f"axe.run(document, {rules})")["violations"]
+        return [(fault["id"], [node["target"] for node in fault["nodes"]]) for fault in found]
+
+    page.add_style_tag(content="* { transition: none !important; animation: none !important }")
+    for _ in range(2):
+        controls(page)
+        assert faults() == []
+        page.locator("button[data-name=settings]").first.click()
+        before = count(page)
+        page.get_by_role("button", name="Light or dark").click()
+        settled(page, before)
+    page.get_by_role("button", name="Compare, save, share").click()
+    page.locator(".flowtex-panel").wait_for()
+    assert faults() == []
+    fold(page)
 
 
 def test_a_broken_file_is_told(page: Page) -> None:

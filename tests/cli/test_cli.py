@@ -362,11 +362,14 @@ def test_a_wrong_second_view_says_so(
 
 def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path: Path) -> None:
     page = tmp_path / "page.html"
-    code, out, err = run("export", gyre, "-o", page, "--samples", 9, "--title", "two gyres")
+    code, out, err = run(
+        "export", gyre, "-o", page, "--samples", 9, "--title", "two gyres", "--axes", "scale"
+    )
     assert (code, err) == (0, "")
     assert "about 1." in out or "about 0." in out
     assert f"{page.stat().st_size / 1e6:.2f} MB" in out
     assert "<title>two gyres</title>" in page.read_text(encoding="utf-8")
+    assert '"axes":"scale"' in page.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

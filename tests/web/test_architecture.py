@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit
 
 import pytest
 
@@ -14,6 +15,7 @@ import flowtex
 from flowtex.rendering.webgl.protocol import parts_file
 from flowtex.scene import Scene
 from flowtex.web.assets import client_module
+from flowtex.web.preview import preview_png
 from flowtex.web.view import WebView
 
 if TYPE_CHECKING:
@@ -27,7 +29,7 @@ PAGE = """<!doctype html><title>Example</title><div style="height: 300px" id="he
 
 
 @pytest.mark.browser
-@pytest.mark.parametrize("example", EXAMPLES, ids=["host", "source"])
+@pytest.mark.parametrize("example", EXAMPLES, ids=["host", "source", "painter"])
 def test_an_example_shows_a_flow(page: Page, example: str) -> None:
     view = WebView(Scene(flowtex.examples.double_gyre_field(shape=(21, 41))))
     view.scene.settings.samples = 5
@@ -37,10 +39,15 @@ def test_an_example_shows_a_flow(page: Page, example: str) -> None:
         "/flowtex.mjs": client_module().encode(),
         "/header": json.dumps(data.header(view.scene.settings)).encode(),
         "/parts/whole/": parts_file(data.surface() | data.step(0)),
+        "/parts/position/": parts_file(replace(data, traces=False).surface()),
     }
 
     def answer(route: Route) -> None:
-        path = urlsplit(route.request.url).path
+        path = unquote(urlsplit(route.request.url).path)
+        if path.startswith("/picture/"):
+            _, _, width, height, camera = path.split("/", 4)
+            size = (int(width), int(height))
+            files[path] = preview_png(view, size, camera=json.loads(camera))
         kind = "text/javascript" if path.endswith("mjs") else "text/html"
         route.fulfill(body=files[path], content_type=kind)
 

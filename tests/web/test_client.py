@@ -529,7 +529,7 @@ def test_a_view_without_a_scene_takes_all_without_an_error(client: ClientPage) -
       for (const name of commands) viewer[name]();
       viewer.lack("a reason", "0/0/0");
       viewer.setPart({ name: "tile/0/0/0/position", digest: "", data: new Float32Array(3) });
-      return [viewer.cameraState.position, viewer.playing, viewer.canPick, viewer.smooth,
+      return [viewer.cameraState.position, viewer.playing, viewer.canPick, viewer.painter.smooth,
         viewer.lacking, viewer.point(0, 0), viewer.ground(0, 0)];
     }"""
     told = client.page.evaluate(early, given)

@@ -22,6 +22,7 @@ from PIL import Image
 import flowtex
 from flowtex import examples
 from flowtex.camera import Camera
+from flowtex.errors import FieldError
 from flowtex.examples._double_gyre import nodes as nodes_of
 from flowtex.options import Options
 from flowtex.web.export import export
@@ -242,6 +243,31 @@ def test_colours_are_chosen_on_a_page(
     assert np.abs(drawn[3] - drawn[0])[inside].mean() < 1
     assert colours[0] == colours[3] != colours[1] == colours[2]
     assert said == []
+
+
+@pytest.mark.browser
+def test_a_page_has_its_own_ground_in_light_and_dark(page: Page, tmp_path: Path) -> None:
+    export(gyre(), tmp_path / "page.html", samples=5, axes="scale")
+    page.goto((tmp_path / "page.html").as_uri())
+    root = page.locator(COMPLETE)
+    root.wait_for()
+    corners = [pixels(page)[0, 0].tolist()]
+    assert root.get_attribute("data-axes") == "scale"
+    with acted(page):
+        page.emulate_media(color_scheme="dark")
+    corners.append(pixels(page)[0, 0].tolist())
+    ground = page.evaluate("() => getComputedStyle(document.body).backgroundColor")
+    assert corners == [[255] * 3, [18] * 3]
+    assert ground == "rgb(18, 18, 18)"
+    export(gyre(), tmp_path / "page.html", samples=5, background="navy")
+    page.goto((tmp_path / "page.html").as_uri())
+    root.wait_for()
+    assert pixels(page)[0, 0].tolist() == [0, 0, 128]
+
+
+def test_axes_that_there_are_not_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(FieldError, match=r"^axes is 'bar'; expected 'ticks', 'scale', 'none'"):
+        export(gyre(), tmp_path / "page.html", axes="bar")
 
 
 @pytest.mark.browser

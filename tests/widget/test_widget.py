@@ -608,6 +608,16 @@ def test_a_flow_that_does_not_fit_leaves_what_is_shown(make: Make) -> None:
     assert widget.scene.field is field
 
 
+def test_axes_are_named_or_refused(make: Make) -> None:
+    widget = make(axes="scale")
+    assert widget.axes == "scale"
+    with pytest.raises(ValueError, match=r"^axes is 'bar'; expected 'ticks'"):
+        widget.axes = "bar"
+    assert widget.axes == "scale"
+    assert '"axes":"scale"' in str(widget.to_html())
+    assert widget._header["background"] is None
+
+
 def test_opacity_and_legend(make: Make) -> None:
     widget = make(opacity=0.5, show_scalar_bar=False)
     assert widget._header["opacity"] == 0.5

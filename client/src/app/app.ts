@@ -1,7 +1,6 @@
 // The script of the page that trame serves, built into flowtex/app/ui/static/flowtex.js. trame loads it
 // as a plain script, and installs `flowtex_page` as a Vue plugin.
 
-import { toggleFullscreen } from "../keyboard.ts";
 import { browser } from "./browser.ts";
 import { hints } from "./hints.ts";
 import { keys } from "./keys.ts";
@@ -25,7 +24,6 @@ Object.assign(window, {
     install(app: VueApp) {
       for (const component of [browser, hints, keys, upload]) app.component(component.name, component);
       Object.assign(app.config.globalProperties, {
-        flowtex_fullscreen: () => toggleFullscreen(document.documentElement),
         flowtex_address: linked,
         flowtex_copy: (text: string) => navigator.clipboard?.writeText(text),
       });

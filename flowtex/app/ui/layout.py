@@ -48,7 +48,7 @@ def build_page(controllers: Controllers) -> Any:
     config = {"theme": {"defaultTheme": "dark", "themes": THEMES}}
     with VAppLayout(controllers.context.state.server, vuetify_config=config) as layout:
         layout.root.theme = (key("theme"),)
-        with html.Div(
+        with html.Main(
             classes=(f"'flowtex-page flowtex-' + {key('theme')}",),
             data_busy=(key("busy"),),
             __properties=[("data_busy", "data-busy")],
@@ -91,7 +91,7 @@ def _title(controllers: Controllers) -> None:
             classes="flowtex-name flowtex-files",
             v_else=True,
             click=controllers.data.list_files,
-            aria_label="Open another file",
+            aria_label=(f"{key('name')} + ': open another file'",),
             __properties=ARIA,
         ):
             html.Span(f"{{{{ {key('name')} }}}}")
@@ -210,7 +210,6 @@ def _buttons(controllers: Controllers) -> None:
         with _button("mdi-axis-arrow", "Look from a side", None, v_if=some):
             _menu(key("views"), (controllers.viewpoint.look_from, "[item]"))
         _button("mdi-theme-light-dark", "Light or dark", _other_theme(key("theme")))
-        _button("mdi-fullscreen", "Full screen", "flowtex_fullscreen()")
         _button("mdi-help", "Keys and the mouse", f"{key('help')} = true")
         _button("mdi-share-variant", "Compare, save, share", f"{key('panel')} = !{key('panel')}")
 

@@ -97,7 +97,8 @@ class Colours:
     table
         Colour map, (256, 4) uint8.
     plain, background
-        Colours from 0 to 1 where there are no values, and behind the surface.
+        Colours from 0 to 1 where there are no values, and behind the surface: ``None`` for that
+        of the page around.
     lighting
         Whether the surface is lit.
     opacity
@@ -117,7 +118,7 @@ class Colours:
     high: float = 1.0
     table: Bytes | None = None
     plain: tuple[float, float, float] = (0.63, 0.63, 0.63)
-    background: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    background: tuple[float, float, float] | None = None
     lighting: bool = False
     opacity: float = 1.0
     bar: bool = True
@@ -266,7 +267,7 @@ class ClientData:
                 "bar": bool(colours.bar),
             },
             "colour": plain_list(colours.plain),
-            "background": plain_list(colours.background),
+            "background": colours.background and plain_list(colours.background),
             "lighting": bool(colours.lighting),
             "opacity": float(colours.opacity),
             "paper": None if textures.paper is None else _paper(textures.paper),

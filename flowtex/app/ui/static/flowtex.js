@@ -1,8 +1,6 @@
 // Built from client/src by client/build.js; change that instead.
 "use strict";(()=>{var CLOSE_KEY="Escape";function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}function forwardKeys(root,event){event.target===
-document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()}
-function toggleFullscreen(element){document.fullscreenElement?document.exitFullscreen():element.requestFullscreen?.().catch(
-()=>{})}function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
+document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent("keydown",event))&&event.preventDefault()}function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
 next=null,call(value),later(run,wait)};return value=>{next={value},running||run()}}function loadFiles(address,partsOfFile){return async(key,steps,signal,_has,whole="whole")=>{let name=address()+[String(key??
 whole),...steps].join("."),answer=await fetch(name,{signal});if(!answer.ok)throw new Error(`${name}: ${answer.status}`);
 return partsOfFile(await answer.arrayBuffer())}}var page=()=>window,vue=()=>page().Vue,trame=()=>page().trame;var DRAWN_MS=33,MESSAGE_MS=100,GAP_PX=2,STREAM="trame.rca.topic.stream",session=()=>trame().client.getConnection().getSession(),
@@ -83,5 +81,4 @@ flowtex-upload"},[h("input",{...choose,"aria-label":"A file of yours"}),h("butto
 value?.click()},"Open a file of yours"),h("div",{class:"flowtex-drop",hidden:!isOver.value},`Drop it here: ${props.accept}`)])}};function linked(hash){let folder=new URL(".",document.baseURI),secret=sessionStorage.getItem(`flowtex ${folder.pathname}\
  secret`);return secret&&(folder.search=new URLSearchParams({secret}).toString()),folder.href+hash}Object.assign(window,
 {flowtex_page:{install(app){for(let component of[browser,hints,keys,upload])app.component(component.name,component);Object.
-assign(app.config.globalProperties,{flowtex_fullscreen:()=>toggleFullscreen(document.documentElement),flowtex_address:linked,
-flowtex_copy:text=>navigator.clipboard?.writeText(text)})}}});})();
+assign(app.config.globalProperties,{flowtex_address:linked,flowtex_copy:text=>navigator.clipboard?.writeText(text)})}}});})();
