@@ -79,7 +79,8 @@ export class Controls {
   build(header: Header): boolean {
     const rebuild = this.viewer.options.rebuild ?? false;
     const rows = header.table.filter((each) => isUseful(each, header, rebuild));
-    if (JSON.stringify(rows) === JSON.stringify(this.rows)) return false;
+    const kindOf = (some: Row[] | null) => JSON.stringify(some?.map((row) => ({ ...row, default: null })));
+    if (kindOf(rows) === kindOf(this.rows)) return false;
     this.rows = rows;
     this.controls.clear();
     this.element.replaceChildren();

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -25,9 +26,11 @@ from flowtex.cli.options import (
 )
 from flowtex.cli.page import begin, serve_library, serve_processes
 from flowtex.examples import NAMES
+from flowtex.field.formula import KNOWN
 
 if TYPE_CHECKING:
     from flowtex.app import Library
+    from flowtex.field.source import FlowSource
 
 #: How each example is first seen: zoom and point of the mesh.
 FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
@@ -71,13 +74,22 @@ def demo(
 
     names = [example, *(name for name in NAMES if name != example)]
     shown = {name.replace("_", " "): name for name in names}
+    typed = {name.replace("_", " "): partial(_typed, name) for name in KNOWN}
     library = Library(
-        {title: opener(name) for title, name in shown.items()},
+        {title: opener(name) for title, name in shown.items()} | typed,
         python={title: f"flowtex.examples.{name}_field()" for title, name in shown.items()},
         looks=FIRST_LOOKS,
+        typed=True,
     )
     zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
     return serve_library(library, page, {**options, "zoom": zoom, "focus": focus})
+
+
+def _typed(name: str) -> FlowSource:
+    from flowtex.field.formula.make import formula
+    from flowtex.field.source import FlowSource
+
+    return FlowSource(formula(name))
 
 
 def show(

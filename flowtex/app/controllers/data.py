@@ -23,6 +23,7 @@ from flowtex.app.controllers.loading import LoadRequest, announced, without_fold
 from flowtex.app.server.uploads import Uploads
 from flowtex.app.server.validation import clipped, name_among
 from flowtex.field import FlowField
+from flowtex.field.formula.line import is_line, with_parameter
 from flowtex.field.interpolation import steps_around
 from flowtex.field.source import Source
 from flowtex.scene import coarsened_field
@@ -78,6 +79,7 @@ class Data(Controller):
         self.state.on("vectors", "block", "axis", "index")(self.take_choice)
         context.field_changed.connect(self._show_choice)
         self.stream.data_failed.connect(self._complain)
+        context.area.element.parameter_asked.connect(self.take_parameter)
 
     @property
     def name(self) -> str:
@@ -104,6 +106,12 @@ class Data(Controller):
             self._show_choice()
         elif name != self._goal[0]:
             self.open(name, Choice())
+
+    def take_parameter(self, name: str, value: float) -> None:
+        """Show a formula with another value of a parameter."""
+        line = with_parameter(self._goal[0], self._current.field, name, value)
+        if line != self._goal[0] and self.library.typed:
+            self.open(line, Choice())
 
     def take_choice(self) -> None:
         """Show another array or plane of the same file."""
@@ -142,7 +150,8 @@ class Data(Controller):
 
     def open(self, name: str, choice: Choice, then: Callable[[], None] | None = None) -> None:
         """Open something, in place of what is being opened, and call ``then`` once it is shown."""
-        if name == self._request.name and then is None:
+        both_typed = is_line(name) and is_line(self._request.name)
+        if (name == self._request.name or both_typed) and then is None:
             self._request.superseded = True
         else:
             self._request.cancelled = True
@@ -197,6 +206,7 @@ class Data(Controller):
         before = self._current, self._goal
         new, old = flow.choice, self.choice
         same = (flow.name, new.block, new.vectors) == (self.name, old.block, old.vectors)
+        same |= _are_of_one_formula(flow.field, self._current.field)
         keep = same and _axis(new.plane) == _axis(old.plane)
         # Of a file that has changed the values are others.
         same = same and flow.source.identity == self._current.source.identity
@@ -296,3 +306,10 @@ def about(field: FlowField) -> str:
     if closed:
         words.append(f"periodic along {' and '.join(sorted(closed))}")
     return " · ".join(words)
+
+
+def _are_of_one_formula(one: FlowField, other: FlowField) -> bool:
+    """Whether two flows differ in the values of parameters alone."""
+    if one.formula is None or other.formula is None:
+        return False
+    return (one.formula.texts, one.formula.ranges) == (other.formula.texts, other.formula.ranges)

@@ -25,6 +25,7 @@ from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.files import SUFFIXES as EARTH_SUFFIXES
 from flowtex.field.datasets.files import common_name, is_dataset_file
 from flowtex.field.datasets.source import DatasetSource
+from flowtex.field.formula.line import is_line, line_field, line_python
 from flowtex.field.io.identity import Identity, file_identity, members_of
 from flowtex.field.io.surfaces.beside import SUFFIXES as WITHOUT_VECTORS
 from flowtex.field.remote import open_remote, prepare_readers
@@ -120,6 +121,8 @@ class Library:
         Expressions of Python that make the fields, by name, as far as they are known.
     looks
         How far in, and on what point, some of them are first seen; the others as a whole.
+    typed
+        Whether formulas may be typed, which make flows whose names they are.
     shared
         A library whose flows are offered, and stay open there, besides those of this one.
 
@@ -146,9 +149,11 @@ class Library:
         python: Mapping[str, str] | None = None,
         looks: Mapping[str, Look] | None = None,
         *,
+        typed: bool = False,
         shared: Library | None = None,
     ) -> None:
         self._shared = shared
+        self.typed: bool = typed or (shared is not None and shared.typed)
         self._named = dict(openers)
         self._python = dict(python or {})
         self._looks = dict(looks or {})
@@ -244,15 +249,20 @@ class Library:
 
     def _opener(self, name: str) -> Opener:
         if (opener := self._openers.get(name)) is None:
+            if self._is_line(name):
+                return lambda: FlowSource(line_field(name))
             label = repr(shortened(name, 80))
             msg = f"there is no file {label} among those that may be opened here"
             raise FieldError(msg)
         return opener
 
+    def _is_line(self, name: str) -> bool:
+        return self.typed and is_line(name)
+
     @_at_home
     def is_file(self, name: str) -> bool:
         """Whether a name is that of a file."""
-        return isinstance(self._named.get(name, _Files(())), _Files)
+        return not self._is_line(name) and isinstance(self._named.get(name, _Files(())), _Files)
 
     @_at_home
     def look(self, name: str) -> Look:
@@ -264,6 +274,8 @@ class Library:
         """Return the expression that makes a flow, or ``None`` for what comes from a file."""
         if self.is_file(name):
             return None
+        if self._is_line(name):
+            return line_python(name)
         return self._python.get(name, "...  # the mesh or the field that was given")
 
     def complete(self, name: str, choice: Choice) -> Choice:

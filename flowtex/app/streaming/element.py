@@ -30,6 +30,7 @@ from flowtex.camera import Camera, CameraError
 from flowtex.errors import FieldError
 from flowtex.options import ROBUST
 from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.formula import PREFIX
 from flowtex.rendering.webgl.protocol import Header, Parts, parts_file
 from flowtex.settings import TABLE
 from flowtex.tiles import TileKey
@@ -169,6 +170,7 @@ class Element:
         self.painter = ""
         self.names: tuple[str, ...] = ()
         self.failed, self.painter_changed = Signal(), Signal()
+        self.parameter_asked = Signal()
         self.ref = state.key("element")
         self._server, self._viewport, self._stream = state.server, viewport, stream
         self._player = player
@@ -327,7 +329,12 @@ class Element:
 
     def take_setting(self, pair: Any, page: Any = "") -> None:
         """Set what the page asks for, and tell it what is not possible."""
-        if isinstance(pair, list) and len(pair) == 2 and name_among(pair[0], TABLE):
+        if not (isinstance(pair, list) and len(pair) == 2):
+            return
+        name, value = pair[0], number(pair[1], -1e300, 1e300)
+        if isinstance(name, str) and name.startswith(PREFIX) and value is not None:
+            self.parameter_asked.emit(name.removeprefix(PREFIX), value)
+        elif name_among(pair[0], TABLE):
             with self._said_by(page):
                 self._viewport.settings.update(**{pair[0]: pair[1]})
 

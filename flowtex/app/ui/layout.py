@@ -249,7 +249,10 @@ def _complaint(controllers: Controllers) -> None:
             update_modelValue=f"{problem} = ''",
             timeout=(f"Math.max(8000, {MS_PER_LETTER} * {problem}.length)",),
             location="top",
-            content_class="flowtex-complaint",
+            # What points at a place in a formula needs letters of one width.
+            content_class=(
+                f"'flowtex-complaint' + ({problem}.includes('\\n') ? ' flowtex-pointing' : '')",
+            ),
         ),
         html.Template(v_slot_actions=True),
     ):

@@ -47,6 +47,20 @@ def _group(controllers: Controllers, title: str, fill: Callable[[], None]) -> No
 
 def _view(controllers: Controllers) -> None:
     key = controllers.context.state.key
+    if controllers.context.library.typed:
+        with row(
+            "formula",
+            "Type your own: the rates of x and y, ranges and parameters, with semicolons between.",
+        ):
+            html.Span("Formula", classes="flowtex-label")
+            html.Input(
+                placeholder="y; -sin(x) - b*y; x=-7,7; b=0.2",
+                change=f"{key('file')} = $event.target.value",
+                aria_label="Formula",
+                __properties=[*ARIA, "placeholder"],
+                __events=["change"],
+                classes="flowtex-formula",
+            )
     with row("compare", "A second view beside the first, which moves with it."):
         select("Beside it", key("compare"), (key("comparisons"),))
     with row(

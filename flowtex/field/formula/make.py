@@ -135,13 +135,14 @@ def formula(
 
 
 def _known(name: Any) -> tuple[str, tuple[str, str], dict[str, Any]]:
-    if not isinstance(name, str) or name not in KNOWN:
+    key = name.replace(" ", "_") if isinstance(name, str) else ""
+    if key not in KNOWN:
         near = (
             near_names(name, KNOWN) if isinstance(name, str) else f"there are: {', '.join(KNOWN)}"
         )
         msg = f"there is one expression, {name!r}, which names no known formula; {near}"
         raise FieldError(msg)
-    title, expressions, known = KNOWN[name]
+    title, expressions, known = KNOWN[key]
     return title, expressions, dict(known)
 
 

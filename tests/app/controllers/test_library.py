@@ -232,3 +232,18 @@ def test_of_a_large_field_the_coarsest_level_is_traced(monkeypatch: pytest.Monke
     assert scene.pyramid is flow.pyramid is not None
     assert scene.store is flow.store and flow.store.field is scene.whole
     assert traced == [scene.whole.shape] and scene.whole.shape < field.shape
+
+
+def test_a_formula_that_is_typed_is_a_flow_where_that_is_allowed() -> None:
+    line = "y; -sin(x) - b*y; x=-7,7; b=0.2"
+    flows = {"gyre": lambda: FlowSource(small())}
+    library = Library(flows, typed=True).branch()
+    field = library.field(line, library.complete(line, Choice()))
+    assert field.formula is not None and field.formula.texts == ("y", "-sin(x) - b*y")
+    assert library.names == ("gyre",) and not library.is_file(line)
+    assert library.python(line) == "flowtex.formula('y', '-sin(x) - b*y', x=(-7.0, 7.0), b=0.2)"
+    with pytest.raises(FieldError, match="missing\n"):
+        library.source("y; sin(x")
+    for name, other in ((line, Library(flows)), ("../secret", library)):
+        with pytest.raises(FieldError, match="there is no file"):
+            other.source(name)

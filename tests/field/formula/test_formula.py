@@ -16,6 +16,7 @@ import flowtex
 from flowtex import FieldError
 from flowtex.field.formula import KNOWN, FormulaError
 from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
+from flowtex.field.formula.line import is_line, line_field, line_python, with_parameter
 
 VALUES = {"x": np.linspace(-2.0, 2.0, 9), "y": np.linspace(0.3, 1.7, 9), "b": 0.5}
 
@@ -224,3 +225,44 @@ def test_what_does_not_fit_is_refused(given: dict[str, Any], words: str) -> None
         flowtex.formula("1", "2", "3")
     with pytest.raises(FieldError, match="which names no known formula; did you mean 'pendulum'"):
         flowtex.formula("pendulu")
+
+
+@pytest.mark.parametrize(
+    ("line", "python"),
+    [
+        ("y; -sin(x) - b*y; x=-7,7; b=0.2", "'y', '-sin(x) - b*y', x=(-7.0, 7.0), b=0.2"),
+        ("van der pol", "'van der pol'"),
+        ("pendulum; b=0.5,0,2", "'pendulum', b=(0.5, 0.0, 2.0)"),
+        ("cos(t); x; t=0,1,3", "'cos(t)', 'x', times=np.linspace(0.0, 1.0, 3)"),
+        ("1; 0; surface=torus", "'1', '0', surface='torus'"),
+        ("where(x >= 0, 1, 2); y", "'where(x >= 0, 1, 2)', 'y'"),
+    ],
+)
+def test_a_line_is_a_flow(line: str, python: str) -> None:
+    assert is_line(line) and not is_line("wing.vtu")
+    assert line_python(line) == f"flowtex.formula({python})"
+    given = line.partition("; b=0.5")[0]
+    field = line_field(line)
+    assert field.formula is not None
+    changed = with_parameter(given, field, "b", 9.0)
+    if "b" in field.formula.parameters:
+        most = field.formula.parameters["b"].high
+        other = line_field(changed).formula
+        assert other is not None and other.parameters["b"].value == most
+    else:
+        assert changed == given
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("y; x; b=fast", "b is 'fast'; expected one to three numbers with commas between"),
+        ("y; x; t=1", "such as t=0,10,41"),
+        ("y; x; resolution=9000", "resolution is no parameter"),
+        ("y; x; z", "there are 3 expressions"),
+        (";", "there are 0 expressions"),
+    ],
+)
+def test_a_line_that_is_none_says_why(line: str, words: str) -> None:
+    with pytest.raises(FieldError, match=words):
+        line_field(line)
