@@ -148,12 +148,12 @@ def test_planes_and_arrays_can_be_chosen(page: Page) -> None:
     assert difference(last, middle) > 3
     before = count(page)
     choose(page, page.locator(".flowtex-planes .flowtex-row"), "water")
-    settled(page, before)
-    before = count(page)
+    # While the other array is being opened.
     page.locator(".flowtex-planes").get_by_role("button", name="i", exact=True).click()
+    page.locator(".flowtex-planes", has_text="i = 10").wait_for()
+    page.locator(".flowtex-about", has_text="16 × 6").wait_for()
     settled(page, before)
-    assert "i = 10" in page.inner_text(".flowtex-planes")
-    assert "16 × 6" in page.inner_text(".flowtex-about")
+    assert "water" in page.inner_text(".flowtex-planes")
 
 
 def test_what_has_the_focus_has_a_ring(page: Page) -> None:
