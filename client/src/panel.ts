@@ -224,7 +224,7 @@ export class Panel {
     const moment = header && isApart && this.viewer.player.varies ? this.moment(header) : "";
     this.title.textContent = [title, moment].filter(Boolean).join(" · ");
     this.title.hidden = !this.title.textContent;
-    this.title.classList.toggle("formula", Boolean(header?.formula));
+    this.title.classList.toggle("formula", /[=(]/.test(title));
     const label = options.label ?? (title || name);
     root.setAttribute("aria-label", label ? `Flow texture: ${label}` : "Flow texture");
   }

@@ -21,6 +21,7 @@ from flowtex.cli.options import (
     UsageError,
     pixels,
 )
+from flowtex.cli.write import write_picture
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 
@@ -112,14 +113,10 @@ def formula(
             size = export(field, output, **options).nbytes
         told = f"{size / 1e6:.2f} MB"
     else:
-        from PIL import Image
-
         from flowtex import render
-        from flowtex._util.whole_file import whole_file
 
-        picture = render(field, **options, **{**vars(frame), "size": pixels(frame.size)})
-        with writing(output), whole_file(output) as file:
-            Image.fromarray(picture).save(file, Image.EXTENSION[output.suffix.lower()])
+        frames = {**vars(frame), "size": pixels(frame.size)}
+        write_picture(render(field, **options, **frames), output)
         told = frame.size
     say((str(output), "bold"), f"  {describe(field)}  ", (told, "dim"))
     return 0

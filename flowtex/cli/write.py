@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
+from flowtex._util.array_types import AnyArray
 from flowtex._util.whole_file import whole_file
 from flowtex.cli.checks import (
     check_lines,
@@ -62,13 +63,9 @@ def render(
         shown["time"] = choice.pop("time")
     field = load_field(files, choice)
     diagnostics.require_opengl()
-    from PIL import Image
-
     from flowtex import render as draw
 
-    picture = draw(field, **shown, **options)
-    with writing(output), whole_file(output) as file:
-        Image.fromarray(picture).save(file, Image.EXTENSION[output.suffix.lower()])
+    write_picture(draw(field, **shown, **options), output)
     lost = (
         f", {field.normal_share:.0%} of the flow leaves the surface"
         if field.normal_share > NOTABLE_LOSS
@@ -173,6 +170,14 @@ def export(
     seconds = time.perf_counter() - start
     say((str(output), "bold"), "  ", (f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s", "dim"))
     return 0
+
+
+def write_picture(picture: AnyArray, output: Path) -> None:
+    """Write a picture in the format of its suffix."""
+    from PIL import Image
+
+    with writing(output), whole_file(output) as file:
+        Image.fromarray(picture).save(file, Image.EXTENSION[output.suffix.lower()])
 
 
 def _drawing(look: LookFlags | None, frame: FrameFlags, settings: Any) -> dict[str, Any]:

@@ -1153,7 +1153,7 @@ map(name2=>{let label2=header?.table.find(row2=>row2.name===name2)?.label??name2
  ${typeof value=="boolean"?value?"on":"off":value}`}),name=header?.name??"",title=differences.join(", ")||(options.named&&
 this.viewer.together.length<2?"":name),{first}=this,isApart=first!==this.viewer.player&&this.viewer.player.time!==first.
 time,moment=header&&isApart&&this.viewer.player.varies?this.moment(header):"";this.title.textContent=[title,moment].filter(
-Boolean).join(" · "),this.title.hidden=!this.title.textContent,this.title.classList.toggle("formula",!!header?.formula);
+Boolean).join(" · "),this.title.hidden=!this.title.textContent,this.title.classList.toggle("formula",/[=(]/.test(title));
 let label=options.label??(title||name);root.setAttribute("aria-label",label?`Flow texture: ${label}`:"Flow texture")}get first(){
 return this.viewer.together[0]?.player??this.viewer.player}tick(){let{header,player,settings}=this.viewer;if(!header||this.
 track.hidden)return;this.first!==player&&this.name();let{first,last,now}=player.range(settings);this.slider.value=String(

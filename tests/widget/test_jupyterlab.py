@@ -333,3 +333,16 @@ def test_a_saved_notebook_shows_pictures_where_no_kernel_runs(
         assert pictures[1][0] == pytest.approx(pictures[2][0], abs=1)
         assert pictures[1][0] > 300
         assert (words, views) == ("", 0)
+
+
+def test_a_formula_follows_its_slider(notebook: Lab) -> None:
+    lab, page = notebook, notebook.page
+    flow = 'flowtex.formula("y", "-sin(x) - b*y", b=(0.2, 0, 1), resolution=65)'
+    lab.run(f"import flowtex\nw = flowtex.show({flow}, samples=9, size=(300, 200))\nw")
+    page.wait_for_function(DRAWN, arg=1)
+    before = picture(page)
+    with acted(page):
+        page.locator('[data-setting="formula.b"] input').fill("0.9")
+    after = picture(page).astype(float)
+    assert np.abs(after - before).mean() > 5
+    page.wait_for_function("() => !document.querySelector('[data-failed]')")
