@@ -39,9 +39,9 @@ HEADINGS = "nodes | samples | layers | triangles | ms | processor ms | frames/s 
 
 #: What client/src/programs.ts has before a shader's text, and texture units of the samplers.
 PREAMBLE = "#version 300 es\nprecision highp float;\nprecision highp int;\n"
-UNITS = {"u_slices": 0, "u_cmap": 4}
+UNITS = {"u_slices": 0, "u_cmap": 4, "u_shares": 5}
 #: Attributes of the nodes with the count of their numbers, and what stands for no value there.
-ATTRIBUTES = {"flowtexPosition": 3, "flowtexCoordinate": 2, "flowtexScalar": 2}
+ATTRIBUTES = {"flowtexPosition": 3, "flowtexCoordinate": 2}
 NO_VALUE = -1e9
 
 
@@ -88,14 +88,15 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
     look["u_toEye"] = (geometry.frame @ -camera.axes[2]).tolist()
     drawn, regions = [], []
     for key, data, parts, finer in _shown(whole, settings, camera, size):
-        mesh, record = MeshLevels.of(data.textures), parts["mesh"]
-        mesh.error, mesh.colour_error = np.split(np.moveaxis(record[..., :-5], -1, 0), 2)
+        mesh = MeshLevels.of(data.textures)
         levels = mesh.levels(None, half, size[1])
         for child in finer:
             levels[finer_part(pyramid, child, key)] = -1
         step, *place = key or (pyramid.depth if pyramid else 0, 0, 0)
         regions.append(Region(step, *(TILE_BLOCKS * at << step for at in place), levels))
+        above, before = data.textures.geometry.padding
         values = {**uniforms(data.textures, settings, state), **look, "extra": data.packing.extra}
+        values["u_padding"] = before, above
         drawn.append((mesh, levels, values, _arrays(data, parts)))
     joins = join(regions, pyramid.blocks if pyramid else levels.shape, geometry.periodic)
     layers, arrays = [], {"cmap": whole.surface()["cmap"]}
@@ -145,7 +146,7 @@ def _arrays(data: Any, parts: Any) -> dict[str, NDArray[Any]]:
     return {
         "flowtexPosition": nodes,
         "flowtexCoordinate": data.textures.geometry.coordinate.reshape(-1, 2),
-        "flowtexScalar": np.stack([share.ravel()] * 2, axis=-1),
+        "shares": np.stack([share] * 2, axis=-1),
         "slices": parts["slices/0"],
         "extra": parts["extra/0"],
     }
@@ -191,10 +192,11 @@ class Picture:
         self._layers = [self._layer(n, own) for n, own in enumerate(self._about["layers"])]
         self._written: dict[str, bytes] = {}
 
-    def _layer(self, n: int, uniforms: dict[str, Any]) -> tuple[Any, Any, list[tuple[Any, bytes]]]:
-        """Return the triangles, the slices and the uniforms of a layer."""
+    def _layer(self, n: int, uniforms: dict[str, Any]) -> tuple[Any, ...]:
+        """Return the triangles, the slices, the shares and the uniforms of a layer."""
         context, program = self._context, self._program
-        own = {k: self._arrays[f"{n}/{k}"] for k in (*ATTRIBUTES, "index", "slices", "extra")}
+        names = (*ATTRIBUTES, "index", "slices", "extra", "shares")
+        own = {k: self._arrays[f"{n}/{k}"] for k in names}
         nodes = [(context.buffer(own[k].tobytes()), f"{m}f4", k) for k, m in ATTRIBUTES.items()]
         triangles = context.vertex_array(program, nodes, context.buffer(own["index"].tobytes()))
         count, height, width, channels = own["slices"].shape
@@ -204,6 +206,8 @@ class Picture:
         slices = context.texture_array((width, height, count), 4, texels.tobytes(), dtype="f2")
         slices.repeat_x = slices.repeat_y = False
         slices.build_mipmaps(0, int(uniforms["u_deepest"]))
+        rows, columns, _ = own["shares"].shape
+        shares = context.texture((columns, rows), 2, own["shares"].tobytes(), dtype="f4")
         values = []
         for name in {*uniforms, *UNITS} & set(program):
             uniform, given = program[name], np.ravel((uniforms | UNITS)[name])
@@ -211,15 +215,16 @@ class Picture:
             numbers = np.zeros(uniform.array_length * uniform.dimension, "if"["f" in uniform.fmt])
             numbers[: len(given)] = given
             values.append((uniform, numbers.tobytes()))
-        return triangles, slices, values
+        return triangles, slices, shares, values
 
     def draw(self) -> None:
         """Draw a frame."""
         self._target.use()
         self._context.clear(*self._about["background"], 1.0)
         self._cmap.use(UNITS["u_cmap"])
-        for triangles, slices, values in self._layers:
+        for triangles, slices, shares, values in self._layers:
             slices.use(UNITS["u_slices"])
+            shares.use(UNITS["u_shares"])
             for uniform, data in values:
                 if self._written.get(uniform.name) != data:  # of the layer before
                     uniform.write(data)

@@ -1,6 +1,6 @@
 // Colours of the surface: what is chosen of them, and the colours that the picture then has.
 
-import type { Data, Header, MeshLimits, NamedPart, Part, Settings, Shading } from "./protocol.ts";
+import type { Data, Header, NamedPart, Part, Settings, Shading } from "./protocol.ts";
 import { clamp } from "./vectors.ts";
 
 /** What a person chooses; a range of null is that of the values. */
@@ -14,8 +14,6 @@ export interface ColourChoice {
   graticule?: boolean;
 }
 
-type Scalars = Header["scalars"];
-
 /** Name of a part that a client has made: no other one has its digest. */
 const OWN = "own cmap";
 const SRGB = { knee: 0.04045, slope: 12.92, offset: 0.055, scale: 1.055, power: 2.4 };
@@ -24,12 +22,6 @@ const SRGB = { knee: 0.04045, slope: 12.92, offset: 0.055, scale: 1.055, power: 
 export function coloursOf(header: Header): Partial<Header> {
   const { scalars, colour, background, lighting, opacity, earth } = header;
   return { scalars, colour, background, lighting, opacity, earth };
-}
-
-/** Limits of triangles that were chosen for a range, where a narrower one shows smaller differences. */
-export function narrowed(mesh: MeshLimits, from: Scalars, to: Scalars): MeshLimits {
-  const share = to.name === from.name ? (to.high - to.low) / (from.high - from.low || 1) : 1;
-  return { ...mesh, maxColourError: mesh.maxColourError * Math.min(share, 1) };
 }
 
 /** The table of a map to choose from, (256, 4), of the part that has all of them. */
@@ -64,11 +56,10 @@ export function recoloured(
     const end = Math.max(-low, high);
     [scalars.low, scalars.high] = widest ? [-end, end] : [low, high];
   }
-  const mesh = narrowed(header.mesh, header.scalars, scalars);
   const { coastlines = header.earth?.coastlines, graticule = header.earth?.graticule } = choice;
   const earth = header.earth && { ...header.earth, coastlines, graticule };
   const { opacity = header.opacity } = choice;
-  const colours = { scalars, mesh, earth, opacity } as Partial<Header>;
+  const colours = { scalars, earth, opacity } as Partial<Header>;
   const maps = parts.get("maps");
   if (!choice.cmap || !maps) return { colours, part: null };
   const data = mapOf(header, maps.data, choice.cmap);

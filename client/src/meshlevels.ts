@@ -40,8 +40,8 @@ export interface MeshData {
   /** Whether the first line of nodes lies where the last one does, along j and i. */
   periodic: [boolean, boolean];
   /**
-   * Of each block: errors of the positions at each level, infinite where it does not serve; those of
-   * the colours, as shares of the colour map; and middle, radius and size of a cell.
+   * Of each block: errors of the positions at each level, infinite where it does not serve; and middle,
+   * radius and size of a cell.
    */
   blocks: Data;
   /** Cells that are drawn; all of them where there is none. */
@@ -72,7 +72,7 @@ export class MeshLevels {
     const { blocks } = this.mesh;
     const count = this.rows.length * this.columns.length;
     const size = blocks.length / count;
-    const last = (size - PLACE) / 2 - 1;
+    const last = size - PLACE - 1;
     return Int8Array.from({ length: count }, (_, block) => {
       const record = blocks.subarray(size * block, size * (block + 1));
       const [x, y, z, radius, cell] = record.subarray(size - PLACE);
@@ -82,11 +82,8 @@ export class MeshLevels {
       let level = 0;
       for (; level < last; level += 1) {
         const error = record[level + 1];
-        const colourError = record[last + 2 + level];
         const side = cell * scale * 2 ** (level + 1);
-        const exact =
-          error * scale <= limits.maxErrorPixels && colourError <= limits.maxColourError;
-        const fits = exact || (Number.isFinite(error) && side <= 1);
+        const fits = error * scale <= limits.maxErrorPixels || (Number.isFinite(error) && side <= 1);
         if (!fits || side > limits.maxSideHeights * pixels) break;
       }
       return level;

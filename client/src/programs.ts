@@ -15,7 +15,7 @@ const ATTRIBUTES = [
   "flowtexRadius",
 ];
 /** Samplers, each in the texture unit of its place. */
-export const SAMPLERS = ["u_slices", "u_slicesNext", "u_noiseImage", "u_stepImage", "u_cmap"];
+export const SAMPLERS = ["u_slices", "u_slicesNext", "u_noiseImage", "u_stepImage", "u_cmap", "u_shares"];
 
 export interface Program {
   program: WebGLProgram;

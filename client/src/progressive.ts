@@ -386,12 +386,14 @@ export class ProgressiveRenderer {
     draft: boolean,
   ) {
     const { settings } = this.viewer;
+    const { columns, rows } = header.geometry;
     const noise = parts.get("noise")?.shape ?? null;
     return {
       ...uniforms(header, { ...settings, samples }, view, noise),
       ...(draft ? draftUniforms(settings, samples, view.density) : {}),
       u_matrix: projection(header.geometry, camera, view.anchor),
       u_mapped: header.scalars.name !== null,
+      u_padding: [columns.before, rows.before],
       u_colour: header.colour,
       u_lit: header.lighting,
       u_ground: header.background ?? [1, 1, 1],

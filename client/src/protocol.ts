@@ -6,7 +6,7 @@ import type { CameraLimits, CameraState, Surface } from "./camera.ts";
 import { toHalf } from "./half.ts";
 
 /** Form of header and parts that this client reads. */
-export const FORMAT = 5;
+export const FORMAT = 6;
 /** Share of the larger end of a range below which a legend tells the other one as 0. */
 const ZERO_SHARE = 1e-5;
 
@@ -86,7 +86,6 @@ export interface Geometry extends Surface {
 export interface MeshLimits {
   tileCells: number;
   maxErrorPixels: number;
-  maxColourError: number;
   maxSideHeights: number;
   leastDistance: number;
 }
@@ -186,10 +185,7 @@ export interface PyramidHeader {
 }
 
 /** What of the header of a tile differs from that of the root. */
-export interface TileHeader extends Pick<Header, "geometry" | "slices"> {
-  /** Ranges of values by which its errors of colours are measured, where these are not the root's. */
-  ranges?: Record<string, [low: number, high: number]>;
-}
+export type TileHeader = Pick<Header, "geometry" | "slices">;
 
 /** The store in which the rest of a page lies: flowtex/web/linked.py. */
 export interface StoreHeader {

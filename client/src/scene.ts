@@ -351,7 +351,7 @@ export class Scene {
 
   private fillArray(array: WebGLVertexArrayObject, before: number, after: number): void {
     const gl = this.graphics.context;
-    const { geometry, scalars, paper } = this.header;
+    const { geometry, paper } = this.header;
     const { shape, rows, columns } = geometry;
     const { levels, joins } = this.drawn ?? { levels: new Int8Array(), joins: new Int8Array() };
     const key = (names: string[], ...rest: unknown[]) => this.key(["triangles", ...names], ...rest);
@@ -366,12 +366,7 @@ export class Scene {
     const normal = geometry.planar ? null : this.part("normal").data;
     const normals = <T extends Data>(nodal: T) =>
       corners ? vertexNormals(nodal, this.part("position").data, corners) : nodal;
-    const painted = this.scalarParts(before, after);
-    const values = () => {
-      const steps = painted.map((name) => this.part(name).data);
-      return vertices(shares(steps, scalars, shape[0] * shape[1]), 2);
-    };
-    const colour = key([...new Set(painted)], shape, scalars.low, scalars.high, scalars.log);
+    const [colour, values] = this.shares(before, after);
     const grid = JSON.stringify([shape, rows, columns, corners?.length]);
     const place = () => (corners ? vertexShares(corners.length / 3) : coordinates(geometry));
     let type: number = gl.FLOAT;
@@ -382,7 +377,7 @@ export class Scene {
       [this.buffer("coordinate", grid, place), 2, gl.FLOAT],
       [normal && this.buffer("normal", key(["normal"]), () => normals(normal)), 3, type],
       [paper && this.buffer("along", "", () => noiseCoordinates(paper)), 2, gl.FLOAT],
-      [this.buffer("scalar", colour, values), 2, gl.FLOAT],
+      [corners && this.buffer("scalar", colour, () => vertices(values(), 2)), 2, gl.FLOAT],
       [corners && this.buffer("corners", key([]), () => vertexCorners(corners)), 3, gl.FLOAT],
     ];
     gl.bindVertexArray(array);
@@ -392,6 +387,29 @@ export class Scene {
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
       gl.enableVertexAttribArray(n);
       gl.vertexAttribPointer(n, size, kind, kind !== gl.FLOAT, 0, 0);
+    });
+  }
+
+  /** Shares of the colour map's range at the nodes, two each, and what they are known by. */
+  private shares(before: number, after: number): [key: string, make: () => Float32Array] {
+    const { geometry, scalars } = this.header;
+    const { shape } = geometry;
+    const painted = this.scalarParts(before, after);
+    const key = this.key(["triangles", ...new Set(painted)], shape, scalars.low, scalars.high, scalars.log);
+    const make = () => shares(painted.map((name) => this.part(name).data), scalars, shape[0] * shape[1]);
+    return [key, make];
+  }
+
+  /** The same where fragments look them up. */
+  private nodalShares(before: number, after: number): WebGLTexture {
+    const gl = this.graphics.context;
+    const [rows, columns] = this.header.geometry.shape;
+    const [key, values] = this.shares(before, after);
+    return this.texture("scalar", key, (texture) => {
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32F, columns, rows, 0, gl.RG, gl.FLOAT, values());
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
     });
   }
 
@@ -503,7 +521,7 @@ export class Scene {
   /** Have the slices of a moment, and images, in their units. */
   bindTextures(before: number, after: number): void {
     const gl = this.graphics.context;
-    const { paper } = this.header;
+    const { geometry, paper, scalars } = this.header;
     const repeat = paper?.repeat ?? [false, false];
     const units = [
       this.slices(before),
@@ -511,6 +529,7 @@ export class Scene {
       paper && this.image("noise", paper.picture ? [true, true] : repeat),
       paper && this.image("step", repeat),
       this.colourMap(),
+      geometry.triangles || scalars.name === null ? null : this.nodalShares(before, after),
     ];
     units.forEach((texture, n) => {
       gl.activeTexture(gl.TEXTURE0 + n);
@@ -527,11 +546,11 @@ export class Scene {
   /** Draw all cells with a program that is in use. */
   draw(before: number, after: number, anchor: Vector, textures: boolean): void {
     const gl = this.graphics.context;
+    this.bindNodes(before, after, anchor);
     if (textures) {
       this.dropSlices(before, after);
       this.bindTextures(before, after);
     }
-    this.bindNodes(before, after, anchor);
     gl.drawElements(gl.TRIANGLES, this.resources.get("index")?.count ?? 0, gl.UNSIGNED_INT, 0);
     gl.bindVertexArray(null);
   }

@@ -5,14 +5,12 @@
 //                     +--> cover (those that are there) <-- setPart, and the levels of all meshes
 
 import type { Camera } from "./camera.ts";
-import { narrowed } from "./colours.ts";
 import { placesOf } from "./formula.ts";
 import { join, type Region } from "./meshlevels.ts";
 import {
   isOfStep,
   stepOf,
   type Header,
-  type MeshLimits,
   type NamedPart,
   type Part,
   type Settings,
@@ -54,9 +52,6 @@ interface Tile {
   parts: Map<string, Part>;
   /** Null where nothing of it is drawn; not known before it has come. */
   scene: Scene | null | undefined;
-  /** Colours that its triangles are chosen for, and ranges that their errors are told in. */
-  scalars: Header["scalars"];
-  ranges?: TileHeader["ranges"];
   /** When it was wanted last. */
   used: number;
 }
@@ -99,13 +94,10 @@ export class Tiles {
   private isOver = false;
   /** Tiles that cannot be had, each with what of it was wanted. */
   private readonly failed = new Failures();
-  /** Limits of triangles for the colours that the scene came with. */
-  private readonly limits: MeshLimits;
 
   constructor(host: TileHost, root: Scene) {
     this.host = host;
     this.root = root;
-    this.limits = root.header.mesh;
   }
 
   /** Tell whether a part of a tile is there. */
@@ -133,18 +125,15 @@ export class Tiles {
     const { graphics, header } = this.root;
     const tile = this.tiles.get(name) ?? this.emptyTile();
     this.tiles.set(name, tile);
-    if (part.name === "mesh") this.giveLimits(tile);
     if (part.digest && tile.parts.get(part.name)?.digest === part.digest) return;
     graphics.release(tile.parts.get(part.name));
     tile.parts.set(part.name, graphics.hold(part));
     if (part.name === "header") {
       const own = JSON.parse(new TextDecoder().decode(part.data)) as TileHeader | null;
       tile.scene?.dispose();
-      tile.ranges = own?.ranges;
       if (own) own.geometry.reach = header.geometry.reach;
       tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null, bodies: null }, tile.parts, keyOf(name));
       this.giveMap(tile);
-      this.giveLimits(tile);
     } else tile.scene?.forget(part.name);
     const { names, steps } = this.chosen;
     this.missing = this.missing.filter((missing) => !this.isHere(missing, steps));
@@ -154,38 +143,22 @@ export class Tiles {
 
   /** Draw in other colours, of which a part of the header tells; what they need is asked for. */
   recolour(colours: Partial<Header> = {}): void {
-    const { mesh, scalars } = this.root.header;
     const { steps } = this.chosen;
     for (const tile of this.tiles.values()) {
       const { scene, parts } = tile;
       if (!scene) continue;
-      const { header } = scene;
-      Object.assign(header, { mesh: narrowed(mesh, tile.scalars, scalars) }, colours);
-      if (tile.ranges) this.giveLimits(tile);
+      Object.assign(scene.header, colours);
       this.giveMap(tile);
-      for (const name of ["scalars", "mesh"]) scene.forget(name);
+      scene.forget("scalars");
       const painted = steps.length ? scene.scalarParts(steps[0], steps[steps.length - 1]) : [];
-      const isWhole = painted.every((name) => parts.has(name));
-      if (isWhole && (scalars.log === tile.scalars.log || scalars.name === null)) continue;
-      // What the triangles are chosen by comes anew with the values.
+      if (painted.every((name) => parts.has(name))) continue;
       const others = [...parts.keys()].filter((name) => name.startsWith("scalars/"));
       for (const name of others) this.release(tile, name);
     }
   }
 
   private emptyTile(): Tile {
-    const { scalars } = this.root.header;
-    return { parts: new Map(), scene: undefined, scalars, used: this.count };
-  }
-
-  /** Choose triangles by what has come for the present colours. */
-  private giveLimits(tile: Tile): void {
-    const { mesh, scalars } = this.root.header;
-    tile.scalars = scalars;
-    if (!tile.scene) return;
-    const range = tile.ranges?.[scalars.name ?? ""];
-    const from = range && { ...scalars, low: range[0], high: range[1], log: false };
-    tile.scene.header.mesh = from ? narrowed(this.limits, from, scalars) : mesh;
+    return { parts: new Map(), scene: undefined, used: this.count };
   }
 
   /** Colour by the map of the root. */

@@ -164,7 +164,7 @@ export class Viewer implements User, View {
     if (!this.header) return;
     const colours = this.grounded(changes);
     Object.assign(this.header, colours);
-    for (const name of ["scalars", "mesh"]) this.scene?.forget(name);
+    this.scene?.forget("scalars");
     this.tiles?.recolour(colours);
     this.panel.showLegend();
     this.change();

@@ -22,7 +22,6 @@ test("mean colours are those of Python", () => {
 });
 
 const header = {
-  mesh: { maxColourError: 0.01 },
   scalars: {
     ...{ name: "speed", unit: "m/s", number: 0, low: 0, high: 2, auto: true, cmap: "viridis" },
     choices: [
@@ -46,11 +45,6 @@ test("what is chosen is what the surface is coloured by", () => {
   const centred = changed({ scalars: "p", cmap: "coolwarm" });
   assert.deepEqual([centred.low, centred.high], [-3, 3]);
   assert.deepEqual(header.scalars.name, "speed"); // the header itself stays
-});
-
-test("a narrower range asks for smaller differences", () => {
-  const { colours } = recoloured(header, { clim: [1, 1.5] }, new Map());
-  assert.equal(colours.mesh?.maxColourError, 0.0025);
 });
 
 test("places on the map go by the logarithm where that is asked for", () => {

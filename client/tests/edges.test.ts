@@ -4,12 +4,11 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { Camera, fitted, type CameraLimits, type CameraState } from "../src/camera.ts";
-import { narrowed } from "../src/colours.ts";
 import { groundAt } from "../src/earthlayer.ts";
 import { toHalf } from "../src/half.ts";
 import { eastNorth, lonLatOf } from "../src/lonlat.ts";
 import { grainAt, mover, pathThrough, type PathPlace } from "../src/pointpath.ts";
-import { isOfStep, shareOf, type Earth, type Geometry, type Header, type MeshLimits } from "../src/protocol.ts";
+import { isOfStep, shareOf, type Earth, type Geometry, type Header } from "../src/protocol.ts";
 import type { Scene } from "../src/scene.ts";
 import { vertexNormals } from "../src/trianglemesh.ts";
 import { rotated, type Vector } from "../src/vectors.ts";
@@ -25,16 +24,10 @@ interface Example {
 const file = new URL("camera.json", import.meta.url);
 const [{ geometry, limits, nodes }]: Example[] = Object.values(JSON.parse(readFileSync(file, "utf8")));
 
-test("a range without a width has one share, and triangles of another scalar keep their limits", () => {
-  const scalars = (low: number, high: number, log = false, name = "speed") =>
-    ({ low, high, log, name }) as Header["scalars"];
+test("a range without a width has one share", () => {
+  const scalars = (low: number, high: number, log = false) => ({ low, high, log }) as Header["scalars"];
   assert.equal(shareOf(scalars(2, 2))(2), 0);
   assert.equal(shareOf(scalars(2, 2, true))(2), 0);
-  const mesh = { maxColourError: 0.1 } as MeshLimits;
-  const limit = (from: Header["scalars"], to: Header["scalars"]) => narrowed(mesh, from, to).maxColourError;
-  assert.equal(limit(scalars(0, 4), scalars(0, 1)), 0.025);
-  assert.equal(limit(scalars(0, 4), scalars(0, 1, false, "p")), 0.1);
-  assert.equal(limit(scalars(1, 1), scalars(1, 1)), 0);
 });
 
 test("values of a step are those of a scalar that varies", () => {

@@ -96,8 +96,6 @@ def _surface(pyramid: StoredPyramid, key: TileKey, data: ClientData | None) -> P
         told = {
             "geometry": header["geometry"],
             "slices": {k: v for k, v in header["slices"].items() if k not in OF_ALL_TILES},
-            # By these the errors of the colours are measured.
-            "ranges": _ranges(pyramid),
         }
         parts[next(iter(parts))] = np.frombuffer(json.dumps(told).encode(), np.uint8)
     return parts

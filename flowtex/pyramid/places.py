@@ -20,7 +20,7 @@ from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
 #: Written into every store; a reader refuses what it does not know.
-FORMAT = "flowtex-pyramid-5"
+FORMAT = "flowtex-pyramid-6"
 #: The object of a store that tells who builds it.
 LEASE = "building.json"
 DOCUMENT = "zarr.json"

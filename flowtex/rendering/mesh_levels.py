@@ -30,8 +30,6 @@ MAX_ERROR_PIXELS = 0.05
 #: place that is off by this error. Where fragments correct their place it may be two pixels along
 #: the surface and half of one across it, which the outline of a curved one is off by at most.
 OUTLINE_SHARE, SLIDE_SHARE, PLACED_SHARE, HEIGHT_SHARE = 0.2, 0.1, 0.025, 0.1
-#: Error of a colour, as a share of the range of the colour map.
-MAX_COLOUR_ERROR = 1 / 100
 #: Longest side of a triangle, in heights of the view: single precision interpolates across it.
 MAX_SIDE_HEIGHTS = 2.0
 #: Nearest that a block is taken to be, as a share of its radius, when the eye is inside of it.
@@ -70,8 +68,6 @@ class MeshLevels:
     error
         Greatest distance of a node from the triangles of each level, (L, rows, columns) of blocks;
         of its outline, and along the surface, shares of it.
-    colour_error
-        The same of the colours, as shares of the range of the colour map.
     blocks
         Centre, radius, and longest side of a cell of each block, (block rows, block columns, 5).
     """
@@ -92,7 +88,6 @@ class MeshLevels:
         points = np.where(np.isfinite(points), points, 0.0)
         self.error = self._errors(points, _directions(points))
         self.error[self._mixed_levels()] = np.inf
-        self.set_colours()
         self.blocks = block_places(points)
 
     @classmethod
@@ -105,25 +100,10 @@ class MeshLevels:
             shares = (PLACED_SHARE, HEIGHT_SHARE)
         return cls(geometry.points, geometry.cells, geometry.periodic, *shares)
 
-    def set_colours(self, *colours: Floats) -> None:
-        """Count the errors of values that are interpolated between the nodes as well.
-
-        Parameters
-        ----------
-        *colours
-            Shares of the range of the colour map, (J, I), of all times that are shown; none where
-            the surface has one colour.
-        """
-        self.colour_error = np.zeros_like(self.error)
-        for values in colours:
-            errors = self._errors(np.nan_to_num(values)[..., None])
-            self.colour_error = np.maximum(self.colour_error, errors)
-
     @property
     def records(self) -> Floats:
-        """What levels are chosen by, for a client: errors, colour errors and places of blocks."""
-        errors = np.moveaxis(np.concatenate([self.error, self.colour_error]), 0, -1)
-        return np.concatenate([errors, self.blocks], axis=-1)
+        """What levels are chosen by, for a client: errors and places of blocks."""
+        return np.concatenate([np.moveaxis(self.error, 0, -1), self.blocks], axis=-1)
 
     def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
         """Return the level of each block, (block rows, block columns): 0 has every node.
@@ -148,7 +128,6 @@ class MeshLevels:
             scale = 0.5 * pixels / (half_height * distance)
             side = cell_size * scale * 2.0 ** np.arange(len(self.error))[:, None, None]
             exact = self.error * scale <= MAX_ERROR_PIXELS
-        exact &= self.colour_error <= MAX_COLOUR_ERROR
         # What lies within a pixel may be left out, however rough it is.
         fits = exact | (np.isfinite(self.error) & (side <= 1.0))
         fits &= side <= MAX_SIDE_HEIGHTS * pixels
@@ -297,7 +276,6 @@ def mesh_limits() -> dict[str, float]:
     return {
         "tileCells": BLOCK_CELLS,
         "maxErrorPixels": MAX_ERROR_PIXELS,
-        "maxColourError": MAX_COLOUR_ERROR,
         "maxSideHeights": MAX_SIDE_HEIGHTS,
         "leastDistance": LEAST_DISTANCE,
     }

@@ -25,9 +25,6 @@ class TriangleBlocks:
     def __init__(self, geometry: TriangleGeometry) -> None:
         self.blocks, self._masks = geometry.block_places, geometry.blocks
 
-    def set_colours(self, *colours: Floats) -> None:
-        """Take the colours, which all nodes have."""
-
     @property
     def records(self) -> Floats:
         """What a client chooses by, (rows, columns, 5): the places of blocks."""

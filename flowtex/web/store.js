@@ -397,9 +397,9 @@ value)>0&&Number(value)<=most,areNumbers=(values,count)=>Array.isArray(values)&&
 length)===values.length,areWhole=(values,count)=>areNumbers(values,count)&&values.every(Number.isInteger);function arePoles({
 nodes,longest=0,poles=[]}){return Number.isFinite(longest)&&poles.length<=2&&poles.every(({component,line,inward,near,plane})=>[
 0,1].includes(component)&&component===poles[0].component&&line===(inward>0?0:nodes[1-component]-1)&&[1,-1].includes(inward)&&
-isCount(near,MOST_NODES)&&areNumbers(plane,6))}function checkHeader(own,{geometry:whole,slices:all}){let{geometry,slices,
-ranges}=own,{shape,rows,columns}=geometry,{trace}=slices;if(!(areNumbers(shape,2)&&shape.every(n=>isCount(n,MOST_NODES)&&
-n>1)&&[rows,columns].every(({before,size},axis)=>Number.isInteger(before)&&isCount(size,MOST_NODES)&&before>=0&&before+shape[axis]<=
+isCount(near,MOST_NODES)&&areNumbers(plane,6))}function checkHeader(own,{geometry:whole,slices:all}){let{geometry,slices}=own,
+{shape,rows,columns}=geometry,{trace}=slices;if(!(areNumbers(shape,2)&&shape.every(n=>isCount(n,MOST_NODES)&&n>1)&&[rows,
+columns].every(({before,size},axis)=>Number.isInteger(before)&&isCount(size,MOST_NODES)&&before>=0&&before+shape[axis]<=
 size)&&Number.isInteger(geometry.levels)&&geometry.levels>=0&&2**geometry.levels<=Math.max(rows.size,columns.size)&&geometry.
 triangles===whole.triangles&&geometry.planar===whole.planar&&Number.isFinite(geometry.extent)&&areNumbers(geometry.periodic.
 map(Number),2)&&areNumbers(geometry.center,3)&&areNumbers(geometry.frame,9)&&isCount(slices.count,MOST_LAYERS)&&[2,4].includes(
@@ -408,25 +408,25 @@ extra)&&slices.extra.every(n=>Number.isInteger(n)&&n>=0&&n<slices.count)&&areNum
 (!trace||trace.parts.every(part=>TRACED_FROM.includes(part))&&areNumbers(trace.nodes,2)&&trace.nodes.every((n,axis)=>isCount(
 n,MOST_NODES)&&trace.drawn[axis]+shape[axis]<=n)&&areWhole([...trace.first,...trace.drawn],4)&&trace.drawn.every(n=>n>=0)&&
 areNumbers(trace.closed.map(Number),2)&&areNumbers([...trace.offset,...trace.middle,trace.unit,trace.pace,trace.rest],12)&&
-arePoles(trace)&&(!trace.timed||areNumbers([trace.timed.unit,trace.timed.speed],2)))&&Object.values(ranges??{}).every(range=>areNumbers(
-range,2))))throw new Error("what is told of a tile does not fit the page")}function sizesOf({geometry,slices}){let{shape,
-planar}=geometry,{trace,count,channels,extra}=slices,size=(numbers,...more)=>[...numbers,...more].reduce((a,b)=>a*b,1),texels=[
-geometry.rows.size,geometry.columns.size],nodes=trace?.nodes??[],sizes={cells:[Uint8Array,[size(shape.map(n=>n-1))]],normal:[
-Int16Array,[size(shape,3)]],scalars:[Float32Array,[size(shape)]]};if(trace){sizes.unit=[Uint16Array,[size(nodes)]],sizes.
-padded=[Float32Array,[size(nodes.map(n=>n+2),3)]],sizes.open=[Uint8Array,[size(nodes)]],sizes.nearest=[Int16Array,[size(
-nodes,2)]];let poles=trace.poles??[];sizes.rays=[Float32Array,[size(poles.slice(0,1).map(pole=>nodes[pole.component]),2,
-poles.length)]],sizes.flow=[Uint16Array,[size(nodes,3),size(nodes,4)]]}else sizes.position=[Float32Array,[size(shape,3)]],
-sizes.slices=[Uint16Array,[size(texels,count,channels)]],sizes.extra=[Uint16Array,[size(texels,extra.length)]];let needed=trace?
-["mesh",...trace.parts]:["mesh","position",...planar?[]:["normal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){
-let{sizes}=sizesOf(header),blocks=header.geometry.shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){
-let kind=sizes[name.split("/")[0]];if(!(kind?data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof
-Float32Array&&own.length===3&&own[0]===blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]&&own[2]%2===1))
-throw new Error(`the part "${name}" of a tile has another size than is told`)}}function speedOf(flow,{geometry,slices},typical){
-let[rows,columns]=geometry.shape,[channels,{drawn,nodes}={drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(
-rows*columns);for(let n=0;n<data.length;n+=1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=
-typical*fromHalf(Number(flow.data[channels*(at+1)-1]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest} s\
-peed`}}function explained(error){let known=storeError(error);return known.fault==="other"||known.detail!==known.message?
-known:new StoreError(known.fault,REASONS[known.fault],known.message)}var Stream=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(header,base){
+arePoles(trace)&&(!trace.timed||areNumbers([trace.timed.unit,trace.timed.speed],2)))))throw new Error("what is told of a\
+ tile does not fit the page")}function sizesOf({geometry,slices}){let{shape,planar}=geometry,{trace,count,channels,extra}=slices,
+size=(numbers,...more)=>[...numbers,...more].reduce((a,b)=>a*b,1),texels=[geometry.rows.size,geometry.columns.size],nodes=trace?.
+nodes??[],sizes={cells:[Uint8Array,[size(shape.map(n=>n-1))]],normal:[Int16Array,[size(shape,3)]],scalars:[Float32Array,
+[size(shape)]]};if(trace){sizes.unit=[Uint16Array,[size(nodes)]],sizes.padded=[Float32Array,[size(nodes.map(n=>n+2),3)]],
+sizes.open=[Uint8Array,[size(nodes)]],sizes.nearest=[Int16Array,[size(nodes,2)]];let poles=trace.poles??[];sizes.rays=[Float32Array,
+[size(poles.slice(0,1).map(pole=>nodes[pole.component]),2,poles.length)]],sizes.flow=[Uint16Array,[size(nodes,3),size(nodes,
+4)]]}else sizes.position=[Float32Array,[size(shape,3)]],sizes.slices=[Uint16Array,[size(texels,count,channels)]],sizes.extra=
+[Uint16Array,[size(texels,extra.length)]];let needed=trace?["mesh",...trace.parts]:["mesh","position",...planar?[]:["nor\
+mal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){let{sizes}=sizesOf(header),blocks=header.geometry.
+shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){let kind=sizes[name.split("/")[0]];if(!(kind?
+data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof Float32Array&&own.length===3&&own[0]===
+blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]))throw new Error(`the part "${name}" of a tile has ano\
+ther size than is told`)}}function speedOf(flow,{geometry,slices},typical){let[rows,columns]=geometry.shape,[channels,{drawn,
+nodes}={drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(rows*columns);for(let n=0;n<data.length;n+=
+1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=typical*fromHalf(Number(flow.data[channels*
+(at+1)-1]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest} speed`}}function explained(error){let known=storeError(
+error);return known.fault==="other"||known.detail!==known.message?known:new StoreError(known.fault,REASONS[known.fault],
+known.message)}var Stream=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(header,base){
 let told=header.store;if(!told)throw new Error("the page does not tell where its store is");this.header=header,this.told=
 told,this.url=new URL(told.url,base),this.store=new Store(this.url.href)}open(){return this.opening??=this.compare().catch(
 error=>{let fault=explained(error);throw fault.fault==="unreachable"&&(this.opening=null),fault}),this.opening}async compare(){

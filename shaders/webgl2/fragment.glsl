@@ -5,16 +5,20 @@ in vec3 flowtexNormalOut;
 #endif
 #ifdef FLOWTEX_TRIANGLES
 flat in vec3 flowtexCornersOut;
+in float flowtexScalarOut;
 #endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoiseOut;
 #endif
-in float flowtexScalarOut;
 
 //#include common/uniforms.glsl
 //#include common/flowtex.glsl
 
 uniform sampler2D u_cmap;  // FLOWTEX_COLOURS colours
+#ifndef FLOWTEX_TRIANGLES
+uniform highp sampler2D u_shares; // of the colour map's range at the nodes, at both times of the slices
+uniform vec2 u_padding;           // texels of the slices before the first node
+#endif
 uniform bool u_mapped;     // colour by the scalar, or one colour for all
 uniform vec3 u_colour;
 uniform bool u_lit;
@@ -28,6 +32,27 @@ const float FLOWTEX_NO_VALUE = -1e3;
 const float FLOWTEX_COLOURS = 256.0; // entries of the colour map
 
 out vec4 flowtexOut;
+
+#ifndef FLOWTEX_TRIANGLES
+// The share at a place, in the triangles of its cell: those that are drawn may cover many cells.
+float flowtexShareAt(vec2 coordinate)
+{
+  vec2 at = coordinate * u_slicesSize - 0.5 - u_padding;
+  ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), textureSize(u_shares, 0) - 2);
+  vec2 part = clamp(at - vec2(cell), 0.0, 1.0);
+  float least = min(part.x, part.y);
+  float most = max(part.x, part.y);
+  ivec2 aside = part.x >= part.y ? ivec2(1, 0) : ivec2(0, 1);
+  vec2 share = (1.0 - most) * texelFetch(u_shares, cell, 0).xy
+    + (most - least) * texelFetch(u_shares, cell + aside, 0).xy
+    + least * texelFetch(u_shares, cell + 1, 0).xy;
+#ifdef FLOWTEX_UNSTEADY
+  return mix(share.x, share.y, u_between);
+#else
+  return share.x;
+#endif
+}
+#endif
 
 // Scalars are interpolated first and mapped then, each entry of the map over an equal share.
 vec3 flowtexMapped(float share)
@@ -50,7 +75,11 @@ void main()
 #else
   float textured = flowtexValue(flowtexCoordinateOut, flowtexPositionOut, flowtexNormalOut);
 #endif
+#ifdef FLOWTEX_TRIANGLES
   vec3 colour = u_mapped ? flowtexMapped(flowtexScalarOut) : u_colour;
+#else
+  vec3 colour = u_mapped ? flowtexMapped(flowtexShareAt(flowtexCoordinateOut)) : u_colour;
+#endif
   if (u_showLevel)
     colour = flowtexLevelColour(flowtexNoiseLevel);
 #ifdef FLOWTEX_PICTURE

@@ -7,14 +7,14 @@ in vec3 flowtexNormal;
 #endif
 #ifdef FLOWTEX_TRIANGLES
 in vec3 flowtexCorners; // numbers of the three nodes, the same at each
+in vec2 flowtexScalar;  // share of the colour map's range, at both times of the slices
 #endif
 #ifdef FLOWTEX_PAPER
 in vec2 flowtexNoise;
 #endif
-in vec2 flowtexScalar; // share of the colour map's range, at both times of the slices
 
 uniform mat4 u_matrix; // from the surface's frame to the picture
-#ifdef FLOWTEX_UNSTEADY
+#if defined(FLOWTEX_TRIANGLES) && defined(FLOWTEX_UNSTEADY)
 uniform float u_between;
 #endif
 
@@ -26,11 +26,11 @@ out vec3 flowtexNormalOut;
 #ifdef FLOWTEX_TRIANGLES
 flat out vec3 flowtexCornersOut;
 flat out highp int flowtexTriangleOut; // its number
+out float flowtexScalarOut;
 #endif
 #ifdef FLOWTEX_PAPER
 out vec2 flowtexNoiseOut;
 #endif
-out float flowtexScalarOut;
 
 void main()
 {
@@ -42,14 +42,14 @@ void main()
 #ifdef FLOWTEX_TRIANGLES
   flowtexCornersOut = flowtexCorners;
   flowtexTriangleOut = gl_VertexID / 3;
-#endif
-#ifdef FLOWTEX_PAPER
-  flowtexNoiseOut = flowtexNoise;
-#endif
 #ifdef FLOWTEX_UNSTEADY
   flowtexScalarOut = mix(flowtexScalar.x, flowtexScalar.y, u_between);
 #else
   flowtexScalarOut = flowtexScalar.x;
+#endif
+#endif
+#ifdef FLOWTEX_PAPER
+  flowtexNoiseOut = flowtexNoise;
 #endif
   gl_Position = u_matrix * vec4(flowtexPosition, 1.0);
 }

@@ -84,7 +84,6 @@ def test_parts_are_those_of_a_page(tmp_path: Path, make: Any) -> None:
             json.loads(some.pop(f"{prefix}header").tobytes()) for some in (stored, expected)
         )
         assert told["geometry"] == other["geometry"]
-        assert told["ranges"]["speed"] == list(view.scene.scalar_range("speed"))
         assert told["slices"]["trace"]["nodes"] == other["slices"]["trace"]["nodes"]
         assert stored.keys() == expected.keys()
         assert {name.removeprefix(prefix).split("/")[0] for name in stored} >= {"padded", "flow"}

@@ -102,18 +102,6 @@ def test_what_is_near_the_eye_is_finer() -> None:
     assert (np.diff(levels) >= 0).all() and levels[0] < levels[-1]
 
 
-def test_colours_keep_their_error_too() -> None:
-    shape = (257, 257)
-    mesh = MeshLevels(grid(shape), whole(shape))
-    assert (mesh.levels(None, 130.0, 600) > 4).all()
-    x = grid(shape)[..., 0]
-    mesh.set_colours(0.5 + 0.5 * np.sin(0.2 * x) * (x < 128))
-    levels = mesh.levels(None, 130.0, 600)
-    assert (levels[:, :2] < 3).all() and (levels[:, 2:] > 4).all()
-    mesh.set_colours()
-    assert (mesh.levels(None, 130.0, 600) > 4).all()
-
-
 def test_no_triangle_covers_what_is_blanked() -> None:
     shape = (200, 300)
     points, cells = grid(shape), whole(shape)

@@ -75,7 +75,7 @@ function arePoles({ nodes, longest = 0, poles = [] }: TraceHeader): boolean {
 
 /** Refuse what is told of a tile where it cannot be drawn. */
 function checkHeader(own: TileHeader, { geometry: whole, slices: all }: Header): void {
-  const { geometry, slices, ranges } = own;
+  const { geometry, slices } = own;
   const { shape, rows, columns } = geometry;
   const { trace } = slices;
   const fits =
@@ -111,8 +111,7 @@ function checkHeader(own: TileHeader, { geometry: whole, slices: all }: Header):
         areNumbers(trace.closed.map(Number), 2) &&
         areNumbers([...trace.offset, ...trace.middle, trace.unit, trace.pace, trace.rest], 12) &&
         arePoles(trace) &&
-        (!trace.timed || areNumbers([trace.timed.unit, trace.timed.speed], 2)))) &&
-    Object.values(ranges ?? {}).every((range) => areNumbers(range, 2));
+        (!trace.timed || areNumbers([trace.timed.unit, trace.timed.speed], 2))));
   if (!fits) throw new Error("what is told of a tile does not fit the page");
 }
 
@@ -158,8 +157,7 @@ function checkParts(parts: NamedPart[], header: Pick<Header, "geometry" | "slice
         own.length === 3 &&
         own[0] === blocks[0] &&
         own[1] === blocks[1] &&
-        data.length === own[0] * own[1] * own[2] &&
-        own[2] % 2 === 1;
+        data.length === own[0] * own[1] * own[2];
     if (!fits) throw new Error(`the part "${name}" of a tile has another size than is told`);
   }
 }

@@ -49,7 +49,7 @@ WHOLE = "whole"
 #: change.
 SOME = {
     "controls": ("cmap", "maps", "lonlat", "coastlines", "graticule"),
-    "colours": ("cmap", "maps", "mesh"),
+    "colours": ("cmap", "maps"),
 }
 #: Directions in which nodes lie farthest that stand for all of a surface.
 DIRECTIONS = 400

@@ -411,16 +411,7 @@ class ClientData:
     @cached_property
     def _mesh(self) -> Floats32:
         """Return what the client chooses its triangles by, of each tile."""
-        levels = mesh_levels_of(self.textures)
-        shares: list[Floats] = []
-        for number, values in self._values.items():
-            if number == self.colours.number:
-                shares += map(self.colours.shares, values)
-            else:
-                choice = self.colours.choices[number]
-                shares += [colour_shares(v, choice["low"], choice["high"]) for v in values]
-        levels.set_colours(*shares)
-        return levels.records.astype("<f4")
+        return mesh_levels_of(self.textures).records.astype("<f4")
 
     def _geometry(self) -> dict[str, Any]:
         geometry = self.textures.geometry

@@ -25,7 +25,7 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import digest
 
 #: Number of the form of header and parts; a client refuses one that it does not know.
-FORMAT = 5
+FORMAT = 6
 #: Of gzip, for the parts of a page.
 COMPRESSION_LEVEL = 6
 #: How often numbers of a part are taken from each other along an axis at most, and how many, and
