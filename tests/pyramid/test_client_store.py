@@ -53,7 +53,6 @@ def told() -> dict[str, Any]:
             "cell": 0.1,
             "critical": 0.0,
         },
-        "ranges": {"speed": [0.0, 1.0], "depth": [-2.0, 2.0]},
     }
 
 
