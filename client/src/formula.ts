@@ -213,7 +213,7 @@ export class FormulaSource {
 
   private tile(key: TileKey, steps: number[]): NamedPart[] {
     const { header, grid } = this;
-    const { mesh, pyramid, geometry, slices, scalars } = header;
+    const { mesh, pyramid, geometry, slices } = header;
     const { trace } = slices;
     if (!pyramid || !trace) throw new Error("a formula comes without its levels");
     const [level, ...place] = key;
@@ -262,40 +262,27 @@ export class FormulaSource {
     const prefix = `tile/${nameOf(key)}/`;
     const text = new TextEncoder().encode(JSON.stringify(own));
     const parts = this.parts(window, steps, drawn, shape, prefix);
-    const speeds = parts[1].data as Float32Array;
     return [
       this.named(`${prefix}header`, { data: text, shape: [text.length] }),
       this.named(`${prefix}padded`, padded),
       this.named(`${prefix}unit`, { data: new Uint16Array(nodes[0] * nodes[1]).fill(HALF_ONE), shape: nodes }),
-      this.named(`${prefix}mesh`, this.blocks(key, shape, speeds, scalars.high - scalars.low)),
+      this.named(`${prefix}mesh`, this.blocks(key, shape)),
       ...parts,
     ];
   }
 
-  /** What triangles are chosen by: in the plane the errors are those of the colours. */
-  private blocks(key: TileKey, shape: [number, number], speeds: Float32Array, range: number) {
+  /** What triangles are chosen by: in the plane there are no errors. */
+  private blocks(key: TileKey, shape: [number, number]) {
     const { mesh, pyramid } = this.header;
-    const most = Math.log2(mesh.tileCells);
     const [rows, columns] = shape.map((n) => Math.ceil((n - 1) / mesh.tileCells));
-    const size = 2 * (most + 1) + PLACE;
+    const size = Math.log2(mesh.tileCells) + 1 + PLACE;
     const data = new Float32Array(rows * columns * size);
     const place = placesOf(this.header);
     const tileBlocks = pyramid?.tileBlocks ?? 1;
     for (let block = 0; block < rows * columns; block += 1) {
       const [row, column] = [Math.floor(block / columns), block % columns];
-      let bend = 0;
-      for (let j = 1; j < mesh.tileCells; j += 1) {
-        for (let i = 1; i < mesh.tileCells; i += 1) {
-          const [y, x] = [row * mesh.tileCells + j, column * mesh.tileCells + i];
-          if (y >= shape[0] - 1 || x >= shape[1] - 1) continue;
-          const n = y * shape[1] + x;
-          const across = (by: number) => Math.abs(speeds[n - by] - 2 * speeds[n] + speeds[n + by]);
-          bend = Math.max(bend, across(1) + across(shape[1]));
-        }
-      }
-      const levels = Array.from({ length: most + 1 }, (_, level) => (level ? (bend * 4 ** level) / 8 / (range || 1) : 0));
       const where = place?.(key[0], key[1] * tileBlocks + row, key[2] * tileBlocks + column) ?? [];
-      data.set([...levels.map(() => 0), ...levels, ...where], block * size);
+      data.set(where, (block + 1) * size - PLACE);
     }
     return { data, shape: [rows, columns, size] };
   }

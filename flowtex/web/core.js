@@ -41,31 +41,29 @@ v(a)),add=(a,b,t=1)=>scaleAndAdd(result(),v(a),v(b),t);function rotated(a,axis,d
 degrees*Math.PI/180,v(axis));return turn===null?result():transformMat4(result(),v(a),turn)}function toFrame(frame,a){let columns=transpose(
 zeros(9),frame);return transformMat3(result(),v(a),columns)}function fromFrame(frame,a){return transformMat3(result(),v(
 a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
-colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function narrowed(mesh,from,to){
-let share=to.name===from.name?(to.high-to.low)/(from.high-from.low||1):1;return{...mesh,maxColourError:mesh.maxColourError*
-Math.min(share,1)}}function mapOf(header,maps,name){let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(
-4*count2).fill(255);for(let n=0;n<count2;n+=1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){
-let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
-choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
-unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
-high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{
-low,high}=scalars.choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,
-high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let mesh=narrowed(header.mesh,header.scalars,scalars),{coastlines=header.
-earth?.coastlines,graticule=header.earth?.graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{
-opacity=header.opacity}=choice,colours={scalars,mesh,earth,opacity},maps=parts.get("maps");if(!choice.cmap||!maps)return{
-colours,part:null};let part={name:"cmap",data:mapOf(header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.
-cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){
-let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[
-0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,
-light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],
-cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+
-strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*
-contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),
-roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*
-fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from(
-{length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.
-paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")}\
-)`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
+colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function mapOf(header,maps,name){
+let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(4*count2).fill(255);for(let n=0;n<count2;n+=
+1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){let scalars={
+...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===choice.
+scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,unit:unit2,
+steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.high]=
+choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.
+choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.
+low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.earth?.coastlines,graticule=header.earth?.graticule}=choice,
+earth=header.earth&&{...header.earth,coastlines,graticule},{opacity=header.opacity}=choice,colours={scalars,earth,opacity},
+maps=parts.get("maps");if(!choice.cmap||!maps)return{colours,part:null};let part={name:"cmap",data:mapOf(header,maps.data,
+choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:
+((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.
+slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){
+let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),
+Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(
+cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(
+value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/
+base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.
+fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`\
+linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(
+first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(
+Math.round).join(" ")})`}).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
 this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
 state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.
@@ -143,7 +141,7 @@ u_spacing:clamp(stretched,.1,Math.max(DRAFT_SPACING,spacing))}}var PREAMBLE=`#ve
 precision highp float;
 precision highp int;
 `,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexNoise","flowtexScalar","flowtexCorners","flo\
-wtexRadius"],SAMPLERS=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_cmap"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
+wtexRadius"],SAMPLERS=["u_slices","u_slicesNext","u_noiseImage","u_stepImage","u_cmap","u_shares"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
 this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
 this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
 "Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,
@@ -220,7 +218,7 @@ let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*
 .5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
 v2]=between3(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between3(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
 texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=5,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=6,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,
 uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({
 low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.
 max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(
@@ -1284,27 +1282,23 @@ return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.pa
 shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
 start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
 w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
-{mesh,pyramid,geometry,slices,scalars}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("a formula comes withou\
-t its levels");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(
-at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.
-map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-
-from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),
-share=2**-grid2.doublings(level),longest=PATH_SHARE*pyramid.pathCells,lags=[...slices.lags.filter(lag=>lag<longest),longest],
-texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(
-shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.
-length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,
-nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.
-unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,
-steps,drawn,shape2,prefix),speeds=parts[1].data;return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.
-named(`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),
-this.named(`${prefix}mesh`,this.blocks(key,shape2,speeds,scalars.high-scalars.low)),...parts]}blocks(key,shape2,speeds,range){
-let{mesh,pyramid}=this.header,most=Math.log2(mesh.tileCells),[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
-size=2*(most+1)+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??
-1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],bend=0;for(let j=1;j<
-mesh.tileCells;j+=1)for(let i=1;i<mesh.tileCells;i+=1){let[y,x]=[row2*mesh.tileCells+j,column*mesh.tileCells+i];if(y>=shape2[0]-
-1||x>=shape2[1]-1)continue;let n=y*shape2[1]+x,across=by=>Math.abs(speeds[n-by]-2*speeds[n]+speeds[n+by]);bend=Math.max(
-bend,across(1)+across(shape2[1]))}let levels=Array.from({length:most+1},(_,level)=>level?bend*4**level/8/(range||1):0),where=place?.(
-key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set([...levels.map(()=>0),...levels,...where],block*size)}
+{mesh,pyramid,geometry,slices}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("a formula comes without its le\
+vels");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*
+cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map(
+(at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),
+shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),share=2**
+-grid2.doublings(level),longest=PATH_SHARE*pyramid.pathCells,lags=[...slices.lags.filter(lag=>lag<longest),longest],texels=n=>({
+before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),
+columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.
+length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,
+first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},
+prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,
+prefix);return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(
+`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(
+key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.
+tileCells)),size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),
+tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),
+block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,(block+1)*size-PLACE2)}
 return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
@@ -1414,14 +1408,15 @@ let{camera,settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasAr
 ...camera.sight(height/view.density),planes:camera.planes};for(let[layer,placed]of scene.arrows.share(seen,settings,this.
 layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));!program||!placed.length||
 (layer.bindTextures(shown[0],shown[1]),arrows.draw(program,placed,view.anchor,{...values(layer),u_picture:[width,height]}))}}values({
-header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,noise=parts.get("noise")?.shape??null;return{
-...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(
-header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_colour:header.colour,u_lit:header.lighting,u_ground:header.
-background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
--1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.
-graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,
-coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=
-[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get(
+"noise")?.shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,
+view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_padding:[
+columns.before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.
+areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){
+if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;
+if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,
+coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,
+0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
@@ -1556,48 +1551,47 @@ r,g,b,opacity=1]){return`rgb(${[r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
-{blocks}=this.mesh,count2=this.rows.length*this.columns.length,size=blocks.length/count2,last=(size-PLACE3)/2-1;return Int8Array.
+{blocks}=this.mesh,count2=this.rows.length*this.columns.length,size=blocks.length/count2,last=size-PLACE3-1;return Int8Array.
 from({length:count2},(_,block)=>{let record=blocks.subarray(size*block,size*(block+1)),[x,y,z,radius,cell]=record.subarray(
 size-PLACE3),near=limits.leastDistance*radius,away=eye?Math.max(length2(subtract2(eye,[x,y,z]))-radius,near):1,scale3=.5*
-pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;level+=1){let error=record[level+1],colourError=record[last+
-2+level],side=cell*scale3*2**(level+1);if(!(error*scale3<=limits.maxErrorPixels&&colourError<=limits.maxColourError||Number.
-isFinite(error)&&side<=1)||side>limits.maxSideHeights*pixels)break}return level})}triangles(levels,joins){let sizes=Array.
-from(levels,level=>level<0?0:this.limits.tileCells>>level),index=new Uint32Array(6*sizes.reduce((sum,size)=>sum+size*size,
-0)),end=0;return levels.forEach((level,block)=>{level>=0&&(end=this.add(index,end,level,joins,block))}),index.slice(0,end)}add(index,start,level,joins,block){
-let{rows,columns,limits}=this,{shape:shape2,cells}=this.mesh,step=1<<level,count2=limits.tileCells/step+1,row2=rows[Math.
-floor(block/columns.length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+
-side]),snapped=(place,size,border)=>place===size?place:place>>border<<border,nodes=new Uint32Array(count2*count2);for(let b=0;b<
-count2;b+=1){let y=Math.min(b*step,row2.cells);for(let a=0;a<count2;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===
-0||b===count2-1)&&(px=snapped(px,column.cells,b?above:below)),(a===0||a===count2-1)&&(py=snapped(py,row2.cells,a?right:left)),
-nodes[b*count2+a]=(row2.first+py)*shape2[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=
-p,index[end++]=q,index[end++]=r)};for(let b=0;b<count2-1;b+=1){let y=Math.min(row2.first+Math.min(b*step,row2.cells),shape2[0]-
-2);for(let a=0;a<count2-1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape2[1]-2);if(cells&&!cells[y*
-(shape2[1]-1)+x])continue;let at=b*count2+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count2+1],nodes[at+count2]];put(p,
-q,r),put(p,r,s)}}return end}},NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.
-count,this.width]=axis?[columns+1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(
-this.count*this.width)}at(line,along){return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=
-1){let[first,last]=[this.at(0,n),this.at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=
-this.values[last]=most}}};function eachBlock({step,row:row2,column,shape:shape2},[rows,columns],call){let bottom=Math.min(
-row2+(shape2[0]<<step),rows),right=Math.min(column+(shape2[1]<<step),columns);for(let j=row2;j<bottom;j+=1){let own=(j-row2>>
-step)*shape2[1];for(let i=column;i<right;i+=1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,
-columns],periodic){let around2=(n,by,count2,closed)=>closed?(n+by+count2)%count2:clamp(n+by,0,count2-1);return nodes.map(
-(own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],least=own;for(let by of[-1,1]){let row2=around2(j,by,rows,
-periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.min(least,nodes[row2*columns+i],nodes[j*columns+column])}
-return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(
-part,blocks,(block,own)=>{part.levels[own]>=0&&(target[block]=value(part.levels[own]))});for(let part of parts)put(nodes,
-part,()=>part.step);let finest=finestAround(nodes,blocks,periodic),strides=new Int16Array(nodes.length);for(let part of parts){
-let{levels,step}=part;eachBlock(part,blocks,(block,own)=>{levels[own]=Math.min(levels[own],finest[block]+most-step)}),put(
-strides,part,level=>level+step)}let lines=[new Lines(blocks,0),new Lines(blocks,1)];for(strides.forEach((stride,block)=>{
-let[j,i]=[Math.floor(block/blocks[1]),block%blocks[1]];[[j,i],[i,j]].forEach(([line,along],axis)=>{let{values}=lines[axis];
-for(let far of[0,1]){let at=lines[axis].at(line+far,along);values[at]=Math.max(values[at],stride)}})});;){lines.forEach(
-(line,axis)=>periodic[axis]&&line.close());let joined=parts.map(part=>bordersOf(part,lines));if(!joined.some(([,changed])=>changed))
-return joined.map(([borders])=>borders)}}function bordersOf({step,row:row2,column,shape:shape2,levels},lines){let size=1<<
-step,borders=new Int8Array(4*levels.length),changed=!1;for(let side of[0,1,2,3]){let[axis,far]=[side>>1,side&1],line=lines[axis],
-{values}=line;levels.forEach((level,own)=>{let place=[Math.floor(own/shape2[1]),own%shape2[1]],[first,start]=axis?[column,
-row2]:[row2,column],pick=Math.min(first+(place[axis]+far)*size,line.count-1),from=start+place[1-axis]*size,end=Math.max(
-Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<end;n+=1)coarsest=Math.max(coarsest,values[line.at(pick,
-n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,
-values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
+pixels/(halfHeight*Math.max(away,Number.MIN_VALUE)),level=0;for(;level<last;level+=1){let error=record[level+1],side=cell*
+scale3*2**(level+1);if(!(error*scale3<=limits.maxErrorPixels||Number.isFinite(error)&&side<=1)||side>limits.maxSideHeights*
+pixels)break}return level})}triangles(levels,joins){let sizes=Array.from(levels,level=>level<0?0:this.limits.tileCells>>
+level),index=new Uint32Array(6*sizes.reduce((sum,size)=>sum+size*size,0)),end=0;return levels.forEach((level,block)=>{level>=
+0&&(end=this.add(index,end,level,joins,block))}),index.slice(0,end)}add(index,start,level,joins,block){let{rows,columns,
+limits}=this,{shape:shape2,cells}=this.mesh,step=1<<level,count2=limits.tileCells/step+1,row2=rows[Math.floor(block/columns.
+length)],column=columns[block%columns.length],[below,above,left,right]=[0,1,2,3].map(side=>joins[4*block+side]),snapped=(place,size,border)=>place===
+size?place:place>>border<<border,nodes=new Uint32Array(count2*count2);for(let b=0;b<count2;b+=1){let y=Math.min(b*step,row2.
+cells);for(let a=0;a<count2;a+=1){let[px,py]=[Math.min(a*step,column.cells),y];(b===0||b===count2-1)&&(px=snapped(px,column.
+cells,b?above:below)),(a===0||a===count2-1)&&(py=snapped(py,row2.cells,a?right:left)),nodes[b*count2+a]=(row2.first+py)*
+shape2[1]+column.first+px}}let end=start,put=(p,q,r)=>{p===q||q===r||p===r||(index[end++]=p,index[end++]=q,index[end++]=
+r)};for(let b=0;b<count2-1;b+=1){let y=Math.min(row2.first+Math.min(b*step,row2.cells),shape2[0]-2);for(let a=0;a<count2-
+1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape2[1]-2);if(cells&&!cells[y*(shape2[1]-1)+x])continue;
+let at=b*count2+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count2+1],nodes[at+count2]];put(p,q,r),put(p,r,s)}}return end}},
+NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,this.width]=axis?[columns+
+1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(this.count*this.width)}at(line,along){
+return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=1){let[first,last]=[this.at(0,n),this.
+at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=this.values[last]=most}}};function eachBlock({
+step,row:row2,column,shape:shape2},[rows,columns],call){let bottom=Math.min(row2+(shape2[0]<<step),rows),right=Math.min(
+column+(shape2[1]<<step),columns);for(let j=row2;j<bottom;j+=1){let own=(j-row2>>step)*shape2[1];for(let i=column;i<right;i+=
+1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around2=(n,by,count2,closed)=>closed?
+(n+by+count2)%count2:clamp(n+by,0,count2-1);return nodes.map((own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],
+least=own;for(let by of[-1,1]){let row2=around2(j,by,rows,periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.
+min(least,nodes[row2*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(
+blocks[0]*blocks[1]).fill(NOT_DRAWN),put=(target,part,value)=>eachBlock(part,blocks,(block,own)=>{part.levels[own]>=0&&(target[block]=
+value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);let finest=finestAround(nodes,blocks,periodic),
+strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,blocks,(block,own)=>{levels[own]=
+Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+step)}let lines=[new Lines(blocks,0),new Lines(
+blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%blocks[1]];[[j,i],[i,j]].forEach(
+([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(line+far,along);values[at]=Math.
+max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());let joined=parts.map(part=>bordersOf(
+part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}function bordersOf({step,row:row2,
+column,shape:shape2,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;for(let side of[0,
+1,2,3]){let[axis,far]=[side>>1,side&1],line=lines[axis],{values}=line;levels.forEach((level,own)=>{let place=[Math.floor(
+own/shape2[1]),own%shape2[1]],[first,start]=axis?[column,row2]:[row2,column],pick=Math.min(first+(place[axis]+far)*size,
+line.count-1),from=start+place[1-axis]*size,end=Math.max(Math.min(from+size,line.width),from+1),coarsest=0;for(let n=from;n<
+end;n+=1)coarsest=Math.max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<
+end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
 alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;tile;anchor=[
 0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts,tile=null){
@@ -1660,36 +1654,41 @@ let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=
 y"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.
 scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();
 gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,
-{geometry,scalars,paper}=this.header,{shape:shape2,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,
-joins:new Int8Array},key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,
-joins),drawn=key(["cells","mesh","blocks"],shape2,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.
-triangles?this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
+{geometry,paper}=this.header,{shape:shape2,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},
+key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["\
+cells","mesh","blocks"],shape2,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?
+this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
 positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
-vertexNormals(nodal,this.part("position").data,corners):nodal,painted=this.scalarParts(before,after),values=()=>{let steps=painted.
-map(name=>this.part(name).data);return vertices(shares(steps,scalars,shape2[0]*shape2[1]),2)},colour=key([...new Set(painted)],
-shape2,scalars.low,scalars.high,scalars.log),grid2=JSON.stringify([shape2,rows,columns,corners?.length]),place=()=>corners?
-vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof
-Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.
-buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",key(["normal"]),()=>normals(normal)),3,type],
-[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[this.buffer("scalar",colour,values),2,gl.FLOAT],
-[corners&&this.buffer("corners",key([]),()=>vertexCorners(corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(
-gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),
-gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}texture(name,key,fill){let gl=this.
-graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.
-header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,
-key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.
-get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);
-if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(
-place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);
-return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}get pickers(){let{programs}=this.
-graphics,{vertex,pick,fullVertex,probe}=this.header.shaders;return[programs.get(vertex,pick),programs.get(fullVertex,probe)]}texels(step,texels){
-let{graphics,header}=this,gl=graphics.context,{slices,geometry}=header,width=geometry.columns.size,texture=this.slices(step),
-draw=()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.
-flatMap(n=>[n%width,Math.floor(n/width)]);graphics.programs.use(this.pickers[1],{u_texels:places}),gl.drawArrays(gl.TRIANGLES,
-0,3)},bits=graphics.numbers(draw,texels.length,slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{let[
-x,y,z,w]=numbers.subarray(4*(layer*texels.length+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;return this.
-texture(name,this.key([name],repeat),texture=>{let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,levels=Math.
-floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?
+vertexNormals(nodal,this.part("position").data,corners):nodal,[colour,values]=this.shares(before,after),grid2=JSON.stringify(
+[shape2,rows,columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;
+normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("\
+position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.
+buffer("normal",key(["normal"]),()=>normals(normal)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),
+2,gl.FLOAT],[corners&&this.buffer("scalar",colour,()=>vertices(values(),2)),2,gl.FLOAT],[corners&&this.buffer("corners",
+key([]),()=>vertexCorners(corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),
+attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),
+gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}shares(before,after){let{geometry,scalars}=this.header,{shape:shape2}=geometry,
+painted=this.scalarParts(before,after);return[this.key(["triangles",...new Set(painted)],shape2,scalars.low,scalars.high,
+scalars.log),()=>shares(painted.map(name=>this.part(name).data),scalars,shape2[0]*shape2[1])]}nodalShares(before,after){
+let gl=this.graphics.context,[rows,columns]=this.header.geometry.shape,[key,values]=this.shares(before,after);return this.
+texture("scalar",key,texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.texImage2D(gl.TEXTURE_2D,0,gl.RG32F,columns,rows,
+0,gl.RG,gl.FLOAT,values()),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,
+gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",
+key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],
+geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,
+height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{
+let own=data.subarray(n*texels*channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),
+place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=
+1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,
+channels:4,levels:geometry.levels},layer)})}get pickers(){let{programs}=this.graphics,{vertex,pick,fullVertex,probe}=this.
+header.shaders;return[programs.get(vertex,pick),programs.get(fullVertex,probe)]}texels(step,texels){let{graphics,header}=this,
+gl=graphics.context,{slices,geometry}=header,width=geometry.columns.size,texture=this.slices(step),draw=()=>{gl.activeTexture(
+gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.flatMap(n=>[n%width,
+Math.floor(n/width)]);graphics.programs.use(this.pickers[1],{u_texels:places}),gl.drawArrays(gl.TRIANGLES,0,3)},bits=graphics.
+numbers(draw,texels.length,slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{let[x,y,z,w]=numbers.subarray(
+4*(layer*texels.length+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.
+key([name],repeat),texture=>{let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,levels=Math.floor(Math.
+log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?
 gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,
 gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let{context:gl,floats:floats2}=this.graphics;makeLayers(gl,texture,
 size);for(let n=0;n<size.layers;n+=1)sendLayer(gl,floats2?{...size,levels:0}:size,n,layer(n));floats2&&size.levels&&gl.generateMipmap(
@@ -1698,46 +1697,42 @@ bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let dat
 1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
 gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<
 this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,
-next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{paper}=this.
-header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.image("nois\
-e",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap()].forEach((texture,n)=>{gl.activeTexture(
-gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){
-return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;textures&&
-(this.dropSlices(before,after),this.bindTextures(before,after)),this.bindNodes(before,after,anchor),gl.drawElements(gl.TRIANGLES,
-this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
-choices:new Map,steps:[],names:""};drawn="";count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;limits;constructor(host,root){
-this.host=host,this.root=root,this.limits=root.header.mesh}has(name,part){return this.tiles.get(name)?.parts.has(part)??
-!1}fail(name,steps){this.failed.add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.
-root.header.scalars.name}`}dispose(){this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){
-let{graphics,header}=this.root,tile=this.tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.name==="mes\
-h"&&this.giveLimits(tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)return;if(graphics.release(tile.parts.
-get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){let own=JSON.parse(new TextDecoder().
-decode(part.data));tile.scene?.dispose(),tile.ranges=own?.ranges,own&&(own.geometry.reach=header.geometry.reach),tile.scene=
-own&&new Scene(graphics,{...header,...own,pyramid:null,bodies:null},tile.parts,keyOf(name)),this.giveMap(tile),this.giveLimits(
-tile)}else tile.scene?.forget(part.name);let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(
-missing,steps));let shown=cover(this.chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&
-this.host.refine()}recolour(colours={}){let{mesh,scalars}=this.root.header,{steps}=this.chosen;for(let tile of this.tiles.
-values()){let{scene,parts}=tile;if(!scene)continue;let{header}=scene;Object.assign(header,{mesh:narrowed(mesh,tile.scalars,
-scalars)},colours),tile.ranges&&this.giveLimits(tile),this.giveMap(tile);for(let name of["scalars","mesh"])scene.forget(
-name);if((steps.length?scene.scalarParts(steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))&&(scalars.log===
-tile.scalars.log||scalars.name===null))continue;let others=[...parts.keys()].filter(name=>name.startsWith("scalars/"));for(let name of others)
-this.release(tile,name)}}emptyTile(){let{scalars}=this.root.header;return{parts:new Map,scene:void 0,scalars,used:this.count}}giveLimits(tile){
-let{mesh,scalars}=this.root.header;if(tile.scalars=scalars,!tile.scene)return;let range=tile.ranges?.[scalars.name??""],
-from=range&&{...scalars,low:range[0],high:range[1],log:!1};tile.scene.header.mesh=from?narrowed(this.limits,from,scalars):
-mesh}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange([
-before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(
-camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.
-keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.
-sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape:shape2}=scene.levels(sight);for(let finer of shown.
-get(names[n])??[])this.hide(levels,shape2[1],finer,names[n]);let{pyramid}=this.root.header,[row2,column]=key.slice(1).map(
-at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row:row2,column,shape:shape2,levels}});return this.layers=layers,
-this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row2,column,size]=this.
-pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/columns);j+=1)levels.fill(
--1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[
-names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,
-mesh,pyramid,formula}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.
-triangles||formula?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(
-levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;
+next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{geometry,
+paper,scalars}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&
+this.image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap(),geometry.triangles||scalars.
+name===null?null:this.nodalShares(before,after)].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<
+4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.
+resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;this.bindNodes(before,
+after,anchor),textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),gl.drawElements(gl.TRIANGLES,this.
+resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+choices:new Map,steps:[],names:""};drawn="";count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;constructor(host,root){
+this.host=host,this.root=root}has(name,part){return this.tiles.get(name)?.parts.has(part)??!1}fail(name,steps){this.failed.
+add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.root.header.scalars.name}`}dispose(){
+this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(name,part){let{graphics,header}=this.root,tile=this.
+tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)
+return;if(graphics.release(tile.parts.get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){
+let own=JSON.parse(new TextDecoder().decode(part.data));tile.scene?.dispose(),own&&(own.geometry.reach=header.geometry.reach),
+tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null,bodies:null},tile.parts,keyOf(name)),this.giveMap(tile)}else
+tile.scene?.forget(part.name);let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,
+steps));let shown=cover(this.chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.
+refine()}recolour(colours={}){let{steps}=this.chosen;for(let tile of this.tiles.values()){let{scene,parts}=tile;if(!scene||
+(Object.assign(scene.header,colours),this.giveMap(tile),scene.forget("scalars"),(steps.length?scene.scalarParts(steps[0],
+steps[steps.length-1]):[]).every(name=>parts.has(name))))continue;let others=[...parts.keys()].filter(name=>name.startsWith(
+"scalars/"));for(let name of others)this.release(tile,name)}}emptyTile(){return{parts:new Map,scene:void 0,used:this.count}}giveMap({
+scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange([before,after]){
+let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(camera,steps),
+layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.keys()){let scene=this.
+tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.sight(canvas.height),
+parts=layers.map(({scene,key},n)=>{let{levels,shape:shape2}=scene.levels(sight);for(let finer of shown.get(names[n])??[])
+this.hide(levels,shape2[1],finer,names[n]);let{pyramid}=this.root.header,[row2,column]=key.slice(1).map(at=>at*(pyramid?.
+tileBlocks??0)<<key[0]);return{step:key[0],row:row2,column,shape:shape2,levels}});return this.layers=layers,this.setTriangles(
+names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row2,column,size]=this.pyramid?.finerPart(
+keyOf(finer),above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/columns);j+=1)levels.fill(-1,j*columns+column,
+j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[names[n],levels]));
+if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,mesh,pyramid,
+formula}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.triangles||
+formula?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,
+joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;
 this.pyramid??=new Pyramid(header.pyramid,placesOf(header)??this.root.part("places").data);let choices=this.pyramid.choose(
 {...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=
 1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+
@@ -1815,59 +1810,59 @@ setHeader(header),this.painter.open?.(header);let isElsewhere=!old||!isSamePlace
 (this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.camera]=[this.keptCamera?null:header.camera,
 null]),old&&old.generation!==header.generation&&this.held.clear(name=>isElsewhere&&!keepsCamera||name.includes("/")),this.
 panel.build(),this.resize(),this.change()}recolour(changes){if(!this.header)return;let colours=this.grounded(changes);Object.
-assign(this.header,colours);for(let name of["scalars","mesh"])this.scene?.forget(name);this.tiles?.recolour(colours),this.
-panel.showLegend(),this.change()}grounded(colours){return this.page.update(),colours.background===void 0?colours:(this.isOnPage=
-colours.background===null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){if(this.options.
-onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,
-part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){let{
-name}=part,tile=tilePart(name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});this.held.set(part)&&
-(this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&
-this.panel.showLegend(),this.change())}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(0,
-2))}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.
-settings,settings),this.requests.follow(this.settings)&&this.renew(),this.panel.update(),this.change())}renew(){this.held.
-clear(name=>/^(flow|scalars)\//.test(name)),this.requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){
-name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
-this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?
-copyOf(state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.
-firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(this.camera.state,state))return;this.camera.state=copyOf(
-state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.
-camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,
-aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,
-first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.
-keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){
-return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
-this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.header??{};if(timeShift===
-null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=last?own:last)}step(count2){
-let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&(this.pause(),this.setTime(
-player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,options}=this,{first,last}=player.range(
-this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.
-time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.player.clock=seconds,this.panel.tick(),
-this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.
-varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),
-this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.
-playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??
-this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=performance.now()+duration}get isHeld(){
-return performance.now()<this.busyUntil}change(cameraOnly=!1){this.painter.restart?.(cameraOnly),this.card.draw(),this.panel.
-showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.setSharp(!1),this.request()}draw(){this.
-frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.dataset.drawn="true",isComplete&&(this.
-frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear(),this.setSharp(!this.playing)),this.sharp||this.
-request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.
-update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){
-let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].
-map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;
-painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=
-this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),this.change()}get ratio(){return this.canvas.height/
-Math.max(this.stage.clientHeight,1)}lost(){this.header&&this.painter.open?.(this.header),this.setSharp(!1)}get scene(){return this.
-painter.scene??null}get tiles(){return this.painter.tiles??null}get shown(){return this.painter.shown??null}get lacking(){
-return this.painter.lacking??[]}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){
-if(!this.lifetime.isOver)try{this.painter.frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could \
-not be drawn.",String(error))}}advance(now){let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;
-!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),
-this.panel.tick(),painter.restart?.(!1),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||
-!camera)throw new Error("there is nothing to look at yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,
-anchor,player,rows:this.stage.clientHeight},shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.
-find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
-return this.canPick?this.painter.find?.(x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+assign(this.header,colours),this.scene?.forget("scalars"),this.tiles?.recolour(colours),this.panel.showLegend(),this.change()}grounded(colours){
+return this.page.update(),colours.background===void 0?colours:(this.isOnPage=colours.background===null,{...colours,background:colours.
+background??this.page.colour})}chooseColours(choice){if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.
+together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(
+part),viewer.recolour(colours)}}setPart(part){let{name}=part,tile=tilePart(name);if(tile)return void this.tiles?.setPart(
+tile[0],{...part,name:tile[1]});this.held.set(part)&&(this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),
+["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),this.change())}trim(){this.held.trim(this.header,
+this.options.source,this.player.moment.slice(0,2))}setSettings(settings){Object.entries(settings).every(([name,value])=>this.
+settings[name]===value)||(Object.assign(this.settings,settings),this.requests.follow(this.settings)&&this.renew(),this.panel.
+update(),this.change())}renew(){this.held.clear(name=>/^(flow|scalars)\//.test(name)),this.requests.stop(),this.header&&
+this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
+this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
+camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!state)this.firstCamera=
+this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(
+this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(
+!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){
+let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;
+let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(
+x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&
+this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.
+clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}followTime(time){
+let{timeShift=0}=this.header??{};if(timeShift===null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(
+first<=own&&own<=last?own:last)}step(count2){let{player,options}=this;if(options.follows)return options.follows.step(count2);
+player.varies&&(this.pause(),this.setTime(player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,
+options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.
+setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.
+player.clock=seconds,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.
+playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),
+this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.
+pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
+let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=
+performance.now()+duration}get isHeld(){return performance.now()<this.busyUntil}change(cameraOnly=!1){this.painter.restart?.(
+cameraOnly),this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.
+setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.
+dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear(),this.setSharp(
+!this.playing)),this.sharp||this.request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=
+String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.
+graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,
+[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===
+this.canvas.height)return;let{painter,canvas}=this;painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=
+[width,height],this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),
+this.change()}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,1)}lost(){this.header&&this.painter.
+open?.(this.header),this.setSharp(!1)}get scene(){return this.painter.scene??null}get tiles(){return this.painter.tiles??
+null}get shown(){return this.painter.shown??null}get lacking(){return this.painter.lacking??[]}lack(reason,tile,steps=[]){
+tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){if(!this.lifetime.isOver)try{this.painter.
+frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}advance(now){
+let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;!player.playing||!player.advance(now,isMade)||
+(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),painter.restart?.(!1),this.
+setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is not\
+hing to look at yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},
+shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{
+header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){return this.canPick?this.painter.find?.(
+x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
 controls",onAxes:"axes",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
 height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.
