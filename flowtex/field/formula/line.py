@@ -14,13 +14,13 @@ from flowtex.field.formula.known import KNOWN
 from flowtex.field.formula.make import formula
 
 _NAMED = re.compile(r"\s*([^\W\d]\w*)\s*=(?!=)(.*)", re.DOTALL)
-#: Steps of a line, at most.
-MOST_TIMES = 200
+#: Letters of a line, and its steps, at most.
+MOST_LETTERS, MOST_TIMES = 4000, 200
 
 
 def is_line(text: str) -> bool:
     """Whether a text is a line, or the name of a known formula."""
-    return ";" in text or text.replace(" ", "_") in KNOWN
+    return (";" in text and len(text) <= MOST_LETTERS) or text.replace(" ", "_") in KNOWN
 
 
 def line_arguments(line: str) -> tuple[list[str], dict[str, Any]]:
