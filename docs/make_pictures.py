@@ -189,6 +189,23 @@ def kernels() -> Picture:
     return _row([flowtex.render(field, **common, **kind) for kind in kinds])
 
 
+def arrows() -> Picture:
+    """Draw arrows along the paths of a wake, of winds, and by the speed of vortices."""
+    common: dict[str, Any] = {"size": (395, 300)}
+    winds = {"level": 250, "globe": True, "cmap": "turbo"}
+    return _row(
+        [
+            flowtex.render(
+                flowtex.examples.cylinder(), zoom=9, focus=(2.0, 0.0), arrows=34, **common
+            ),
+            flowtex.render(flowtex.examples.weather(), arrows=34, **winds, **common),
+            flowtex.render(
+                flowtex.examples.vortex(), arrows=34, arrow_length="speed", zoom=2, **common
+            ),
+        ]
+    )
+
+
 def patterns() -> Picture:
     """Draw what the flow makes of spots, of a checkerboard and of a picture with dye."""
     field = flowtex.examples.double_gyre_field()
@@ -345,7 +362,7 @@ def _page_picture(page: Any, name: str) -> None:
 
 STILLS = (
     *(wake, globe, ocean, zooms, critical, vortices, sphere, torus, level_of_detail, grain, levels),
-    *(correction, kernels, patterns, half_turns, gyre),
+    *(correction, kernels, arrows, patterns, half_turns, gyre),
 )
 PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}
 

@@ -17,6 +17,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import Camera
 from flowtex.field.grids.surface import GridSurface
+from flowtex.quality import spacing
 from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds
 from flowtex.rendering.tile_choice import TileView
 from flowtex.rendering.uniforms import ARROW_LEAST
@@ -75,7 +76,7 @@ def test_arrows_are_even_on_the_screen(make: Any, zoom: float) -> None:
     places = middles(drawn(make(), arrows=SPACING, zoom=zoom))
     apart = np.asarray(cKDTree(places).query(places, 2)[0])[:, 1]
     assert len(places) > 30
-    assert apart.std() <= MOST_UNEVEN * apart.mean()
+    assert spacing(places) <= MOST_UNEVEN
     assert 0.8 * SPACING < apart.mean() < 1.2 * SPACING
 
 
