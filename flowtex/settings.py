@@ -38,6 +38,7 @@ NEEDS: dict[str, tuple[Condition, ...]] = {
     "resolution": (_NEEDS_TEXTURE, ("fixed_grain", "==", True), ("lod", "==", False)),
     "arrows": (("noise", "==", "procedural"),),
     "arrow_length": (("arrows", "!=", 0.0),),
+    "arrow_color": (("arrows", "!=", 0.0),),
     "speed": _NEEDS_MOTION,
     "speed_in": _NEEDS_MOTION,
     "period": _NEEDS_MOTION,
@@ -294,6 +295,11 @@ class Settings:
         default="even",
         text="Arrows that are all as long, or longer where the flow is faster.",
         choices=("even", "speed"),
+    )
+    arrow_color: str = _row(
+        default="contrast",
+        text="Arrows dark with a light edge, or in the colours, over a plain surface.",
+        choices=("contrast", "scalars"),
     )
     show_level: bool = _row(
         default=False,

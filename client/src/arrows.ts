@@ -3,18 +3,19 @@
 
 import { ArrowSeeds, between, type Pair, type Seed, type SeededSurface, type View } from "./arrowseeds.ts";
 import type { Graphics } from "./context.ts";
-import { coordinates } from "./mesh.ts";
+import { coordinates, shares } from "./mesh.ts";
 import type { Data, Header, Part, Settings } from "./protocol.ts";
 import type { Program } from "./programs.ts";
 import { fullIndex, levelIndex, type TileKey } from "./tilechoice.ts";
 import { arrowDistance, hasArrows, type Uniform } from "./uniforms.ts";
 import { add, cross, subtract, unit, type Vector } from "./vectors.ts";
 
-/** Numbers of a seed by the place of their attribute: position, coordinate, normal, corners and radius. */
+/** Numbers of a seed by the place of their attribute: position, coordinate, normal, scalar, corners and radius. */
 const SIZES: [attribute: number, size: number][] = [
   [0, 3],
   [1, 2],
   [2, 3],
+  [4, 2],
   [5, 3],
   [6, 1],
 ];
@@ -49,7 +50,7 @@ export class Arrows {
   private known: SeededSurface | null = null;
   /** Seeds as they were shared last, and as they lie in the buffer. */
   private last: { seeds: Seed[]; layers: readonly Layer[]; shared: Map<Layer, Placed[]> } | null = null;
-  private drawn: { placed: Placed[]; anchor: Vector } | null = null;
+  private drawn: { placed: Placed[]; key: string } | null = null;
 
   constructor(graphics: Graphics, header: Header, parts: ReadonlyMap<string, Part>) {
     this.graphics = graphics;
@@ -90,16 +91,25 @@ export class Arrows {
     return shared;
   }
 
-  /** Draw some above the surface, whose slices lie in their units. */
-  draw(program: Program, placed: Placed[], anchor: Vector, values: Record<string, Uniform>): void {
+  /** Draw some above the surface, whose slices lie in their units, with the values of these parts. */
+  draw(
+    program: Program,
+    placed: Placed[],
+    painted: string[],
+    anchor: Vector,
+    values: Record<string, Uniform>,
+  ): void {
     const { graphics } = this;
     const gl = graphics.context;
     this.array ??= this.make();
     gl.bindVertexArray(this.array);
-    if (this.drawn?.placed !== placed || String(this.drawn.anchor) !== String(anchor)) {
+    const { name, low, high, log } = this.header.scalars;
+    const digests = painted.map((part) => this.parts.get(part)?.digest);
+    const key = JSON.stringify([anchor, painted, digests, name, low, high, log]);
+    if (this.drawn?.placed !== placed || this.drawn.key !== key) {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-      gl.bufferData(gl.ARRAY_BUFFER, this.numbers(placed, anchor) as AllowSharedBufferSource, gl.DYNAMIC_DRAW);
-      this.drawn = { placed, anchor };
+      gl.bufferData(gl.ARRAY_BUFFER, this.numbers(placed, painted, anchor) as AllowSharedBufferSource, gl.DYNAMIC_DRAW);
+      this.drawn = { placed, key };
     }
     graphics.programs.use(program, values);
     gl.enable(gl.BLEND);
@@ -160,8 +170,10 @@ export class Arrows {
     return array;
   }
 
-  private numbers(placed: Placed[], anchor: Vector): Float32Array {
-    const { geometry } = this.header;
+  private numbers(placed: Placed[], painted: string[], anchor: Vector): Float32Array {
+    const { geometry, scalars } = this.header;
+    const steps = painted.map((name) => this.parts.get(name)?.data ?? new Float32Array());
+    const colour = shares(steps, scalars, geometry.shape[0] * geometry.shape[1]);
     const nodes = this.nodes;
     const coordinate = geometry.triangles ? null : coordinates(geometry);
     return Float32Array.from(
@@ -173,6 +185,7 @@ export class Arrows {
           ...subtract(between(nodes, corners, place, 3), anchor),
           ...(coordinate ? between(coordinate, corners, place, 2) : [i * (1 - j), j]),
           ...unit(across),
+          ...between(colour, corners, place, 2),
           ...Array.from(corners).slice(0, 3),
           radius,
         ];

@@ -372,7 +372,8 @@ export class ProgressiveRenderer {
       const program = arrows.program(settings, isNear(header, settings, view));
       if (!program || !placed.length) continue;
       layer.bindTextures(shown[0], shown[1]);
-      arrows.draw(program, placed, view.anchor, { ...values(layer), u_picture: [width, height] });
+      const painted = layer.scalarParts(shown[0], shown[1]);
+      arrows.draw(program, placed, painted, view.anchor, { ...values(layer), u_picture: [width, height] });
     }
   }
 
@@ -388,11 +389,13 @@ export class ProgressiveRenderer {
     const { settings } = this.viewer;
     const { columns, rows } = header.geometry;
     const noise = parts.get("noise")?.shape ?? null;
+    const plain = header.scalars.name !== null && hasArrows(header, settings) && settings.arrow_color === "scalars";
     return {
       ...uniforms(header, { ...settings, samples }, view, noise),
       ...(draft ? draftUniforms(settings, samples, view.density) : {}),
       u_matrix: projection(header.geometry, camera, view.anchor),
-      u_mapped: header.scalars.name !== null,
+      u_mapped: header.scalars.name !== null && !plain,
+      u_plain: plain,
       u_padding: [columns.before, rows.before],
       u_colour: header.colour,
       u_lit: header.lighting,

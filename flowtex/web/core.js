@@ -1406,17 +1406,18 @@ shown,view,region,layer=>this.values(layer,scene,camera,view,samples,draft)),bod
 copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(shown,view,{width,height},values){
 let{camera,settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={
 ...camera.sight(height/view.density),planes:camera.planes};for(let[layer,placed]of scene.arrows.share(seen,settings,this.
-layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));!program||!placed.length||
-(layer.bindTextures(shown[0],shown[1]),arrows.draw(program,placed,view.anchor,{...values(layer),u_picture:[width,height]}))}}values({
-header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get(
-"noise")?.shape??null;return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,
-view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null,u_padding:[
-columns.before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.
-areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){
-if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;
-if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,
-coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,
-0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));if(!program||!placed.length)
+continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.scalarParts(shown[0],shown[1]);arrows.draw(program,placed,
+painted,view.anchor,{...values(layer),u_picture:[width,height]})}}values({header,parts},{bodies},camera,view,samples,draft){
+let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get("noise")?.shape??null,plain=header.scalars.name!==
+null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{...uniforms(header,{...settings,samples},view,
+noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),
+u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_padding:[columns.before,rows.before],u_colour:header.colour,
+u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.
+geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,
+{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,
+pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,
+w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
@@ -1464,7 +1465,7 @@ HASH_FACTORS=[739982445,695872825],HASH_SHIFT=15;function cubeKey(i,j,k){return 
 Math.imul(k,3407524639)}function mixed(key){let hash=key>>>0;for(let factor of HASH_FACTORS)hash=Math.imul(hash^hash>>>HASH_SHIFT,
 factor)>>>0;return(hash^hash>>>HASH_SHIFT)>>>0}var shareOf2=key=>key/2**32;function wholeCell(cell){return{cell,low:[0,0],
 size:[1,1],key:mixed(cell)}}var awayOf=({eye},point)=>eye?length2(subtract2(point,eye)):1,pixelOf=({halfHeight,pixels},away)=>2*
-halfHeight/pixels*away,pixelAt=(view,point)=>pixelOf(view,awayOf(view,point));var SIZES=[[0,3],[1,2],[2,3],[5,3],[6,1]],FLOAT_BYTES=4,STRIDE=SIZES.reduce((sum,[,size])=>sum+size,0),isEqual=(a,b)=>a.
+halfHeight/pixels*away,pixelAt=(view,point)=>pixelOf(view,awayOf(view,point));var SIZES=[[0,3],[1,2],[2,3],[4,2],[5,3],[6,1]],FLOAT_BYTES=4,STRIDE=SIZES.reduce((sum,[,size])=>sum+size,0),isEqual=(a,b)=>a.
 length===b.length&&a.every((each,n)=>each===b[n]),levelOf=({tile})=>tile?.[0]??1/0,Arrows=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}program(settings,isClose){let{shaders,geometry}=this.header;if(!hasArrows(
 this.header,settings))return null;let variant=isClose&&!geometry.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.
@@ -1474,33 +1475,35 @@ seeds===seeds&&isEqual(layers,last.layers))return last.shared;let{corners}=this.
 corners:corners.subarray(4*cell,4*cell+4),place,radius})),shared2=new Map(layers.map(layer=>[layer,[]])),finest=[...layers].
 sort((a,b)=>levelOf(a)-levelOf(b));for(let seed of whole)for(let layer of finest){let placed=layer.tile?this.inTile(seed,
 layer,layer.tile):seed;if(placed){shared2.get(layer)?.push(placed);break}}return this.last={seeds,layers,shared:shared2},
-shared2}draw(program,placed,anchor,values){let{graphics}=this,gl=graphics.context;this.array??=this.make(),gl.bindVertexArray(
-this.array),(this.drawn?.placed!==placed||String(this.drawn.anchor)!==String(anchor))&&(gl.bindBuffer(gl.ARRAY_BUFFER,this.
-buffer),gl.bufferData(gl.ARRAY_BUFFER,this.numbers(placed,anchor),gl.DYNAMIC_DRAW),this.drawn={placed,anchor}),graphics.
-programs.use(program,values),gl.enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),
-gl.depthMask(!1),gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,2*(this.header.constants.arrows.pieces+1),placed.length),gl.
-depthMask(!0),gl.disable(gl.BLEND),gl.bindVertexArray(null)}forget(){this.known=this.seeds=this.last=this.drawn=null}dispose(){
-this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.buffer=null,this.forget()}inTile({
-corners,place,radius},layer,[level,row2,column]){let{geometry,pyramid,mesh}=this.header;if(!pyramid||geometry.triangles)
-return null;let side=mesh.tileCells*pyramid.tileBlocks,[rows,columns]=layer.header.geometry.shape,width=geometry.shape[1],
-line=(at,axis,tile,cells)=>{let nodes=pyramid.shapes[0][axis],own=levelIndex(fullIndex(at,pyramid.depth,nodes),level,nodes)-
-tile*side,cell=Math.min(Math.max(Math.floor(own),0),cells-1);return own<0||own>cells?null:[cell,own-cell]},i=line(corners[0]%
-width+place[0],1,column,columns-1),j=line(Math.floor(corners[0]/width)+place[1],0,row2,rows-1);if(!i||!j||layer.parts.get(
-"cells")?.data[j[0]*(columns-1)+i[0]]===0)return null;let low=j[0]*columns+i[0];return{corners:[low,low+1,low+columns,low+
-columns+1],place:[i[1],j[1]],radius}}make(){let gl=this.graphics.context,array=this.graphics.counted(gl.createVertexArray());
-this.buffer=this.graphics.counted(gl.createBuffer()),gl.bindVertexArray(array),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer);
-let offset=0;for(let[attribute,size]of SIZES)gl.enableVertexAttribArray(attribute),gl.vertexAttribPointer(attribute,size,
-gl.FLOAT,!1,STRIDE*FLOAT_BYTES,offset),gl.vertexAttribDivisor(attribute,1),offset+=size*FLOAT_BYTES;return array}numbers(placed,anchor){
-let{geometry}=this.header,nodes=this.nodes,coordinate=geometry.triangles?null:coordinates(geometry);return Float32Array.
+shared2}draw(program,placed,painted,anchor,values){let{graphics}=this,gl=graphics.context;this.array??=this.make(),gl.bindVertexArray(
+this.array);let{name,low,high,log}=this.header.scalars,digests=painted.map(part=>this.parts.get(part)?.digest),key=JSON.
+stringify([anchor,painted,digests,name,low,high,log]);(this.drawn?.placed!==placed||this.drawn.key!==key)&&(gl.bindBuffer(
+gl.ARRAY_BUFFER,this.buffer),gl.bufferData(gl.ARRAY_BUFFER,this.numbers(placed,painted,anchor),gl.DYNAMIC_DRAW),this.drawn=
+{placed,key}),graphics.programs.use(program,values),gl.enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,
+gl.ZERO,gl.ONE),gl.depthMask(!1),gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,2*(this.header.constants.arrows.pieces+1),placed.
+length),gl.depthMask(!0),gl.disable(gl.BLEND),gl.bindVertexArray(null)}forget(){this.known=this.seeds=this.last=this.drawn=
+null}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.buffer=
+null,this.forget()}inTile({corners,place,radius},layer,[level,row2,column]){let{geometry,pyramid,mesh}=this.header;if(!pyramid||
+geometry.triangles)return null;let side=mesh.tileCells*pyramid.tileBlocks,[rows,columns]=layer.header.geometry.shape,width=geometry.
+shape[1],line=(at,axis,tile,cells)=>{let nodes=pyramid.shapes[0][axis],own=levelIndex(fullIndex(at,pyramid.depth,nodes),
+level,nodes)-tile*side,cell=Math.min(Math.max(Math.floor(own),0),cells-1);return own<0||own>cells?null:[cell,own-cell]},
+i=line(corners[0]%width+place[0],1,column,columns-1),j=line(Math.floor(corners[0]/width)+place[1],0,row2,rows-1);if(!i||
+!j||layer.parts.get("cells")?.data[j[0]*(columns-1)+i[0]]===0)return null;let low=j[0]*columns+i[0];return{corners:[low,
+low+1,low+columns,low+columns+1],place:[i[1],j[1]],radius}}make(){let gl=this.graphics.context,array=this.graphics.counted(
+gl.createVertexArray());this.buffer=this.graphics.counted(gl.createBuffer()),gl.bindVertexArray(array),gl.bindBuffer(gl.
+ARRAY_BUFFER,this.buffer);let offset=0;for(let[attribute,size]of SIZES)gl.enableVertexAttribArray(attribute),gl.vertexAttribPointer(
+attribute,size,gl.FLOAT,!1,STRIDE*FLOAT_BYTES,offset),gl.vertexAttribDivisor(attribute,1),offset+=size*FLOAT_BYTES;return array}numbers(placed,painted,anchor){
+let{geometry,scalars}=this.header,steps=painted.map(name=>this.parts.get(name)?.data??new Float32Array),colour=shares(steps,
+scalars,geometry.shape[0]*geometry.shape[1]),nodes=this.nodes,coordinate=geometry.triangles?null:coordinates(geometry);return Float32Array.
 from(placed.flatMap(({corners,place,radius})=>{let[i,j]=place,[a,b,c,d]=Array.from(corners,n=>[...nodes.subarray(3*n,3*n+
 3)]),across=cross2(subtract2(add(b,d),add(a,c)),subtract2(add(c,d),add(a,b)));return[...subtract2(between2(nodes,corners,
-place,3),anchor),...coordinate?between2(coordinate,corners,place,2):[i*(1-j),j],...unit(across),...Array.from(corners).slice(
-0,3),radius]}))}get nodes(){return this.parts.get("position")?.data??new Float32Array}get surface(){return this.known??=
-{geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry}=this.header,[rows,columns]=geometry.
-shape,result2=[];if(geometry.triangles){let nodes=this.parts.get("triangles")?.data??[];for(let n=0;n<nodes.length;n+=3)
-result2.push(nodes[n],nodes[n+1],nodes[n+2],nodes[n+2]);return Uint32Array.from(result2)}let cells=this.parts.get("cells")?.
-data;for(let n=0;n<(rows-1)*(columns-1);n+=1){if(cells&&!cells[n])continue;let low=n+Math.floor(n/(columns-1));result2.push(
-low,low+1,low+columns,low+columns+1)}return Uint32Array.from(result2)}};var BODY_PARTS=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],LIGHTS=8,[ENDS_BYTES,COLOURS_BYTES]=[
+place,3),anchor),...coordinate?between2(coordinate,corners,place,2):[i*(1-j),j],...unit(across),...between2(colour,corners,
+place,2),...Array.from(corners).slice(0,3),radius]}))}get nodes(){return this.parts.get("position")?.data??new Float32Array}get surface(){
+return this.known??={geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry}=this.
+header,[rows,columns]=geometry.shape,result2=[];if(geometry.triangles){let nodes=this.parts.get("triangles")?.data??[];for(let n=0;n<
+nodes.length;n+=3)result2.push(nodes[n],nodes[n+1],nodes[n+2],nodes[n+2]);return Uint32Array.from(result2)}let cells=this.
+parts.get("cells")?.data;for(let n=0;n<(rows-1)*(columns-1);n+=1){if(cells&&!cells[n])continue;let low=n+Math.floor(n/(columns-
+1));result2.push(low,low+1,low+columns,low+columns+1)}return Uint32Array.from(result2)}};var BODY_PARTS=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],LIGHTS=8,[ENDS_BYTES,COLOURS_BYTES]=[
 24,8],BEHIND=[1,2],PLATE_MARGIN=.2;function atEnds(values,pieces,size){let Type=values.constructor,ends=new Type(size*pieces.
 length);for(let n=0;n<pieces.length;n+=1)for(let k=0;k<size;k+=1)ends[size*n+k]=values[size*pieces[n]+k];return ends}function lightUniforms({
 geometry,bodies},camera){let[right,up,ahead]=camera.axes,lights=(bodies?.lights??[]).slice(0,LIGHTS),ways=lights.map(({way,

@@ -15,11 +15,14 @@ float flowtexArrowDistance(vec2 place, float size)
   return min(line, max(flank, back));
 }
 
-vec4 flowtexArrow(vec2 place, float size, float share)
+// A dark arrow with a light edge, or where `tint` tells so one of its colour with a dark edge.
+vec4 flowtexArrow(vec2 place, float size, float share, vec4 tint)
 {
   float away = flowtexArrowDistance(place, size);
   float core = clamp(0.5 - away, 0.0, 1.0);
   float whole = clamp(0.5 + FLOWTEX_ARROW_OUTLINE - away, 0.0, 1.0);
   float halo = whole * FLOWTEX_ARROW_OUTLINE_OPACITY;
-  return vec4(mix(FLOWTEX_ARROW_LIGHT, FLOWTEX_ARROW_DARK, core), mix(halo, 1.0, core) * share);
+  vec3 inside = mix(FLOWTEX_ARROW_DARK, tint.rgb, tint.a);
+  vec3 edge = mix(FLOWTEX_ARROW_LIGHT, FLOWTEX_ARROW_DARK, tint.a);
+  return vec4(mix(edge, inside, core), mix(halo, 1.0, core) * share);
 }

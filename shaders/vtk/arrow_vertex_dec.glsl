@@ -9,4 +9,7 @@ in vec3 flowtexCorners;
 #endif
 out vec2 flowtexPlaceVSOutput;
 out vec2 flowtexShapeVSOutput; // size and share
+out vec4 flowtexCoreVSOutput; // colour, and whether it is that of a value
+uniform bool u_plain; // the arrows have the colours
 //#include common/arrow.glsl
+//#include vtk/mapped.glsl

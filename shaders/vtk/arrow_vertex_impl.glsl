@@ -9,3 +9,4 @@
   gl_Position = flowtexVertex.position;
   flowtexPlaceVSOutput = flowtexVertex.place;
   flowtexShapeVSOutput = vec2(flowtexVertex.size, flowtexVertex.share);
+  flowtexCoreVSOutput = u_plain ? vec4(flowtexMapped(flowtexCoordinate), 1.0) : vec4(0.0);

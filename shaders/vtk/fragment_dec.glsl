@@ -12,10 +12,10 @@ in vec2 flowtexNoiseVSOutput;
 //#include common/uniforms.glsl
 //#include common/flowtex.glsl
 
-uniform bool u_mapped;            // colour by the values of the nodes, or as VTK does
-uniform sampler2DArray u_shares;  // of the range of the colour map, and where there is a value
-uniform sampler2DArray u_colours; // below the range, in it, above it, and without a value
-uniform vec2 u_padding;           // texels of the slices before the first node
+//#include vtk/mapped.glsl
+uniform bool u_mapped;            // colour by the values of the nodes, or as VTK does,
+uniform bool u_plain;             // or in one colour, as arrows have the others
+uniform vec3 u_plainColour;
 
 vec2 flowtexPlaced; // texture coordinate of the fragment
 
@@ -74,23 +74,3 @@ void flowtexPlace(inout vec2 coordinate, inout vec3 position, inout vec3 normal,
   }
 }
 #endif
-
-// Values are interpolated first and mapped then, each entry of the map over an equal share.
-vec3 flowtexMapped(vec2 coordinate)
-{
-#ifdef FLOWTEX_TRIANGLES
-  vec3 shares = flowtexShares(coordinate);
-  vec2 share = vec2(0.0);
-  for (int k = 0; k < 3; ++k)
-    share += shares[k] * texelFetch(u_shares, ivec3(flowtexNodes[k], 0), 0).rg;
-#else
-  vec2 at = (coordinate * u_slicesSize - u_padding) / vec2(textureSize(u_shares, 0).xy);
-  vec2 share = textureLod(u_shares, vec3(at, 0.0), 0.0).rg;
-#endif
-  int count = textureSize(u_colours, 0).x - 3;
-  float place = share.x / max(share.y, 0.5);
-  int entry = place == 1.0 ? count : int(clamp(floor(place * float(count)), -1.0, float(count))) + 1;
-  if (share.y < 0.5)
-    entry = count + 2;
-  return texelFetch(u_colours, ivec3(entry, 0, 0), 0).rgb;
-}

@@ -14,6 +14,8 @@
   vec3 flowtexColour = (ambientColor + diffuseColor) / max(ambientIntensity + diffuseIntensity, FLOWTEX_LEAST_LIGHTNESS);
   if (u_mapped)
     flowtexColour = flowtexMapped(flowtexPlaced);
+  if (u_plain)
+    flowtexColour = u_plainColour;
   if (u_showLevel)
     flowtexColour = flowtexLevelColour(flowtexNoiseLevel);
 #ifdef FLOWTEX_PICTURE

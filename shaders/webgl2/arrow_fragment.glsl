@@ -1,5 +1,6 @@
 in vec2 flowtexPlaceOut;
 in vec2 flowtexShapeOut;
+in vec4 flowtexCoreOut;
 
 //#include common/arrow_shape.glsl
 
@@ -7,5 +8,5 @@ out vec4 flowtexOut;
 
 void main()
 {
-  flowtexOut = flowtexArrow(flowtexPlaceOut, flowtexShapeOut.x, flowtexShapeOut.y);
+  flowtexOut = flowtexArrow(flowtexPlaceOut, flowtexShapeOut.x, flowtexShapeOut.y, flowtexCoreOut);
 }

@@ -11,13 +11,17 @@ const vec3 flowtexNormal = vec3(0.0, 0.0, 1.0);
 in vec3 flowtexCorners;
 #endif
 in float flowtexRadius;
+in vec2 flowtexScalar; // share of the colour map's range, at both times of the slices
 
 uniform mat4 u_matrix; // from the surface's frame to the picture
 
 out vec2 flowtexPlaceOut;
 out vec2 flowtexShapeOut; // size and share
+out vec4 flowtexCoreOut;  // colour, and whether it is that of a value
+uniform bool u_plain;     // the arrows have the colours
 
 //#include common/arrow.glsl
+//#include webgl2/mapped.glsl
 
 void main()
 {
@@ -30,4 +34,10 @@ void main()
   gl_Position = stroke.position;
   flowtexPlaceOut = stroke.place;
   flowtexShapeOut = vec2(stroke.size, stroke.share);
+#ifdef FLOWTEX_UNSTEADY
+  float scalar = mix(flowtexScalar.x, flowtexScalar.y, u_between);
+#else
+  float scalar = flowtexScalar.x;
+#endif
+  flowtexCoreOut = u_plain ? vec4(flowtexMapped(scalar), 1.0) : vec4(0.0);
 }

@@ -14,7 +14,7 @@ in vec2 flowtexNoiseOut;
 //#include common/uniforms.glsl
 //#include common/flowtex.glsl
 
-uniform sampler2D u_cmap;  // FLOWTEX_COLOURS colours
+//#include webgl2/mapped.glsl
 #ifndef FLOWTEX_TRIANGLES
 uniform highp sampler2D u_shares; // of the colour map's range at the nodes, at both times of the slices
 uniform vec2 u_padding;           // texels of the slices before the first node
@@ -25,11 +25,6 @@ uniform bool u_lit;
 uniform vec3 u_toEye;      // way to the light, which is the camera's own
 uniform vec3 u_ground;     // behind the surface
 uniform float u_opacity;
-
-// Where there is no value: nodes without one are given one far below all others.
-const vec3 FLOWTEX_NO_VALUE_COLOUR = vec3(0.663);
-const float FLOWTEX_NO_VALUE = -1e3;
-const float FLOWTEX_COLOURS = 256.0; // entries of the colour map
 
 out vec4 flowtexOut;
 
@@ -53,15 +48,6 @@ float flowtexShareAt(vec2 coordinate)
 #endif
 }
 #endif
-
-// Scalars are interpolated first and mapped then, each entry of the map over an equal share.
-vec3 flowtexMapped(float share)
-{
-  if (share < FLOWTEX_NO_VALUE)
-    return FLOWTEX_NO_VALUE_COLOUR;
-  int entry = int(clamp(share * FLOWTEX_COLOURS, 0.0, FLOWTEX_COLOURS - 1.0));
-  return texelFetch(u_cmap, ivec2(entry, 0), 0).rgb;
-}
 
 void main()
 {

@@ -52,7 +52,7 @@ def test_no_line_of_shader_text_stands_in_python() -> None:
 def test_every_uniform_that_is_declared_is_set() -> None:
     texts = map(
         shaders.shader_source,
-        ("common/uniforms.glsl", "common/arrow.glsl", "vtk/fragment_dec.glsl"),
+        ("common/uniforms.glsl", "common/arrow.glsl", "vtk/fragment_dec.glsl", "vtk/mapped.glsl"),
     )
     declared = set(re.findall(r"^uniform .*?(u_\w+)", "\n".join(texts), re.M))
     package = Path(shaders.__file__).parent

@@ -14,10 +14,13 @@ from webgl_page import ClientPage, packed, state
 
 import flowtex
 from flowtex import FlowField
+from flowtex._util.array_types import Bytes
 from flowtex.camera import Camera
+from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.scene import Scene
 from flowtex.settings import Settings
+from flowtex.web.view import web_views
 
 pytestmark = pytest.mark.browser
 
@@ -44,9 +47,24 @@ def test_arrows_are_those_of_vtk(client: ClientPage, name: str) -> None:
     view = client.mount(packed(data, header, steps), SIZE, controls=False, smooth=False)
     theirs = client.picture(view)
     look = {"scalars": False, "color": COLOUR, "background": GROUND, "lighting": False}
+    compare(theirs, make(), camera=camera, time=time, **{**look, **options})
+
+
+def test_arrows_have_the_colours(client: ClientPage) -> None:
+    look = {"color": COLOUR, "background": GROUND, "lighting": False, "cmap": "turbo"}
+    options: dict[str, Any] = {**look, **PLAIN, "arrow_color": "scalars"}
+    web = web_views(swinging(), Options.split(**options))[0]
+    data, camera = web.data(), straight(1, (0, 0))
+    header = data.header(web.scene.settings, camera=state(camera), time=0.55)
+    view = client.mount(packed(data, header, (0, 1, 2)), SIZE, controls=False, smooth=False)
+    theirs = client.picture(view)
+    compare(theirs, swinging(), camera=camera, time=0.55, show_scalar_bar=False, **options)
+
+
+def compare(theirs: Bytes, field: FlowField, **options: Any) -> None:
     ours, without = (
-        flowtex.render(make(), size=SIZE, camera=camera, time=time, **{**look, **options, **more})
-        for more in ({}, {"arrows": 0})
+        flowtex.render(field, size=SIZE, **{**options, **more})
+        for more in ({}, {"arrows": 0, "scalars": False})
     )
     assert (np.abs(ours.astype(int) - without) > 60).any(axis=-1).mean() > 0.02
     # Outlines of the surface are smoothed in one of them.

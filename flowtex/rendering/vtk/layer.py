@@ -31,6 +31,7 @@ from flowtex.rendering.triangle_blocks import TriangleBlocks, mesh_levels_of
 from flowtex.rendering.uniforms import (
     ANCHOR_RANGE,
     ViewState,
+    has_arrows,
     is_moving,
     is_near,
     is_sparse,
@@ -220,7 +221,11 @@ class FlowLayer:
         above, before = self._textures.geometry.padding
         values["u_padding"] = float(before), float(above)
         values["u_anchor"] = tuple(float(c) for c in self.view.anchor)
+        arrows = has_arrows(self._textures, self._settings)
+        coloured = arrows and self._settings.arrow_color == "scalars"
         values["u_mapped"] = self._colours is not None
+        values["u_plain"] = coloured and self._colours is not None
+        values["u_plainColour"] = tuple(self._actor.prop.color.float_rgb)
         for name, value in values.items():
             if program.IsUniformUsed(name) or isinstance(value, list):
                 write_uniform(program, name, value)

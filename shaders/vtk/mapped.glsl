@@ -1,0 +1,23 @@
+uniform sampler2DArray u_shares;  // of the range of the colour map, and where there is a value
+uniform sampler2DArray u_colours; // below the range, in it, above it, and without a value
+uniform vec2 u_padding;           // texels of the slices before the first node
+
+// Values are interpolated first and mapped then, each entry of the map over an equal share.
+vec3 flowtexMapped(vec2 coordinate)
+{
+#ifdef FLOWTEX_TRIANGLES
+  vec3 shares = flowtexShares(coordinate);
+  vec2 share = vec2(0.0);
+  for (int k = 0; k < 3; ++k)
+    share += shares[k] * texelFetch(u_shares, ivec3(flowtexNodes[k], 0), 0).rg;
+#else
+  vec2 at = (coordinate * u_slicesSize - u_padding) / vec2(textureSize(u_shares, 0).xy);
+  vec2 share = textureLod(u_shares, vec3(at, 0.0), 0.0).rg;
+#endif
+  int count = textureSize(u_colours, 0).x - 3;
+  float place = share.x / max(share.y, 0.5);
+  int entry = place == 1.0 ? count : int(clamp(floor(place * float(count)), -1.0, float(count))) + 1;
+  if (share.y < 0.5)
+    entry = count + 2;
+  return texelFetch(u_colours, ivec3(entry, 0, 0), 0).rgb;
+}
