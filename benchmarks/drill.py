@@ -169,7 +169,7 @@ class Drill:
         while True:
             try:
                 link = await self._open(http)
-                view = link.key("picture").replace("picture", "view")
+                view = link.key("painter").replace("painter", "view")
                 await link.call("trame.rca.size", view, "drill", {"w": WIDE, "h": HIGH, "p": 1})
                 for _ in range(FILES_OF_A_PAGE):
                     name, content = next(files)
