@@ -25,6 +25,7 @@ from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
 from flowtex.field.io.arrays import FieldArrays
 from flowtex.field.io.files import errors_of, read_files
+from flowtex.field.io.inspection.zarr_folder import check_zarr
 from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.places import (
     PyramidError,
@@ -268,6 +269,9 @@ def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
     xarray = import_extra("xarray", "xarray")
     zarr = import_extra("zarr", "store")
     own = {str(options[name]) for name in "uv" if options.get(name)}
+    if not is_remote(place):
+        with errors_of(place):
+            check_zarr(Path(place))
     try:
         store = OthersObjects(store_at(place), tuple(own))
         attributes = zarr.open_group(store, mode="r").attrs

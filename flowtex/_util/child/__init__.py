@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from flowtex._util.child.forkserver import FORKS
-from flowtex._util.child.supervisor import Child, ChildError, prepare
+from flowtex._util.child.supervisor import ENDED, Child, ChildError, prepare
 
-__all__ = ["FORKS", "Child", "ChildError", "prepare"]
+__all__ = ["ENDED", "FORKS", "Child", "ChildError", "prepare"]

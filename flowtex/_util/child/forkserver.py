@@ -52,14 +52,16 @@ class ForkServer:
             env={"OPENBLAS_NUM_THREADS": "1", **os.environ},
         )
         other.close()
-        self._owner, self._lost = os.getpid(), False
+        self._owner = os.getpid()
+        #: Whether it is known to have died.
+        self.lost = False
         self.close = weakref.finalize(self, _close, self._control, self._process, self._owner)
 
     @property
     def alive(self) -> bool:
         """Whether it can be asked, as far as is known; one that was forked from an owner may."""
         owned = self._owner == os.getpid()
-        return not self._lost and (not owned or self._process.poll() is None)
+        return not self.lost and (not owned or self._process.poll() is None)
 
     def start(self, entry: str, memory: int, pipes: tuple[int, int, int], *, lasting: bool) -> None:
         """Fork a child, with the pipes of its requests, its answers and its status."""
@@ -67,7 +69,7 @@ class ForkServer:
         try:
             socket.send_fds(self._control, [text], list(pipes))
         except OSError:
-            self._lost = True
+            self.lost = True
             raise
 
 

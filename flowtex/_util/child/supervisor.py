@@ -31,6 +31,8 @@ if FORKS:
 CHECK_INTERVAL_S, STATUS_WAIT_S = 0.05, 5.0
 #: Share of the memory that is available when a child starts which it may take.
 MEMORY_SHARE = 0.6
+#: How a child ended of which nobody knows more, as where what it was forked from has died.
+ENDED = "ended"
 #: Bytes that may wait in the pipe of answers.
 PIPE_BYTES = 1 << 20
 
@@ -209,7 +211,7 @@ def _listen(
 
 def _ending(status: int | None) -> str:
     if status is None or status >= 0:
-        return "ended" if status is None else f"ended (status {status})"
+        return ENDED if status is None else f"ended (status {status})"
     try:
         return f"crashed ({signal.Signals(-status).name})"
     except ValueError:
@@ -228,11 +230,13 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], lasting: bool) ->
     pipes = requests[0], answers[1], status[1]
     with suppress(OSError):  # fewer turns between the two processes, where it may be so large
         fcntl.fcntl(answers[1], fcntl.F_SETPIPE_SZ, PIPE_BYTES)
+    server = fork_server(preload)
     try:
         try:
-            fork_server(preload).start(entry, memory, pipes, lasting=lasting)
+            server.start(entry, memory, pipes, lasting=lasting)
         except OSError:  # it has died since
-            fork_server(preload).start(entry, memory, pipes, lasting=lasting)
+            server = fork_server(preload)
+            server.start(entry, memory, pipes, lasting=lasting)
     finally:
         for pipe in pipes:
             os.close(pipe)
@@ -241,8 +245,9 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], lasting: bool) ->
     def exit_status() -> int | None:
         with suppress(OSError, ValueError):
             if select.select([told], [], [], STATUS_WAIT_S)[0]:
-                code = told.read(STATUS_BYTES)
-                return int.from_bytes(code, "big", signed=True) if code else None
+                if code := told.read(STATUS_BYTES):
+                    return int.from_bytes(code, "big", signed=True)
+                server.lost = True  # it has died, or is dying
         return None
 
     # The fork server ends a child whose pipe is closed.

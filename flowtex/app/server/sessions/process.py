@@ -20,14 +20,14 @@ import aiohttp
 from aiohttp import WSMsgType, web
 from yarl import URL
 
-from flowtex._util.child import Child, ChildError
+from flowtex._util.child import ENDED, Child, ChildError
 from flowtex._util.progress import Stopped, check, stoppable
 from flowtex.app.server.files import CHUNK_BYTES
 from flowtex.app.server.sessions.registry import OpenSession, Session
 from flowtex.errors import FieldError
 
 #: Seconds within which a session opens, and ends once it was asked to.
-OPENING_S, ENDING_S = 600.0, 5.0
+OPENING_S, ENDING_S = 600.0, 15.0
 #: Seconds between two looks whether a session is to end.
 CHECK_S = 0.05
 #: Headers of a request, and of an answer, that are handed on.
@@ -53,12 +53,14 @@ def process_opener(
         Called with what is said of each session.
     """
 
-    async def open_session() -> Session:
+    async def open_session(*, again: bool = True) -> Session:
         child = Child(entry, preload=preload, lasting=True)
         try:
             about, _ = await asyncio.to_thread(child.request, {"open": request}, timeout=OPENING_S)
         except ChildError as error:
             child.close()
+            if again and str(error) == ENDED:  # what it was to be forked from has died
+                return await open_session(again=False)
             raise _opening_error(error) from error
         opened(about["said"])
         return ProcessSession(child, about)
@@ -87,19 +89,23 @@ class ProcessSession(Session):
         super().__init__(_Files(about["files"], self._http), about["token"])
         self.static = about["static"]
         self._child = child
-        self._ending = False
+        self._ending, self._ended = False, asyncio.Event()
         loop = asyncio.get_running_loop()
         threading.Thread(target=self._run, args=(loop,), name="session", daemon=True).start()
 
     def _run(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Have the other process run, and hear of its end."""
-        with stoppable(lambda: self._ending), suppress(Stopped):
+        """Have the other process run until it is to end, and hear of its end."""
+        with suppress(Stopped), stoppable(lambda: self._ending):
             try:
                 self._child.request({"run": True}, timeout=math.inf)
             except ChildError as error:
                 if not self._ending:
                     with suppress(RuntimeError):  # the server has ended
                         loop.call_soon_threadsafe(self._fall, str(error))
+        with suppress(ChildError):
+            self._child.request({"end": True}, timeout=ENDING_S)
+        with suppress(RuntimeError):
+            loop.call_soon_threadsafe(self._ended.set)
 
     def _fall(self, how: str) -> None:
         self.lost(f"its process {how}")
@@ -134,9 +140,9 @@ class ProcessSession(Session):
         self._ending = True
         await self.disconnect()
         await self._http.close()
-        with suppress(ChildError, TimeoutError):
+        with suppress(TimeoutError):
             async with asyncio.timeout(ENDING_S):
-                await asyncio.to_thread(self._child.request, {"end": True}, timeout=ENDING_S)
+                await self._ended.wait()
         self._child.close()
 
 
