@@ -67,6 +67,8 @@ export class Viewer implements User, View {
   together: Viewer[] = [this];
   readonly painter: Painter;
   private readonly page: Ground;
+  /** The header as the host gave it, with the present colours. */
+  private given: Header | null = null;
   /** Whether the picture has the ground of the page. */
   private isOnPage = false;
   private busyUntil = 0;
@@ -139,6 +141,7 @@ export class Viewer implements User, View {
     const isSame = old?.generation !== undefined && old.generation === header.generation;
     if (isSame) return this.recolour(coloursOf(header));
     if (old) this.holdDraft(STEADY_MS);
+    this.given = header;
     header = { ...header, ...this.grounded(header) };
     this.header = header;
     this.settings = { ...header.settings, ...header.own };
@@ -164,6 +167,7 @@ export class Viewer implements User, View {
     if (!this.header) return;
     const colours = this.grounded(changes);
     Object.assign(this.header, colours);
+    Object.assign(this.given ?? {}, changes); // a source reads there what is wanted
     this.scene?.forget("scalars");
     this.tiles?.recolour(colours);
     this.panel.showLegend();

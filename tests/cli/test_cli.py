@@ -434,7 +434,6 @@ def test_every_option_is_a_flag_with_its_sentence(run: Run) -> None:
         "1 is opaque, 0 invisible",
         "[default: 1.0]",
         "--no-lighting",
-        "[default: white]",
     ):
         assert words in out
 
