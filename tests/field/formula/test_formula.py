@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from typing import Any
 
@@ -39,7 +40,7 @@ VALUES = {"x": np.linspace(-2.0, 2.0, 9), "y": np.linspace(0.3, 1.7, 9), "b": 0.
         ),
         (
             "ln(y)*atan2(y, x)**2 \u2212 pi\u00b7e",
-            lambda x, y, b: np.log(y) * np.arctan2(y, x) ** 2 - np.pi * np.e,
+            lambda x, y, b: np.log(y) * np.arctan2(y, x) ** 2 - np.pi * math.e,
         ),
     ],
 )
