@@ -69,8 +69,9 @@ export interface Painter {
   refine?(): void;
   /** Show a part of a picture of the host's. */
   show?(picture: ImageBitmap, left: number, width: number, isSharp: boolean): void;
-  /** What is at (x, y), from -1 to 1, right and up, and whether that can be told. */
+  /** Find the point of the surface at (x, y), from -1 to 1 to the right and up. */
   find?(x: number, y: number): Found | null;
+  /** Whether points can be found yet. */
   readonly canPick?: boolean;
   /** Names of the parts that the present moment lacks. */
   readonly lacking?: string[];

@@ -108,10 +108,12 @@ def show(
     check_lines(choice, options)
     from flowtex import diagnostics
 
-    if on_page := page is not None or not diagnostics.has_display():
+    on_page = page is not None or not diagnostics.has_display()
+    on_page = on_page or not (len(files) == 1 or _belong_together(files)) or _is_folder(files[0])
+    if on_page:
         begin()
     diagnostics.require_opengl()
-    if on_page or not (len(files) == 1 or _belong_together(files)) or _is_folder(files[0]):
+    if on_page:
         return _show_page(files, choice, page, options)
     field = load_field(files, choice)
     from flowtex import show as show_window

@@ -208,11 +208,13 @@ def test_missing_opengl_has_a_code_of_its_own(
 
 
 def test_a_missing_extra_is_told_with_its_command(
-    run: Run, monkeypatch: pytest.MonkeyPatch, opengl: object
+    run: Run, gyre: Path, monkeypatch: pytest.MonkeyPatch, opengl: object
 ) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    code, _, err = run("demo")
-    assert code == 2 and 'pip install -e ".[app]"' in err and "trame_rca" in err
+    monkeypatch.setattr("flowtex.diagnostics.has_display", lambda: True)
+    for words in (("demo",), ("show", gyre.parent)):
+        code, _, err = run(*words)
+        assert code == 2 and 'pip install -e ".[app]"' in err and "trame_rca" in err
 
 
 def test_debug_shows_where_an_error_came_from() -> None:

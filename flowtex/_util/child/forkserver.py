@@ -53,13 +53,13 @@ class ForkServer:
         )
         other.close()
         self._owner = os.getpid()
-        #: Whether it is known to have died.
+        #: Whether it has died, as a failed request has shown.
         self.lost = False
         self.close = weakref.finalize(self, _close, self._control, self._process, self._owner)
 
     @property
     def alive(self) -> bool:
-        """Whether it can be asked, as far as is known; one that was forked from an owner may."""
+        """Whether it runs, as far as is known; a fork of its owner may use it as well."""
         owned = self._owner == os.getpid()
         return not self.lost and (not owned or self._process.poll() is None)
 

@@ -198,7 +198,7 @@ class Formula:
         return _values(self.surface, self._named(u, v))
 
     def velocity(self, u: Floats, v: Floats, time: float) -> Floats:
-        """Return the velocity (J, I, 2 or 3) at coordinates (J, I), NaN where there is none."""
+        """Return the velocity (J, I, 2 or 3) at coordinates (J, I), NaN where it is undefined."""
         values = self._named(u, v) | {"t": time}
         if self.surface:
             values |= dict(zip("xyz", np.moveaxis(self.points(u, v), -1, 0), strict=True))
@@ -219,7 +219,7 @@ class Formula:
 
 
 def _values(expressions: tuple[Expression, ...], values: Mapping[str, Any]) -> Floats:
-    """Return the values of expressions at nodes, side by side; NaN where there is none."""
+    """Evaluate expressions at nodes, (J, I, number of expressions); NaN where one is undefined."""
     shape = next(np.shape(value) for value in values.values() if np.ndim(value))
     result = np.empty((*shape, len(expressions)))
     with np.errstate(all="ignore"):

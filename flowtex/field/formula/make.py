@@ -129,9 +129,7 @@ def formula(
         periodic=_closed(points) if made.surface else "",
         name=name or title,
     )
-    result = replace(field, formula=made)
-    result.__dict__["surface"] = field.surface
-    return result
+    return replace(field, formula=made)
 
 
 def _known(name: Any) -> tuple[str, tuple[str, str], dict[str, Any]]:

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.util.vtkConstants import VTK_OBJECT
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from flowtex._util.array_types import Floats
@@ -20,7 +19,7 @@ from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds, in_tile, vertex_dat
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import TileView
 from flowtex.rendering.uniforms import ARROW_PIECES, arrow_distance, has_arrows, is_near, variants
-from flowtex.rendering.vtk.layer import FlowLayer, write_uniform
+from flowtex.rendering.vtk.layer import FlowLayer, observe_draws, write_uniform
 from flowtex.rendering.vtk.mesh import FlowMapper
 from flowtex.settings import Settings
 from flowtex.textures import SurfaceGeometry
@@ -120,15 +119,7 @@ class _Arrows:
         self.actor.PickableOff()
         self.actor.UseBoundsOff()
         self.actor.ForceTranslucentOn()  # after the flow
-        this = weakref.WeakMethod(self._before_draw)
-
-        def write(caller: Any, event: str, program: Any = None) -> None:
-            del caller, event
-            if (method := this()) is not None and program is not None:
-                method(program)
-
-        write.CallDataType = VTK_OBJECT  # type: ignore[attr-defined]
-        self.actor.mapper.AddObserver("UpdateShaderEvent", write)
+        observe_draws(self.actor.mapper, self._before_draw)
 
     def set_data(self, data: dict[str, Floats]) -> None:
         """Draw other seeds, of which shaders have this."""

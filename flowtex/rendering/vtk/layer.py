@@ -110,9 +110,7 @@ class FlowLayer:
         self._retired: list[GPUTexture] = []
         self.view = ViewState()
         self._map_attributes()
-        update = self._observer("before_draw")
-        update.CallDataType = VTK_OBJECT
-        self._observed = self._mapper.AddObserver("UpdateShaderEvent", update)
+        self._observed = observe_draws(self._mapper, self.before_draw)
 
     @property
     def _mesh(self) -> Any:
@@ -172,17 +170,6 @@ class FlowLayer:
             self._mapper.RemoveVertexAttributeMapping(attribute)
         self._retire(*self._gpu)
         self._free(self._window())
-
-    def _observer(self, name: str) -> Any:
-        """Return a callback that does not keep this layer alive."""
-        this = weakref.WeakMethod(getattr(self, name))
-
-        def call(caller: Any, event: str, data: Any = None) -> None:
-            method = this()
-            if method is not None:
-                method(data)
-
-        return call
 
     def _map_attributes(self) -> None:
         mapper, points = self._mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
@@ -407,6 +394,19 @@ def _window_height(camera: Any) -> float:
     if camera.GetParallelProjection():
         return float(2 * camera.GetParallelScale())
     return float(2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2)))
+
+
+def observe_draws(mapper: Any, method: Callable[[Any], None]) -> int:
+    """Call a method with the program before each draw; that does not keep its object alive."""
+    this = weakref.WeakMethod(method)
+
+    def call(caller: Any, event: str, program: Any = None) -> None:
+        del caller, event
+        if (alive := this()) is not None and program is not None:
+            alive(program)
+
+    call.CallDataType = VTK_OBJECT  # type: ignore[attr-defined]
+    return int(mapper.AddObserver("UpdateShaderEvent", call))
 
 
 def write_uniform(program: Any, name: str, value: Any) -> None:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from flowtex.field.formula import Formula
 from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.webgl.protocol import Header
@@ -23,13 +25,23 @@ PREFIX = "formula."
 def client_formula(textures: TextureSet) -> Formula | None:
     """Return the formula from which a client computes a flow itself, if it can.
 
-    That is one in the plane, of texts alone, that has a value everywhere.
+    That is one in the plane, of texts alone, that has a value everywhere; and the field still has
+    the nodes and velocities that it was made with.
     """
     field = textures.geometry.field
     formula = field.formula
     if formula is None or formula.surface or field.scalars or not field.valid.all():
         return None
-    return formula if all(each.tree is not None for each in formula.expressions) else None
+    if any(each.tree is None for each in formula.expressions):
+        return None
+    u, v = formula.coordinates(field.shape)
+    made = [(field.points, formula.points(u, v))]
+    made += [
+        (field.velocity[n], formula.velocity(u, v, float(field.times[n])))
+        for n in {0, len(field.times) - 1}
+    ]
+    same = all(np.allclose(has[..., :2], own) and not has[..., 2].any() for has, own in made)
+    return formula if same else None
 
 
 def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:

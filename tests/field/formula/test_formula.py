@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,8 @@ from flowtex import FieldError
 from flowtex.field.formula import KNOWN, FormulaError
 from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
 from flowtex.field.formula.line import is_line, line_field, line_python, with_parameter
+from flowtex.rendering.webgl.formula import client_formula
+from flowtex.scene import Scene
 
 VALUES = {"x": np.linspace(-2.0, 2.0, 9), "y": np.linspace(0.3, 1.7, 9), "b": 0.5}
 
@@ -267,3 +270,20 @@ def test_a_line_is_a_flow(line: str, python: str) -> None:
 def test_a_line_that_is_none_says_why(line: str, words: str) -> None:
     with pytest.raises(FieldError, match=words):
         line_field(line)
+
+
+@pytest.mark.parametrize(
+    ("change", "drawn"),
+    [
+        ({}, True),
+        ({"velocity": lambda field: -np.asarray(field.velocity)}, False),
+        ({"points": lambda field: 2 * field.points}, False),
+    ],
+)
+def test_a_field_that_was_changed_is_not_drawn_from_its_formula(
+    change: dict[str, Any], drawn: bool
+) -> None:
+    field = flowtex.formula("cos(t)*y", "-x + t", times=[0.0, 1.0, 2.0], resolution=33)
+    field = replace(field, **{name: make(field) for name, make in change.items()})
+    for shown in (field, field.at_step(2)):
+        assert (client_formula(Scene.of(shown).textures) is not None) == drawn

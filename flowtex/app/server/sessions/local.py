@@ -101,7 +101,7 @@ class LocalSession(Session):
         """Carry messages between a page and its application until one of them ends."""
 
         async def send(is_binary: bool, content: Any) -> None:  # noqa: FBT001 wslink's call
-            with suppress(ConnectionError):  # the page has gone, which the loop below is told
+            with suppress(ConnectionError):  # the page is gone, and the loop below ends
                 await (socket.send_bytes if is_binary else socket.send_str)(content)
 
         link = await self._endpoint.connect()

@@ -17,7 +17,7 @@ from contextlib import suppress
 from typing import Any, NoReturn
 
 import aiohttp
-from aiohttp import WSMsgType, web
+from aiohttp import WSCloseCode, WSMsgType, web
 from yarl import URL
 
 from flowtex._util.child import ENDED, Child, ChildError
@@ -84,6 +84,7 @@ class ProcessSession(Session):
             "http://localhost",
             connector=aiohttp.UnixConnector(f"\0{about['name']}", limit=0),
             timeout=aiohttp.ClientTimeout(),
+            skip_auto_headers=("Accept-Encoding",),  # what comes is handed on as it is
             auto_decompress=False,
         )
         super().__init__(_Files(about["files"], self._http), about["token"])
@@ -120,7 +121,7 @@ class ProcessSession(Session):
                 with suppress(ConnectionError):
                     async for message in there:
                         await socket.send_bytes(message.data)
-                await socket.close(code=there.close_code or aiohttp.WSCloseCode.GOING_AWAY)
+                await socket.close(code=WSCloseCode.GOING_AWAY)
 
             answering = asyncio.ensure_future(answer())
             try:
