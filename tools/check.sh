@@ -27,10 +27,12 @@ check() {
 # A shell lets what runs aside ignore Ctrl-C, which tests send to the processes that they start.
 unignored='import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); os.execv(sys.argv[1], sys.argv[1:])'
 
-# tests ARGUMENT...; pytest says with 5 that there was none to run.
+# tests ARGUMENT...; pytest says with 5 that there was none to run. A worker that dies ends the run: one in
+# its place would begin with the same test.
 tests() {
     say "pytest $*"
-    "$bin/python" -c "$unignored" "$bin/pytest" --dist loadfile --no-loadscope-reorder "$@"
+    "$bin/python" -c "$unignored" "$bin/pytest" --dist loadfile --no-loadscope-reorder \
+        --max-worker-restart 0 "$@"
     code=$?
     [ $code -eq 0 ] || [ $code -eq 5 ]
 }
