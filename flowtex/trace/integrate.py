@@ -274,6 +274,8 @@ class _Run:
         if self.within is None:
             return
         now = ~(self.within(index) | outside) & (state.next < len(self.lags))
+        if not now.any():
+            return
         which = state.which[now]
         self.interrupted[which], self.reach[which] = True, state.lag[now]
         for m in range(len(self.lags)):
@@ -324,12 +326,11 @@ class _Run:
     def _go_straight(self, state: _Particles, rate: Floats) -> None:
         """End paths where they are, and fill the lags that are left straight ahead."""
         self.reach[state.which] = state.lag
-        for m, lag in enumerate(self.lags):
-            later = state.next <= m
-            if later.any():
-                further = lag * state.unit[later] - state.lag[later]
-                ahead = state.y[:, later] + further * rate[:, later]
-                self.out[m][:, state.which[later]] = self._index(ahead, state.pick(later))
+        m, n = np.nonzero(np.arange(len(self.lags))[:, None] >= state.next)
+        if len(n):
+            later = state.pick(n)
+            ahead = later.y + (self.lags[m] * later.unit - later.lag) * rate[:, n]
+            self.out[m, :, later.which] = self._index(ahead, later).T
 
 
 def _speed(rate: Floats) -> Floats:

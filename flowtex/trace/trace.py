@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -192,6 +192,7 @@ def paths(
     parameter: str = "arclength",
     forward: bool = False,
     tolerance: float = TOLERANCE,
+    within: Callable[[Floats], Bools] | None = None,
 ) -> Paths:
     """Follow particles from chosen positions in index space.
 
@@ -208,6 +209,9 @@ def paths(
         Which destination time.
     parameter, forward, tolerance
         As for :func:`trace`; the raised errors are the same.
+    within
+        Tells for positions (2, N) in index space whether paths are followed there; one that comes
+        elsewhere is interrupted. On triangles all are followed.
 
     Returns
     -------
@@ -229,14 +233,18 @@ def paths(
             tolerance=tolerance,
         )
     sampler = _samplers(field, _step_numbers(field, [step]), parameter)[0]
-    return integrate(
+    # A path rests by what it moves in a unit, which is a cell and not one of the mesh's lengths.
+    unit = float(lag_unit(field, parameter)[field.valid].max(initial=0.0)) or 1.0
+    found = integrate(
         sampler,
         begin,
-        _checked_lags(lags),
-        np.ones(len(begin)),
+        _checked_lags(lags) / unit,
+        np.full(len(begin), unit),
         direction=direction,
         tolerance=tolerance,
+        within=within,
     )
+    return replace(found, reach=found.reach * unit)
 
 
 def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from scipy.spatial import KDTree
 
 from flowtex._util.arguments import checked_number
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Bools, Floats
 from flowtex.field import FlowField
 from flowtex.field.locate import locator
 from flowtex.trace.structure.critical_points import (
@@ -24,6 +25,9 @@ from flowtex.trace.trace import paths
 BEGIN_CELLS, POINT_CELLS = 0.05, 0.5
 #: Length of a line, as a share of the surface's extent, and points of one at most.
 LENGTH_EXTENTS, MOST_POINTS = 3.0, 4000
+#: Points of a line before others may end it, and distance in cells from a critical point at which
+#: one is followed no longer.
+FIRST_POINTS, REST_CELLS = 4, 0.25
 #: Distance in cells between two turns of a line at which it is a closed orbit.
 CLOSED_CELLS = 0.02
 #: Distance in cells at which a line ends at a critical point, and least points of a turn.
@@ -133,12 +137,12 @@ def _lines(
     begin = np.asarray(begin)[:, ::-1]
     spacing = POINT_CELLS * float(np.median(cells))
     lags = np.arange(1, min(int(most / spacing), MOST_POINTS) + 1) * spacing
-    found = paths(field, begin, lags, parameter="arclength", forward=forward)
+    positions, reach = _followed(field, points, begin, lags, forward=forward)
     ends = KDTree([point.position for point in points])
     result = []
     for n, first in enumerate(begin):
         saddle, cell = saddles[n % len(saddles)], cells[n % len(saddles)]
-        shown = found.positions[: int(np.searchsorted(lags, found.reach[n])), n]
+        shown = positions[: int(np.searchsorted(lags, reach[n])), n]
         if not len(shown):  # it points out of the surface
             continue
         line = field.surface.at(np.concatenate([first[None], shown]))
@@ -156,6 +160,31 @@ def _lines(
         line = np.concatenate([saddle.position[None], line])
         result.append(Separatrix(line, saddle, forward, closed))
     return result
+
+
+def _followed(
+    field: FlowField, points: CriticalPoints, begin: Floats, lags: Floats, *, forward: bool
+) -> tuple[Floats, Floats]:
+    """Follow paths from positions (N, 2); return positions (M, N, 2), and how far they lead, (N,).
+
+    Once away from their saddles they end beside critical points, where steps become ever shorter.
+    """
+    follow = partial(paths, field, parameter="arclength", forward=forward)
+    first = follow(begin, lags[:FIRST_POINTS])
+    positions, reach = np.repeat(first.positions[-1:], len(lags), axis=0), first.reach.copy()
+    positions[:FIRST_POINTS] = first.positions
+    away = np.flatnonzero(np.isinf(reach))
+    if len(away) and len(lags) > FIRST_POINTS:
+        near = KDTree([point.index[::-1] for point in points])
+
+        def within(index: Floats) -> Bools:
+            return np.isinf(near.query(index.T, distance_upper_bound=REST_CELLS)[0])
+
+        left = lags[FIRST_POINTS:] - lags[FIRST_POINTS - 1]
+        later = follow(first.positions[-1, away], left, within=within)
+        positions[FIRST_POINTS:, away] = later.positions
+        reach[away] = lags[FIRST_POINTS - 1] + later.reach
+    return positions, reach
 
 
 def _cell(field: FlowField, point: CriticalPoint) -> float:
