@@ -36,13 +36,16 @@ from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet, check_noise
 from flowtex.textures.images import as_picture, load_image
 from flowtex.tiles import (
+    STRUCTURE,
     Pyramid,
+    Structure,
+    check_structure,
+    coarsened_field,
     drawn_speeds,
     ends_of,
     has_pyramid,
-    levels_of,
     shared_pyramid,
-    triangle_pyramid,
+    shared_structure,
     widened,
 )
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
@@ -123,6 +126,8 @@ class Scene:
         if self.settings.noise == "image" and self.image is None:
             raise SettingsError(NO_IMAGE)
         check_noise(field, self.settings.noise)
+        check_structure(field, self.settings)
+        self._structure: Structure | None = None
         self._ranges: dict[tuple[str, bool, bool], tuple[float, float]] = {}
         self._pyramid: Pyramid | None = None
         self._sliced = slices is not None
@@ -262,6 +267,12 @@ class Scene:
         return self.field if self.pyramid is None else self.pyramid.root
 
     @property
+    def structure(self) -> Structure:
+        """Critical points and separatrices of each step, which scenes of a field share."""
+        self._structure = shared_structure(self.field)
+        return self._structure
+
+    @property
     def store(self) -> SliceStore:
         """Traces of :attr:`whole`, made step by step when asked for, shared by all its scenes."""
         if self._store is None:
@@ -328,6 +339,12 @@ class Scene:
     def moment(self) -> tuple[int, int, float]:
         """The two time steps around the time that is shown, and how far it is between them."""
         return steps_around(self.field.times, self._time)
+
+    @property
+    def step(self) -> int:
+        """The time step that is nearest to the time that is shown."""
+        before, after, share = self.moment
+        return before if share < 0.5 else after
 
     def scalar(self, name: str, field: FlowField | None = None) -> Floats:
         """Nodal values at the time that is shown, (J, I); :func:`steps_of` has the errors.
@@ -447,6 +464,12 @@ class Scene:
         self._notices.clear()
 
     def _setting_changed(self, name: str, value: Any) -> None:
+        if name in STRUCTURE:
+            try:
+                check_structure(self.field, self.settings)
+            except SettingsError:
+                setattr(self.settings, name, 0)
+                raise
         if name == "noise":
             if value == self._noise:
                 return
@@ -556,22 +579,3 @@ def _shared_textures(
     if pyramid is not None:
         return _textures.get(key, lambda: pyramid.root_textures(store))
     return _textures.get(key, lambda: TextureSet.build(store, settings, image))
-
-
-def coarsened_field(field: FlowField, nodes: int) -> FlowField:
-    """Keep lines of nodes, the first and the last among them, so that so many nodes are left.
-
-    On triangles nodes become means over bins of space, of which there are so many at most. A
-    smaller field is returned as it is, and one of triangles that is so large that it has levels.
-    """
-    if field.valid.size <= nodes:
-        return field
-    if field.triangles is not None:
-        has_levels = field.valid.size > triangle_pyramid.ROOT_NODES
-        return field if has_levels else levels_of(field, nodes)[-1].field
-    share = np.sqrt(nodes / field.valid.size)
-    rows, columns = (
-        np.unique(np.rint(np.linspace(0, n - 1, max(int(n * share), min(n, 8)))).astype(int))
-        for n in field.shape
-    )
-    return field.at_lines(rows, columns)

@@ -301,6 +301,18 @@ class Settings:
         text="Arrows dark with a light edge, or in the colours, over a plain surface.",
         choices=("contrast", "scalars"),
     )
+    critical_points: int = _row(
+        default=0,
+        text="Critical points that are marked, the strongest first; True stands for 100.",
+        span=(0, 500),
+        switch=100,
+    )
+    separatrices: int = _row(
+        default=0,
+        text="Saddles whose separatrices are drawn, the strongest first; True stands for 25.",
+        span=(0, 50),
+        switch=25,
+    )
     show_level: bool = _row(
         default=False,
         text="Colour by the level of detail: one hue for each doubling of the grain.",

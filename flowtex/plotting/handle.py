@@ -14,6 +14,7 @@ from flowtex._util.colours import colour_table
 from flowtex.options import NO_VALUE_COLOR, Appearance, AppearanceAttributes, FieldOptions
 from flowtex.plotting.map_overlay import MapOverlay
 from flowtex.plotting.scalar_bar import SCALAR_BAR, arrange_with
+from flowtex.plotting.structure_overlay import StructureOverlay
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
 from flowtex.scene import Change, Scene, share_field
@@ -88,6 +89,7 @@ class FlowHandle(AppearanceAttributes):
         self._map = None
         if scene.field.projection is not None:
             self._map = MapOverlay(self.actor, plotter.renderer, scene, self._surface)
+        self._structure = StructureOverlay(self.actor, plotter.renderer, scene, self._surface)
         self._shown: Appearance | None = None
         self._show_appearance()
         self._shown_time = scene.time
@@ -196,6 +198,7 @@ class FlowHandle(AppearanceAttributes):
             self._map = None
         if field.projection is not None:
             self._map = MapOverlay(self.actor, self._plotter.renderer, scene, self._surface)
+        self._structure.show(scene)
         self._show_appearance("scalars", "lighting")
         self._draw()
 
@@ -215,6 +218,7 @@ class FlowHandle(AppearanceAttributes):
         self.scene.close()
         if self._map is not None:
             self._map.close()
+        self._structure.close()
         self._surface.close()
         self._remove_bar(plotter)
         plotter.remove_actor(self.actor, render=False)
@@ -226,6 +230,7 @@ class FlowHandle(AppearanceAttributes):
         if self._bar_look != (look := self._settings_of_bar):
             self._bar_look = look
             self._show_bar_colours()
+        self._structure.show(self.scene)
         if affects == "uniform":
             self._show_moment()
         elif affects == "appearance":

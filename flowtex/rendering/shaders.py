@@ -20,6 +20,7 @@ _INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 VARIANTS = (
     "FLOWTEX_CELLS",
     "FLOWTEX_MOVING",
+    "FLOWTEX_OPAQUE",
     "FLOWTEX_PAPER",
     "FLOWTEX_PICTURE",
     "FLOWTEX_PLACED",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from flowtex.tiles.clusters import levels_of
+from flowtex.tiles.coarse import coarsened_field
 from flowtex.tiles.loader import Tile, TileLoader
 from flowtex.tiles.pyramid import (
     BLOCK_CELLS,
@@ -21,24 +22,30 @@ from flowtex.tiles.shared import (
     shared_pyramid,
     widened,
 )
+from flowtex.tiles.structure import STRUCTURE, Structure, check_structure, shared_structure
 from flowtex.tiles.triangle_pyramid import TrianglePyramid
 
 __all__ = [
     "BLOCK_CELLS",
     "PATH_CELLS",
+    "STRUCTURE",
     "TILE_BLOCKS",
     "TILE_CELLS",
     "Pyramid",
+    "Structure",
     "Tile",
     "TileKey",
     "TileLoader",
     "TrianglePyramid",
     "attach_pyramid",
     "block_places",
+    "check_structure",
+    "coarsened_field",
     "drawn_speeds",
     "ends_of",
     "has_pyramid",
     "levels_of",
     "shared_pyramid",
+    "shared_structure",
     "widened",
 ]

@@ -9,9 +9,10 @@
   vec2 flowtexFrom = gl_Position.xy / gl_Position.w * flowtexHalf;
   vec2 flowtexTo = flowtexThere.xy / flowtexThere.w * flowtexHalf;
   vec2 flowtexWay = flowtexTo - flowtexFrom;
-  flowtexWay = length(flowtexWay) > 1e-4 ? normalize(flowtexWay) : vec2(1.0, 0.0);
+  // Of a dot the one end does not know where the other is.
+  flowtexWay = length(flowtexWay) > 1e-4 ? normalize(flowtexWay) : vec2(abs(flowtexSide) > 1.5 ? -1.0 : 1.0, 0.0);
   vec2 flowtexMiddle = flowtexViewport.xy + flowtexHalf;
   flowtexEndsVSOutput = vec4(flowtexMiddle + flowtexFrom, flowtexMiddle + flowtexTo);
   flowtexRadiusVSOutput = flowtexRadius;
-  vec2 flowtexAside = vec2(-flowtexWay.y, flowtexWay.x) * flowtexSide - flowtexWay;
+  vec2 flowtexAside = vec2(-flowtexWay.y, flowtexWay.x) * sign(flowtexSide) - flowtexWay;
   gl_Position.xy += flowtexAside * (flowtexRadius + 1.0) / flowtexHalf * gl_Position.w;

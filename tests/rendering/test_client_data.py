@@ -15,8 +15,8 @@ from flowtex.camera import Camera
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import part_info
-from flowtex.scene import coarsened_field
 from flowtex.settings import TABLE, Settings
+from flowtex.tiles import coarsened_field
 from flowtex.web.view import WebView, even_steps, web_views
 
 

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
-from flowtex._util.arguments import checked_number
+from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import Bools, Floats
+from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locator
 from flowtex.trace.structure.critical_points import (
@@ -30,6 +32,8 @@ LENGTH_EXTENTS, MOST_POINTS = 3.0, 4000
 FIRST_POINTS, REST_CELLS = 4, 0.25
 #: Distance in cells between two turns of a line at which it is a closed orbit.
 CLOSED_CELLS = 0.02
+#: The same where it winds up, in distances of its points.
+WOUND_POINTS = 2.0
 #: Distance in cells at which a line ends at a critical point, and least points of a turn.
 END_CELLS, LEAST_TURN = 0.75, 8
 
@@ -40,13 +44,30 @@ class Separatrix:
 
     ``points`` are (N, 3), from the saddle on, in the mesh's units; ``forward`` says whether the
     flow leaves the saddle along the line; ``closed`` whether the line ends on a closed orbit, which
-    is then its last turn.
+    is then its last turn, the points from number ``turn`` on. ``lonlat`` are longitudes and
+    latitudes of the points in degrees, (N, 2), for a field of the Earth.
     """
 
     points: Floats
     saddle: CriticalPoint
     forward: bool
     closed: bool = False
+    turn: int | None = None
+    lonlat: Floats | None = None
+
+    @property
+    def orbit(self) -> Floats | None:
+        """Points of the closed orbit on which the line ends, (N, 3), or ``None``."""
+        return None if self.turn is None else self.points[self.turn :]
+
+    def unwound(self) -> Floats:
+        """Return the points up to the second turn that lies close beside the one before, (N, 3).
+
+        That is what a picture has room for of a line that winds up.
+        """
+        spacing = float(np.median(np.linalg.norm(np.diff(self.points, axis=0), axis=1)))
+        found = _turned(self.points, spacing, WOUND_POINTS * spacing)
+        return self.points if found is None else self.points[: 2 * found[1] - found[0] + 1]
 
 
 class Separatrices(list[Separatrix]):
@@ -61,8 +82,46 @@ class Separatrices(list[Separatrix]):
     True
     """
 
+    def records(self) -> list[dict[str, Any]]:
+        """Return a row of plain numbers for each line: its saddle, end, length and direction."""
+        rows = []
+        for line in self:
+            row: dict[str, Any] = {"time": line.saddle.time, "strength": line.saddle.strength}
+            row |= {"forward": line.forward, "closed": line.closed}
+            row["length"] = float(np.linalg.norm(np.diff(line.points, axis=0), axis=1).sum())
+            for end, point in (("saddle", line.points[0]), ("end", line.points[-1])):
+                row |= {f"{end}_{axis}": float(x) for axis, x in zip("xyz", point, strict=True)}
+            rows.append(row)
+        return rows
+
+    def to_pandas(self) -> Any:
+        """Return a ``pandas.DataFrame`` of :meth:`records`."""
+        return import_extra("pandas", "xarray").DataFrame(self.records())
+
+    def to_geojson(self) -> dict[str, Any]:
+        """Return a GeoJSON ``FeatureCollection`` of lines, parted where they cross 180 degrees.
+
+        Raises
+        ------
+        FieldError
+            When the field is not one of the Earth.
+        """
+        features = []
+        for line, row in zip(self, self.records(), strict=True):
+            if line.lonlat is None:
+                msg = "GeoJSON needs longitudes and latitudes; this field is not one of the Earth"
+                raise FieldError(msg)
+            jumps = np.flatnonzero(np.abs(np.diff(line.lonlat[:, 0])) > 180) + 1
+            parts = [part.tolist() for part in np.split(line.lonlat, jumps) if len(part) > 1]
+            geometry = {"type": "MultiLineString", "coordinates": parts}
+            features.append({"type": "Feature", "geometry": geometry, "properties": row})
+        return {"type": "FeatureCollection", "features": features}
+
     def to_pyvista(self) -> Any:
-        """Return lines as a ``pyvista.PolyData``, with ``forward`` and ``time`` of each."""
+        """Return lines as a ``pyvista.PolyData``.
+
+        Each has ``forward``, ``closed``, ``time``, and the ``strength`` of its saddle.
+        """
         import pyvista as pv
 
         counts = np.array([len(line.points) for line in self], dtype=int)
@@ -71,12 +130,18 @@ class Separatrices(list[Separatrix]):
         points = np.concatenate([np.empty((0, 3)), *(line.points for line in self)])
         mesh = pv.PolyData(points, lines=np.concatenate(cells) if cells else None)
         mesh.cell_data["forward"] = np.array([line.forward for line in self], dtype=np.uint8)
+        mesh.cell_data["closed"] = np.array([line.closed for line in self], dtype=np.uint8)
         mesh.cell_data["time"] = np.array([line.saddle.time for line in self])
+        mesh.cell_data["strength"] = np.array([line.saddle.strength for line in self])
         return mesh
 
 
 def separatrices(
-    field: FlowField, *, steps: Sequence[int] | None = None, length: float | None = None
+    field: FlowField,
+    *,
+    steps: Sequence[int] | None = None,
+    length: float | None = None,
+    strongest: int | None = None,
 ) -> Separatrices:
     """Follow the lines that leave the saddles of a field, four from each.
 
@@ -88,6 +153,8 @@ def separatrices(
         Numbers of the time steps; all by default.
     length
         Longest line, in the mesh's units; three times the extent of the surface by default.
+    strongest
+        Of how many saddles of a step, the strongest ones; all by default.
 
     Returns
     -------
@@ -98,7 +165,8 @@ def separatrices(
     Raises
     ------
     FieldError
-        When the vectors have no sign, the length is not positive, or there is no such step.
+        When the vectors have no sign, the length or the number of saddles is not positive, or
+        there is no such step.
 
     Examples
     --------
@@ -112,31 +180,39 @@ def separatrices(
     if length is not None:
         expected = "a positive length in the mesh's units"
         most = checked_number("length", length, np.nextafter(0, 1), expected=expected)
+    if strongest is not None:
+        checked_count("strongest", strongest, expected="a number of saddles, 1 or more")
     numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
     lines = Separatrices()
     for number in numbers:
         part = field.at_step(number)
         points = critical_points(part)
-        for forward in (True, False):
-            lines += _lines(part, points, most, forward=forward)
+        saddles = points.of_kind("saddle")
+        if strongest is not None:
+            saddles = saddles.strongest(strongest)
+        if saddles:
+            for forward in (True, False):
+                lines += _lines(part, points, saddles, most, forward=forward)
     return lines
 
 
 def _lines(
-    field: FlowField, points: CriticalPoints, most: float, *, forward: bool
+    field: FlowField,
+    points: CriticalPoints,
+    saddles: CriticalPoints,
+    most: float,
+    *,
+    forward: bool,
 ) -> list[Separatrix]:
     """Return the lines that leave saddles, or those that come to them."""
-    saddles = points.of_kind("saddle")
-    if not saddles:
-        return []
     cells = np.array([_cell(field, saddle) for saddle in saddles])
     ways = [saddle.eigenvectors[0 if forward else 1].real for saddle in saddles]
     centers = np.array([saddle.position for saddle in saddles])
     offsets = BEGIN_CELLS * cells[:, None] * np.array(ways)
     begin, _ = locator(field).nearest(np.concatenate([centers + offsets, centers - offsets]))
-    begin = np.asarray(begin)[:, ::-1]
+    begin = np.array(begin[:, ::-1], dtype=float)
     spacing = POINT_CELLS * float(np.median(cells))
-    lags = np.arange(1, min(int(most / spacing), MOST_POINTS) + 1) * spacing
+    lags = spacing * np.arange(1.0, min(int(most / spacing), MOST_POINTS) + 1)
     positions, reach = _followed(field, points, begin, lags, forward=forward)
     ends = KDTree([point.position for point in points])
     result = []
@@ -152,13 +228,17 @@ def _lines(
         arrived = arrived[arrived > away[0]] if len(away) else arrived[:0]
         end = int(arrived[0]) if len(arrived) else len(line)
         turned = _turned(line[:end], spacing, CLOSED_CELLS * cell)
-        closed = turned is not None
+        turn = None
         if turned is not None:
-            line = line[: turned + 1]
+            turn, last = turned[0] + 1, turned[1] + 1
+            line = line[:last]
         elif len(arrived):
             line = np.concatenate([line[: end + 1], points[int(which[end])].position[None]])
         line = np.concatenate([saddle.position[None], line])
-        result.append(Separatrix(line, saddle, forward, closed))
+        places = None
+        if field.projection is not None:
+            places = np.stack(field.projection.lonlat(line), axis=-1)
+        result.append(Separatrix(line, saddle, forward, turn is not None, turn, places))
     return result
 
 
@@ -193,9 +273,10 @@ def _cell(field: FlowField, point: CriticalPoint) -> float:
     return float(field.surface.cell_size[j, i])
 
 
-def _turned(line: Floats, spacing: float, near: float) -> int | None:
-    """Return the number of the first of points (N, 3) on the last turn, or ``None``."""
-    pairs = KDTree(line).query_pairs(0.75 * spacing, output_type="ndarray")
+def _turned(line: Floats, spacing: float, near: float) -> tuple[int, int] | None:
+    """Return the numbers of points (N, 3) between which a line turns once, or ``None``."""
+    around = max(0.75 * spacing, 1.25 * near)
+    pairs = KDTree(line).query_pairs(around, output_type="ndarray")
     pairs = pairs[pairs[:, 1] - pairs[:, 0] > LEAST_TURN]
     if not len(pairs):
         return None
@@ -205,4 +286,4 @@ def _turned(line: Floats, spacing: float, near: float) -> int | None:
     gap = line[after] - line[before]
     beside = np.linalg.norm(gap - np.einsum("nc,nc->n", gap, way)[:, None] * way, axis=1)
     close = np.flatnonzero(beside < near)
-    return int(after[close[0]]) if len(close) else None
+    return (int(before[close[0]]), int(after[close[0]])) if len(close) else None

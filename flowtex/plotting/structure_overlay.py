@@ -1,0 +1,77 @@
+"""Critical points and separatrices over a flow, of the step that is nearest to its time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+
+from flowtex._util.array_types import Floats
+from flowtex.plotting.overlay import Overlay, piece_mesh
+from flowtex.rendering.structure_marks import (
+    DOT_PX,
+    KIND_MARKS,
+    LINE_COLORS,
+    LINE_PX,
+    MIDDLE_COLOR,
+    RIM_COLOR,
+    RIM_OPACITY,
+)
+from flowtex.rendering.vtk import FlowSurface
+from flowtex.scene import Scene
+from flowtex.trace.structure import CriticalPoints, Separatrices
+
+
+class StructureOverlay(Overlay):
+    """What the settings ask for of the structure of one flow."""
+
+    def __init__(self, actor: pv.Actor, renderer: Any, scene: Scene, surface: FlowSurface) -> None:
+        super().__init__(actor, renderer, surface)
+        self._shown: tuple[int, ...] = ()
+        self.show(scene)
+
+    def show(self, scene: Scene) -> None:
+        """Follow the settings and the time of a scene."""
+        settings = scene.settings
+        shown = (id(scene.field), scene.step, settings.critical_points, settings.separatrices)
+        if shown == self._shown:
+            return
+        self._clear()
+        self._shown = shown
+        if settings.separatrices:
+            self._add_separatrices(scene.structure.lines(scene.step, settings.separatrices))
+        if settings.critical_points:
+            self._add_points(scene.structure.points(scene.step)[: settings.critical_points])
+
+    def _add_separatrices(self, lines: Separatrices) -> None:
+        by_color: dict[str, list[Floats]] = {name: [] for name in LINE_COLORS}
+        for line in lines:
+            by_color["leaving" if line.forward else "coming"].append(line.unwound())
+            if line.orbit is not None:
+                by_color["closed orbit"].append(line.orbit)
+        outer, inner = LINE_PX
+        every = [path for paths in by_color.values() for path in paths]
+        self._add_pieces(every, outer, RIM_COLOR, RIM_OPACITY, above=0)
+        for above, (name, paths) in enumerate(by_color.items(), 1):
+            self._add_pieces(paths, inner, LINE_COLORS[name], above=above)
+
+    def _add_points(self, points: CriticalPoints) -> None:
+        outer, inner, middle = DOT_PX
+        every = [point.position[None] for point in points]
+        self._add_pieces(every, outer, RIM_COLOR, RIM_OPACITY, above=4)
+        for kind, mark in KIND_MARKS.items():
+            dots = [point.position[None] for point in points.of_kind(kind)]
+            self._add_pieces(dots, inner, mark.color, above=5)
+            if mark.turns:
+                self._add_pieces(dots, middle, MIDDLE_COLOR, above=6)
+
+    def _add_pieces(
+        self, paths: Sequence[Floats], width: float, color: str, opacity: float = 1.0, *, above: int
+    ) -> None:
+        """Add paths (N, 3) each as lines, or as dots where they have one point."""
+        if paths:
+            start = np.concatenate([path[:-1] if len(path) > 1 else path for path in paths])
+            end = np.concatenate([path[1:] if len(path) > 1 else path for path in paths])
+            self._add_lines(((0.0, piece_mesh(start, end)),), width, color, opacity, above=above)

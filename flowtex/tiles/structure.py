@@ -1,0 +1,93 @@
+"""The structure of a flow as it is drawn: of any step, the strongest of it, when asked for."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from typing import Any
+
+from flowtex._util.cache import WeakCache
+from flowtex.field import FlowField
+from flowtex.settings import TABLE, Settings, SettingsError
+from flowtex.tiles.coarse import coarsened_field
+from flowtex.tiles.shared import has_pyramid, shared_pyramid
+from flowtex.trace.structure import CriticalPoints, Separatrices, critical_points, separatrices
+
+#: Nodes of a field up to which all of it is searched; of a larger one a coarser form is.
+SEARCHED_NODES = 1_000_000
+#: Settings that say how much of it is drawn: points, and saddles with their lines.
+STRUCTURE = ("critical_points", "separatrices")
+#: Points of a step, and saddles whose lines are drawn, at most.
+MOST_POINTS, MOST_SADDLES = (int(TABLE[name].high or 0) for name in STRUCTURE)
+#: Length of a line that is drawn, as a share of the surface's extent, at most.
+DRAWN_EXTENTS = 1.0
+#: Steps whose structure is kept.
+KEPT_STEPS = 64
+
+
+class Structure:
+    """Critical points and separatrices of a field. All methods may be called from any thread."""
+
+    def __init__(self, field: FlowField) -> None:
+        self._whole, self._field = field, _searched(field)
+        self._lock = threading.Lock()
+        self._points: OrderedDict[int, CriticalPoints] = OrderedDict()
+        self._lines: OrderedDict[int, tuple[int, Separatrices]] = OrderedDict()
+
+    def points(self, step: int) -> CriticalPoints:
+        """Return the critical points of a step, the strongest first."""
+        with self._lock:
+            if step not in self._points:
+                found = critical_points(self._field, steps=[step])
+                self._points[step] = found.strongest(MOST_POINTS)
+                _trim(self._points)
+            return self._points[step]
+
+    def lines(self, step: int, saddles: int = MOST_SADDLES) -> Separatrices:
+        """Return the lines of so many saddles of a step, the strongest."""
+        with self._lock:
+            count, lines = self._lines.get(step, (0, Separatrices()))
+            if count < saddles:
+                length = DRAWN_EXTENTS * self._field.surface.extent
+                lines = separatrices(self._field, steps=[step], length=length, strongest=saddles)
+                self._lines[step] = saddles, lines
+                _trim(self._lines)
+            kept = {id(saddle) for saddle in _saddles(lines)[:saddles]}
+            return Separatrices(line for line in lines if id(line.saddle) in kept)
+
+
+def _saddles(lines: Separatrices) -> CriticalPoints:
+    """Return the saddles of lines, each once, the strongest first."""
+    found = {id(line.saddle): line.saddle for line in lines}
+    return CriticalPoints(list(found.values())).strongest(len(found))
+
+
+def _trim(steps: OrderedDict[int, Any]) -> None:
+    while len(steps) > KEPT_STEPS:
+        steps.popitem(last=False)
+
+
+_structures: WeakCache[Structure] = WeakCache()
+
+
+def shared_structure(field: FlowField) -> Structure:
+    """Return the structure of a field, one for all who ask while somebody has it."""
+    # A structure keeps its field alive, so the number of the field is its own meanwhile.
+    return _structures.get(id(field), lambda: Structure(field))
+
+
+def check_structure(field: FlowField, settings: Settings) -> None:
+    """Raise a SettingsError where a structure is to be drawn that a field does not have."""
+    for name in STRUCTURE:
+        if field.sign_free and (value := getattr(settings, name)):
+            msg = f"{name} is {value}; expected 0, as the vectors of this field have no sign"
+            raise SettingsError(msg)
+
+
+def _searched(field: FlowField) -> FlowField:
+    """Return a field, or of a large one a coarser form."""
+    if field.valid.size <= SEARCHED_NODES:
+        return field
+    if has_pyramid(field) or field.triangles is not None:
+        return shared_pyramid(field, "arclength", "streamlines").root
+    return coarsened_field(field, SEARCHED_NODES)

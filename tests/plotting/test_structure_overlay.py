@@ -1,0 +1,137 @@
+"""Critical points and separatrices in VTK's pictures: where, of which step, and for whom."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import flowtex
+from flowtex import FlowField
+from flowtex._util.array_types import Bytes, Floats
+from flowtex._util.colours import rgb
+from flowtex.camera import Camera
+from flowtex.rendering.structure_marks import KIND_MARKS, LINE_COLORS
+from flowtex.scene import Scene
+from flowtex.settings import SettingsError
+from flowtex.tiles import structure
+from flowtex.trace.structure import KINDS
+
+#: A picture of four units by two, one of which is this many pixels.
+UNIT = 300
+PICTURE: dict[str, Any] = {"size": (4 * UNIT, 2 * UNIT), "samples": 3, "scalars": False}
+
+
+def grid(velocity: Any, nodes: int = 41) -> FlowField:
+    x, y = np.meshgrid(np.linspace(-2, 2, 2 * nodes - 1), np.linspace(-1, 1, nodes))
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(velocity(x, y), axis=-1))
+
+
+def saddle_and_sink(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """A saddle at (-0.5, 0) and a sink at (0.5, 0) with a straight line between them."""
+    return 0.25 - x**2, -y
+
+
+def seen(picture: Bytes, color: str, least: int = 4) -> Floats:
+    """Places (N, 2) of a colour in a picture of :data:`UNIT`."""
+    away = np.abs(picture.astype(int) - np.rint(255 * np.array(rgb(color))).astype(int))
+    rows, columns = np.nonzero((away <= 2).all(axis=-1))
+    assert len(rows) >= least, f"there are {len(rows)} pixels of {color}"
+    return np.stack([(columns + 0.5) / UNIT - 2, 1 - (rows + 0.5) / UNIT], axis=-1)
+
+
+def whole(field: FlowField, **options: Any) -> Bytes:
+    camera = Camera.fit(field.surface, 2.0)
+    picture = flowtex.render(field, camera=camera, **PICTURE, **options)
+    return np.asarray(picture)
+
+
+def test_marks_have_all_kinds() -> None:
+    assert set(KIND_MARKS) == set(KINDS)
+
+
+def test_points_and_lines_stand_where_they_are() -> None:
+    field = grid(saddle_and_sink)
+    scale = Camera.fit(field.surface, 2.0).height  # half of what is seen: a bit more than 1
+    dots = whole(field, critical_points=True)
+    for kind, place in (("saddle", (-0.5, 0.0)), ("sink", (0.5, 0.0))):
+        found = scale * seen(dots, KIND_MARKS[kind].color)
+        assert np.abs(found.mean(axis=0) - place).max() < 0.02
+        assert np.ptp(found, axis=0).max() < 0.12
+    picture = whole(field, separatrices=True)
+    # The flow leaves the saddle along y = 0, to the sink and outwards, and comes along x = -0.5.
+    leaving = scale * seen(picture, LINE_COLORS["leaving"], 50)
+    assert np.abs(leaving[:, 1]).max() < 0.02
+    assert leaving[:, 0].min() < -1.9
+    coming = scale * seen(picture, LINE_COLORS["coming"], 50)
+    assert np.abs(coming[:, 0] + 0.5).max() < 0.02
+    assert coming[:, 1].min() < -0.9 < 0.9 < coming[:, 1].max()
+
+
+def test_without_them_a_picture_is_as_before() -> None:
+    field = grid(saddle_and_sink)
+    plain = whole(field)
+    assert (plain == whole(field, critical_points=False, separatrices=0)).all()
+    assert (plain != whole(field, critical_points=1)).any()
+
+
+def test_settings_and_time_are_followed() -> None:
+    import pyvista as pv
+
+    x, y = np.meshgrid(np.linspace(-2, 2, 81), np.linspace(-1, 1, 41))
+    velocity = [np.stack([x - at, -y], axis=-1) for at in (-1.0, 0.0, 1.0)]
+    field = FlowField.from_arrays(np.stack([x, y], axis=-1), velocity, times=[0.0, 1.0, 2.0])
+    plotter = pv.Plotter(off_screen=True, window_size=[4 * UNIT, 2 * UNIT])
+    handle = plotter.flowtex.add(field, samples=3, scalars=False)
+    handle.settings.critical_points = True
+    assert handle.settings.critical_points == 100
+    color = KIND_MARKS["saddle"].color
+    for time, place in ((0.0, -1.0), (0.4, -1.0), (0.6, 0.0), (2.0, 1.0)):
+        handle.time = time
+        found = seen(np.asarray(plotter.screenshot(return_img=True)), color)
+        assert abs(found[:, 0].mean() - place) < 0.1
+    handle.settings.critical_points = False
+    with pytest.raises(AssertionError, match="there are 0 pixels"):
+        seen(np.asarray(plotter.screenshot(return_img=True)), color)
+    plotter.close()
+
+
+def test_fields_without_a_sign_are_refused() -> None:
+    points = np.stack(np.meshgrid(np.arange(9.0), np.arange(9.0)), axis=-1)
+    field = FlowField.from_arrays(points, np.ones((9, 9, 2)), sign_free=True)
+    expected = "separatrices is 25; expected 0, as the vectors of this field have no sign"
+    with pytest.raises(SettingsError, match=expected):
+        flowtex.render(field, separatrices=True)
+    scene = Scene(field)
+    with pytest.raises(SettingsError, match="critical_points is 7; expected 0"):
+        scene.settings.critical_points = 7
+    assert scene.settings.critical_points == 0
+
+
+def test_the_strongest_come_first_and_noise_last() -> None:
+    rng = np.random.default_rng(0)
+    x, y = np.meshgrid(np.linspace(0, 2, 201), np.linspace(0, 1, 101))
+    x, y = np.pi * x, np.pi * y
+    gyres = np.stack([-np.sin(x) * np.cos(y), np.cos(x) * np.sin(y)], axis=-1)
+    noisy = gyres + 0.1 * rng.normal(size=gyres.shape)
+    points = flowtex.critical_points(
+        FlowField.from_arrays(np.stack([x, y], axis=-1) / np.pi, noisy)
+    )
+    assert len(points) > 40
+    turning = [p for p in points.strongest(12) if p.kind != "saddle"]
+    for center in ((0.5, 0.5), (1.5, 0.5)):
+        assert min(np.hypot(*(p.position[:2] - center)) for p in turning) < 0.05
+    strengths = [p.strength for p in points.strongest(len(points))]
+    assert strengths == sorted(strengths, reverse=True)
+    assert np.median(strengths) < 0.1 * strengths[0]
+
+
+def test_a_large_field_is_searched_on_fewer_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(structure, "SEARCHED_NODES", 1000)
+    field = grid(saddle_and_sink)
+    found = structure.Structure(field)
+    assert found._field.valid.size <= 1000 < field.valid.size
+    assert [p.kind for p in found.points(0)] == ["saddle", "sink"]
+    assert len(found.lines(0)) == 4
+    assert len({id(line.saddle) for line in found.lines(0, 1)}) == 1
