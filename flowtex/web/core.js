@@ -588,35 +588,36 @@ var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:ha
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
 noise_correction:({paper},rebuild)=>!!paper&&rebuild,lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,
-settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),lod:()=>!1,show_level:()=>!1};function isUseful({
-name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}function isInUse({needs=[]},settings){
-let holds=needs.map(([name,sign,value])=>settings[name]===value==(sign==="=="));return!needs.length||holds.includes(!0)}
-var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;rows=null;constructor(viewer){
-this.viewer=viewer}build(header){let rebuild=this.viewer.options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,
-header,rebuild)),kindOf=some=>JSON.stringify(some?.map(row2=>({...row2,default:null})));if(kindOf(rows)===kindOf(this.rows))
-return!1;this.rows=rows,this.controls.clear(),this.element.replaceChildren();for(let row2 of rows){let control=this.control(
-row2),{input,output}=control,name=dom("span",{class:"name"},[row2.label]),attributes={class:"row","data-setting":row2.name},
-line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.
-set(row2.name,{...control,row:row2,line}),this.element.append(line)}return!0}get parameters(){return[...this.controls.values()].
-filter(({row:row2})=>row2.name.startsWith("formula.")).map(({line})=>line)}update(){let{settings}=this.viewer;for(let[name,
-{row:row2,line,show}]of this.controls){name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.
-toggle("idle",isIdle),line.title=isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control===
-"checkbox"?this.switch(row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.
-slider(row2)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,
-"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.
-map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,
-"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,
-low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(
-max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&
-this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,
-fromSlider,min,max,step}=scaleOf2(row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"\
-range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(
-Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="uniform"?"input":
-"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,show:shown=>{
-input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,
-[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
-2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
-toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),critical_points:()=>!1,separatrices:()=>!1,
+lod:()=>!1,show_level:()=>!1};function isUseful({name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects===
+"uniform"||rebuild)}function isInUse({needs=[]},settings){let holds=needs.map(([name,sign,value])=>settings[name]===value==
+(sign==="=="));return!needs.length||holds.includes(!0)}var Controls=class{element=dom("div",{class:"settings glass",hidden:"",
+"aria-label":"Settings"});viewer;controls=new Map;rows=null;constructor(viewer){this.viewer=viewer}build(header){let rebuild=this.
+viewer.options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,header,rebuild)),kindOf=some=>JSON.stringify(some?.
+map(row2=>({...row2,default:null})));if(kindOf(rows)===kindOf(this.rows))return!1;this.rows=rows,this.controls.clear(),this.
+element.replaceChildren();for(let row2 of rows){let control=this.control(row2),{input,output}=control,name=dom("span",{class:"\
+name"},[row2.label]),attributes={class:"row","data-setting":row2.name},line=dom("label",attributes,[name,...output?[output]:
+[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row2.name,{...control,row:row2,line}),this.
+element.append(line)}return!0}get parameters(){return[...this.controls.values()].filter(({row:row2})=>row2.name.startsWith(
+"formula.")).map(({line})=>line)}update(){let{settings}=this.viewer;for(let[name,{row:row2,line,show}]of this.controls){
+name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.toggle("idle",isIdle),line.title=
+isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control==="checkbox"?this.switch(row2):row2.
+control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.slider(row2)}switch({name}){let input=dom(
+"input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.
+checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom("option",
+{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.viewer.
+choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[min,max]=[
+low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.
+viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.viewer.choose(name,
+clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,fromSlider,min,max,step}=scaleOf2(
+row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("o\
+utput"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(Number(shown))};this.viewer.
+lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="uniform"?"input":"change";return this.viewer.
+lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,show:shown=>{input.value=String(toSlider(
+Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,[least,most]=[low??0,high??
+1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?
+Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?
+1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole",d:"detail",".":"next",",":"previous"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={
 left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}
 function forwardKeys(root,event){event.target===document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent(
