@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import tempfile
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
+#: Seconds after which the error is raised again where it was swallowed.
+REMINDER_S = 0.5
 #: Windows has no SIGHUP.
 SIGNALS = tuple(s for s in signal.Signals if s.name in ("SIGTERM", "SIGHUP"))
 
@@ -33,20 +36,30 @@ def announce_end(number: int) -> None:
 def ended_by_signals() -> Iterator[None]:
     """Raise :class:`Ended` on the first signal, as Ctrl-C raises KeyboardInterrupt.
 
-    So what is written is removed, and temporary folders as well. A signal that the program ignores,
-    as under nohup, is ignored still.
+    So what is written is removed, and temporary folders as well. Where a callback of a library
+    swallowed the error it is raised again, but not while it is handled: another signal does not
+    interrupt the end. A signal that the program ignores, as under nohup, is ignored still.
     """
     received: list[int] = []
+    over, reminding = threading.Event(), threading.Lock()
     # Python tries that folder by a file, once, which a signal in between would leave there.
     tempfile.gettempdir()
 
     def end(number: int, frame: FrameType | None) -> None:
         del frame
-        # A terminal that closes brings both; the second must not interrupt the end.
-        if not received or number in received:
+        if not received:
             received.append(number)
             announce_end(number)
-            raise Ended(number)
+            threading.Thread(target=remind, args=(number,), daemon=True).start()
+        elif _is_handled(Ended, sys.exception()):
+            return
+        raise Ended(received[0])
+
+    def remind(number: int) -> None:
+        while not over.wait(REMINDER_S):
+            with reminding:
+                if not over.is_set():
+                    signal.raise_signal(number)
 
     before = {s: signal.getsignal(s) for s in SIGNALS}
     if threading.current_thread() is not threading.main_thread():
@@ -61,5 +74,14 @@ def ended_by_signals() -> Iterator[None]:
             raise
         raise Ended(received[0]) from error  # such as a terminal that cannot be written to
     finally:
+        with reminding:  # afterwards a signal would end the process
+            over.set()
         for one, handler in before.items():
             signal.signal(one, handler)
+
+
+def _is_handled(kind: type[BaseException], error: BaseException | None) -> bool:
+    """Whether an error, or one that it was raised in the handling of, is of a kind."""
+    while error is not None and not isinstance(error, kind):
+        error = error.__context__
+    return error is not None

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -41,6 +42,28 @@ def test_a_signal_ends_what_goes_on_once(number: int) -> None:
             raise OSError  # nor can anything be written to it
     assert ended.value.code == 128 + number and cleaned == [True]
     assert signal.getsignal(number) is before
+
+
+def test_a_signal_whose_error_is_swallowed_ends_the_program_all_the_same() -> None:
+    with pytest.raises(Ended) as ended, ended_by_signals():
+        with suppress(Ended):  # as in a callback of C
+            signal.raise_signal(signal.SIGTERM)
+        wait_until(lambda: False)
+    assert ended.value.code == 128 + signal.SIGTERM
+
+
+def test_the_end_is_not_interrupted() -> None:
+    calls = []
+    with pytest.raises(Ended), ended_by_signals():
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        finally:
+            with pytest.raises(OSError), suppress(ValueError):
+                raise OSError  # what is handled here came of the end
+            for _ in range(3):
+                signal.raise_signal(signal.SIGTERM)
+                calls.append(1)
+    assert len(calls) == 3
 
 
 def test_a_signal_that_is_ignored_stays_so() -> None:
