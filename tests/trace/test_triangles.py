@@ -257,6 +257,16 @@ def test_paths_come_to_rest_in_a_sink(parameter: str) -> None:
             np.testing.assert_allclose(reach, length[inside], atol=0.01)
 
 
+def test_a_path_goes_on_along_the_line_that_it_is_drawn_to() -> None:
+    # A thousand times as quickly as it gets on, in a triangle that it does not leave.
+    points = np.array([[0.0, -1.0], [0.0, 1.0], [4.0, 0.0]])
+    flow = np.stack([np.full(3, 1e-3), -points[:, 1]], axis=-1)
+    field = FlowField.from_triangles(points, np.array([[0, 2, 1]]), flow)
+    slices = trace(field, lags=[0.5, 3.0], unit=1.0)
+    there = found(field, slices, forward=True)
+    np.testing.assert_allclose(there[:2, :2], [[2.0, 0.0], [2.0, 0.0]], atol=0.01)
+
+
 def test_a_saddle_parts_and_a_centre_holds() -> None:
     points, triangles = square(800)
     saddle = FlowField.from_triangles(points, triangles, points * [1, -1])

@@ -25,7 +25,7 @@ from flowtex.trace.triangles.motion import BEHIND, SteadyMotion, TriangleMesh
 #: Length in small cells up to which paths are integrated, and least number of such slices.
 DIRECT_CELLS, LEAST_DIRECT = 8.0, 2
 #: Rounds of steps for these, of which any mesh takes half: what goes on circles about a node.
-DIRECT_STEPS = 300
+DIRECT_STEPS = 150
 #: Paths that are continued together.
 BLOCK = 8192
 #: Edges crossed in search of a point: beyond a ridge there may be no triangle that has it.

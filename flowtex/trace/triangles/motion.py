@@ -25,6 +25,9 @@ from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
 BLOCK_TRIANGLES = 65536
 #: Columns of the table of a steady motion.
 COLUMNS = 14
+#: How many times as fast particles come near a line in a triangle as they get on along it, for
+#: them to count as on the line, and how far off they are then at most, in sizes of the triangle.
+STIFF, OFF_LINE = 4.0, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,6 +239,10 @@ class SteadyMotion(Motion):
         self.floor = floor = speed_floor(flow.speed) if by_length else 0.0
         speed = np.where(flow.speed[0, 0] > floor, flow.speed[0, 0], 0.0)
         self.table = _table(self.mesh, flow.components[0, 0], speed)
+        #: Rates at which particles come near a line in each triangle, and get on along it, (2, T);
+        #: equal ones stand for none.
+        self.pulls = _pulls(direction * self.table[:, 2:6].T)
+        self._has_line = self.pulls[0] != self.pulls[1]
 
     def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
         """Return derivatives, as :meth:`Motion.at` says."""
@@ -247,11 +254,35 @@ class SteadyMotion(Motion):
         second = one * first[0] + two * first[1]
         third = one * second[0] + two * second[1]
         size, pace = part[9], part[10]
+        self._lead_along(triangle, part[6:9], first, second, third)
         if self.by_length:
             rest = RESTING_CELLS * (part[11] + part[12] * shares[0] + part[13] * shares[1])
         else:
             rest = STILL_CELLS * pace / last
         return Derivatives(first, second, third, second, part[6:9], size, pace, rest * rest)
+
+    def _lead_along(
+        self, triangle: Indices, metric: Floats, first: Floats, second: Floats, third: Floats
+    ) -> None:
+        """Have particles on a line that they were drawn to move along it, in place.
+
+        Steps would be as short as what is left of the way to the line decays quickly.
+        """
+        at = np.flatnonzero(self._has_line[triangle])
+        near, along = self.pulls[:, triangle[at]]
+        slow = (second[:, at] - near * first[:, at]) / (along - near)
+        off = first[:, at] - slow
+        on = dot(metric[:, at], off, off) < (OFF_LINE * near) ** 2
+        at, slow, along = at[on], slow[:, on], along[on]
+        first[:, at], second[:, at], third[:, at] = slow, along * slow, along**2 * slow
+
+
+def _pulls(law: Floats) -> Floats:
+    """Eigenvalues (2, T) of linear laws (4, T), the negative first, of which one is far greater."""
+    middle = (law[0] + law[3]) / 2
+    apart = np.sqrt(np.maximum(middle**2 - law[0] * law[3] + law[1] * law[2], 0.0))
+    near, along = middle - apart, middle + apart
+    return np.where(-near > STIFF * np.abs(along), [near, along], 0.0)
 
 
 def speed_floor(speed: Floats) -> float:
