@@ -26,8 +26,9 @@ from flowtex.tiles.clusters import Clusters, levels_of
 from flowtex.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.trace import SliceStore
 
-#: Most nodes of a field that is traced whole.
-ROOT_NODES = 25_000
+#: Most nodes of a field that is traced whole; and of one whose paths lead, from each quarter, so
+#: far that all quarters together would trace its triangles so many times.
+ROOT_NODES, MOST_ROOT_NODES, MOST_OVERLAP = 25_000, 60_000, 2.0
 #: Nodes that boxes are measured by, at most.
 MOST_MEASURED = 100_000
 #: First lag of a tile's paths in cells, and the number of lags, at most.
@@ -50,6 +51,8 @@ class TrianglePyramid(Pyramid):
         self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
     ) -> None:
         self._clusters = levels_of(field, ROOT_NODES)
+        if len(self._clusters) > 1 and _overlaps(self._clusters[-2]):
+            self._clusters.pop()
         super().__init__(field, parameter, lines, depth=len(self._clusters) - 1)
         self._parts: dict[int, list[Indices]] = {}
 
@@ -214,6 +217,20 @@ class TrianglePyramid(Pyramid):
         least, most = corner_ends(points, this.triangles[some])
         inside = (most >= low).all(axis=1) & (least <= high).all(axis=1)
         return np.unique(some[inside])
+
+
+def _overlaps(level: Clusters) -> bool:
+    """Whether quarters of a level would trace most of it each, as where cells are long and thin."""
+    if level.field.shape[1] > MOST_ROOT_NODES:
+        return False
+    low, high = corner_ends(level.field.points[0], level.triangles)
+    size = BIN_SHARE / 2 * level.sides[level.triangles].max(axis=1)
+    total = 0.0
+    for part in Boxes((low + high) / 2, 1).members(low, high, 1):
+        width = PATH_CELLS * _most(size[part])
+        near = (high >= low[part].min(axis=0) - width) & (low <= high[part].max(axis=0) + width)
+        total += float(near.all(axis=1).mean())
+    return total > MOST_OVERLAP
 
 
 def _most(values: Floats) -> float:
