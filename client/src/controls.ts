@@ -30,8 +30,8 @@ const USES: Record<string, (header: Header, rebuild: boolean) => boolean> = {
   lines: ({ slices }, rebuild) => slices.steps > 1 && rebuild,
   parameter: ({ slices, settings }, rebuild) =>
     rebuild && (slices.steps === 1 || settings.lines !== "pathlines"),
-  critical_points: () => false,
-  separatrices: () => false,
+  critical_points: ({ structure }) => Boolean(structure?.parts.includes("critical")),
+  separatrices: ({ structure }) => Boolean(structure?.parts.includes("separatrices")),
   // These have a button in the bar.
   lod: () => false,
   show_level: () => false,

@@ -1,12 +1,14 @@
 // The arrays that a view holds, shared with the other views of the page, and which of them it gives up.
 
 import type { Graphics } from "./context.ts";
-import { isOfStep, stepOf, type Header, type NamedPart, type Part } from "./protocol.ts";
+import { MARKS, isOfStep, stepOf, type Header, type NamedPart, type Part } from "./protocol.ts";
 import type { Source } from "./sources/source.ts";
 import { flowsOf } from "./tracer.ts";
 
 /** Time steps that are held where the host can send the others again, and where memory is short. */
 const STEPS_HELD = { slices: [12, 4], flow: [100, 24] };
+/** Time steps whose marks are held where the host can send the others again. */
+const MARKS_HELD = 24;
 
 export class HeldParts {
   readonly all = new Map<string, Part>();
@@ -38,8 +40,12 @@ export class HeldParts {
 
   /** Hold a few time steps, those of `shown` among them, where the others can be traced or sent again. */
   trim(header: Header | null, source: Source | undefined, shown: number[]): void {
-    const { hasSteps = false, memory = 0 } = source ?? {};
+    const { hasSteps = false, hasMarks = false, memory = 0 } = source ?? {};
     if (!header || !hasSteps) return;
+    for (const kind of hasMarks ? Object.keys(MARKS) : []) {
+      const held = [...this.all.keys()].filter((name) => name.startsWith(`${kind}/`));
+      for (const name of held.slice(0, -MARKS_HELD)) if (!shown.includes(stepOf(name))) this.remove(name);
+    }
     const kind = header.slices.trace ? "flow" : "slices";
     const named = (some: string) => [...this.all.keys()].filter((name) => name.startsWith(some));
     const needed = shown.flatMap((step) => flowsOf(header, step));

@@ -2,7 +2,7 @@
 
 import { rampOf } from "./colours.ts";
 import { dom } from "./dom.ts";
-import { legendLimits, shareOf, type Data, type Header, type Settings } from "./protocol.ts";
+import { legendLimits, shareOf, type Data, type Header, type Settings, type StructureHeader } from "./protocol.ts";
 import { ticksOf } from "./ticks.ts";
 import { clamp } from "./vectors.ts";
 
@@ -13,7 +13,13 @@ const MOST_CHARACTERS = 16;
 /** Share of the ramp beside an end in which the text of a tick ends where the ramp does. */
 const END_SHARE = 0.1;
 
+type Kinds = StructureHeader["kinds"];
+
 export class Legend {
+  /** Kinds of critical points, each with its mark. */
+  readonly kinds = dom("div", { class: "kinds glass", hidden: "" });
+  private shownKinds = "";
+
   readonly element = dom("div", { class: "legend glass", hidden: "" });
   private readonly mark = dom("i", { hidden: "" });
 
@@ -38,6 +44,20 @@ export class Legend {
       dom("div", { class: "name" }, [unit ? `${label} (${unit})` : label]),
       ramp,
       dom("div", { class: "ticks" }, ticks),
+    );
+  }
+
+  showKinds(kinds: Kinds): void {
+    const names = kinds.map(({ name }) => name).join();
+    if (names === this.shownKinds) return;
+    this.shownKinds = names;
+    this.kinds.hidden = !names;
+    this.kinds.replaceChildren(
+      ...kinds.map(({ name, color, turns }) => {
+        const mark = dom("i", { class: turns ? "turns" : "" });
+        mark.style.background = `rgb(${color.map((c) => Math.round(255 * c)).join(" ")})`;
+        return dom("span", {}, [mark, name]);
+      }),
     );
   }
 

@@ -5,7 +5,7 @@ import type { Graphics } from "./context.ts";
 import type { Lifetime } from "./lifetime.ts";
 import type { Found } from "./picking.ts";
 import type { Player } from "./player.ts";
-import type { Header, Part, Settings } from "./protocol.ts";
+import type { Header, Part, Settings, StructureHeader } from "./protocol.ts";
 import type { Scene } from "./scene.ts";
 import type { Requests, Source } from "./sources/source.ts";
 import type { Tiles } from "./tiles.ts";
@@ -23,7 +23,8 @@ export interface View {
   readonly options: { smooth?: boolean; source?: Source; isComing?: () => boolean };
   readonly requests: Requests;
   readonly panel: {
-    wait(missing: string[], isMade: boolean, isCoarse: boolean): void;
+    wait(missing: string[], isMade: boolean, isCoarse: boolean, isFinding?: boolean): void;
+    showKinds(kinds: StructureHeader["kinds"]): void;
     fail(problem: string, detail: string): void;
   };
   readonly graphics: Graphics;

@@ -13,7 +13,7 @@ import type { Options } from "./options.ts";
 import type { Point } from "./picking.ts";
 import type { Player } from "./player.ts";
 import { placeText, type PointCard } from "./pointcard.ts";
-import { AXES, type AxesKind, type Header, type Part, type Settings } from "./protocol.ts";
+import { AXES, type AxesKind, type Header, type Part, type Settings, type StructureHeader } from "./protocol.ts";
 import STYLE from "./styles.css";
 
 /** Milliseconds for which a hint is shown; until lacking parts are named; in which a picture is saved. */
@@ -104,6 +104,7 @@ export class Panel {
   private readonly track = dom("div", { class: "track" }, [this.slider, this.timeText]);
   private hintTimer: Timer | null = null;
   private lateTimer: Timer | null = null;
+  private isFinding = false;
 
   constructor(viewer: PanelHost) {
     this.viewer = viewer;
@@ -141,7 +142,7 @@ export class Panel {
     const { card } = viewer;
     stage.className = "stage";
     stage.append(canvas, card.overlay, this.axes.element, card.element, busy, hintBox, told);
-    shadow.append(dom("div", { class: "top" }, [head, legend.element]), stage, bar, handle);
+    shadow.append(dom("div", { class: "top" }, [head, legend.kinds, legend.element]), stage, bar, handle);
     shadow.append(controls.element, note);
     viewer.lifetime.listen(told, "click", () => (told.hidden = true));
     this.arrange();
@@ -188,6 +189,8 @@ export class Panel {
     const { playing, varies } = this.viewer.player;
     this.name();
     this.controls.update();
+    const isMarked = this.viewer.options.streamed && Number(settings.critical_points) > 0;
+    if (this.viewer.options.streamed) this.showKinds((isMarked && header?.structure?.kinds) || []);
     if (this.legendLook !== this.lookOf(settings)) this.showLegend();
     for (const [name, button] of Object.entries(this.toggles)) {
       button.setAttribute("aria-pressed", String(Boolean(settings[name])));
@@ -267,6 +270,11 @@ export class Panel {
     if (header) this.legend.show(header, settings, parts.get("cmap")?.data);
   }
 
+  /** Show which kinds of critical points are marked. */
+  showKinds(kinds: StructureHeader["kinds"]): void {
+    this.legend.showKinds(kinds);
+  }
+
   /** Show the point under the pointer, or the place of the Earth where there are no data. */
   read(point: Point | null, ground: readonly number[] | null = null): void {
     const { header } = this.viewer;
@@ -277,6 +285,7 @@ export class Panel {
     const { parts, camera } = this.viewer;
     this.readout.append(dom("span", {}, [placeText(position, header, parts, camera)]));
     if (!point) return;
+    if (point.mark) this.readout.append(dom("b", {}, [point.mark]));
     const { name, label, unit } = header.scalars;
     const value = point.values[name ?? ""];
     if (value === undefined) return;
@@ -338,7 +347,7 @@ export class Panel {
   }
 
   /** Show that parts are on their way, paths being traced, tiles to come or details left out, if any. */
-  wait(missing: string[], isMade: boolean, isCoarse = false): void {
+  wait(missing: string[], isMade: boolean, isCoarse = false, isFinding = false): void {
     const { viewer, busy } = this;
     const { pending = 0, wanted = 0 } = viewer.tiles ?? {};
     const details = isCoarse ? `Fewer details while ${viewer.player.playing ? "playing" : "moving"}` : "";
@@ -346,6 +355,8 @@ export class Panel {
     if (missing.length) doing = "Loading data";
     else if (!isMade) doing = "Tracing paths";
     else if (pending) doing = "Loading tiles";
+    else if (isFinding) doing = "Finding critical points";
+    this.isFinding = isFinding;
     const isOfTiles = doing === "Loading tiles";
     const count = isOfTiles ? `: ${wanted - pending} of ${wanted}` : doing ? " …" : details;
     if (this.doing.textContent !== doing) this.doing.textContent = doing;
@@ -379,7 +390,7 @@ export class Panel {
 
   /** Take a message away, as a picture is complete. */
   clear(): void {
-    this.wait([], true);
+    this.wait([], true, false, this.isFinding);
     this.note.hidden = true;
     delete this.viewer.root.dataset.failed;
   }

@@ -15,6 +15,8 @@ export interface Point {
   /** Place between the nodes of the whole surface, (i, j); of triangles that of `placeIn`. */
   index: [number, number];
   values: Record<string, number>;
+  /** The kind of the critical point that is marked here, if any. */
+  mark?: string;
 }
 
 /** A point, and where it was found. */

@@ -216,6 +216,7 @@ export class PointCard {
       const named = header.scalars.choices.find((each) => each.name === name) ?? header.scalars;
       lines.set(named.label, withUnit(numberText(value), named.unit));
     }
+    if (point.mark) lines.set("critical point", point.mark);
     for (const [word, text] of words) lines.set(word, text);
     this.list.replaceChildren(
       ...[...lines].flatMap(([word, value]) => [dom("dt", {}, [word]), dom("dd", {}, [value])]),

@@ -351,6 +351,7 @@ export class ProgressiveRenderer {
     });
     this.drawArrows(shown, view, region, (layer) => this.values(layer, scene, camera, view, samples, draft));
     bodies.draw(around, "clear");
+    scene.marks.draw({ ...around, ratio: view.density }, viewer.settings, shown);
     if (smooth) graphics.copySmooth(width, rows);
     // Reading a pixel waits until everything is drawn.
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));

@@ -161,6 +161,28 @@ export interface BodiesHeader {
   lights: { way: number[]; color: number[]; turns: boolean }[];
 }
 
+/** Kinds of marks, by the names of their parts, and the settings that say how many are drawn of each. */
+export const MARKS = { critical: "critical_points", separatrices: "separatrices" } as const;
+export type MarkKind = keyof typeof MARKS;
+
+/** What there is of critical points and separatrices, and how they look: flowtex/rendering/webgl/marks.py. */
+export interface StructureHeader {
+  /** Kinds of parts that can be had. */
+  parts: string[];
+  /** In the order of a legend; the number in a part is that of its kind here. */
+  kinds: { name: string; color: number[]; turns: boolean }[];
+  /** Colours of lines by what they are. */
+  lines: Record<string, number[]>;
+  rim: number[];
+  middle: number[];
+  /** Diameters of the rim of a dot, its colour and its middle, and widths of a line's rim and colour, in pixels. */
+  dot: [number, number, number];
+  line: [number, number];
+  /** Height of a view in which they have these, and how that changes with it at most. */
+  usualHeight: number;
+  widthRange: [number, number];
+}
+
 /** The date at time 0 in ISO 8601, or the dates of all steps in a calendar of its own. */
 export interface Dates {
   start: string | null;
@@ -339,6 +361,8 @@ export interface Header {
   /** Null for a flow that is elsewhere. */
   earth: Earth | null;
   bodies: BodiesHeader | null;
+  /** Null where the flow has none, or it cannot be had. */
+  structure: StructureHeader | null;
   /** Null where the whole surface is here. */
   pyramid: PyramidHeader | null;
   store?: StoreHeader;

@@ -4,6 +4,7 @@ import { Arrows } from "./arrows.ts";
 import { Bodies, BODY_PARTS } from "./bodies.ts";
 import type { Graphics, Resource } from "./context.ts";
 import { EarthLayer } from "./earthlayer.ts";
+import { Marks } from "./marks.ts";
 import { makeLayers, sendLayer, type LayersSize } from "./layers.ts";
 import { coordinates, cornersAt, noiseCoordinates, positions, shares, type Corners } from "./mesh.ts";
 import { MeshLevels, type Sight } from "./meshlevels.ts";
@@ -54,6 +55,7 @@ export class Scene {
   readonly earth: EarthLayer;
   readonly bodies: Bodies;
   readonly arrows: Arrows;
+  readonly marks: Marks;
   readonly tile: TileKey | null;
   anchor: Vector = [0, 0, 0];
   private readonly resources = new Map<string, Resource>();
@@ -73,12 +75,14 @@ export class Scene {
     this.earth = new EarthLayer(graphics, header, parts);
     this.bodies = new Bodies(graphics, header, parts);
     this.arrows = new Arrows(graphics, header, parts);
+    this.marks = new Marks(graphics, header, parts);
   }
 
   /** Whether the programs are built of what is drawn beside the surface; asks for them. */
   isReady(settings: Settings): boolean {
     const programs = [false, true].map((isClose) => this.arrows.program(settings, isClose));
-    return this.earth.isReady && this.bodies.isReady && programs.every((program) => program?.ready ?? true);
+    const others = [this.earth.isReady, this.bodies.isReady, this.marks.isReady(settings)];
+    return others.every(Boolean) && programs.every((program) => program?.ready ?? true);
   }
 
   /** Names of the parts that a moment needs and that are not there. */
@@ -238,6 +242,7 @@ export class Scene {
     this.earth.dispose();
     this.bodies.dispose();
     this.arrows.dispose();
+    this.marks.dispose();
   }
 
   /** What some parts are known by on the whole page; nothing where one of them has no digest. */

@@ -132,7 +132,7 @@ export class Tiles {
       const own = JSON.parse(new TextDecoder().decode(part.data)) as TileHeader | null;
       tile.scene?.dispose();
       if (own) own.geometry.reach = header.geometry.reach;
-      tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null, bodies: null }, tile.parts, keyOf(name));
+      tile.scene = own && new Scene(graphics, { ...header, ...own, pyramid: null, bodies: null, structure: null }, tile.parts, keyOf(name));
       this.giveMap(tile);
     } else tile.scene?.forget(part.name);
     const { names, steps } = this.chosen;

@@ -101,8 +101,11 @@ export class WebGL2Painter implements Painter {
     const steps = this.missing([moment[0], moment[1], ...this.next, ...ahead]);
     if (steps.length && view.requests.hasSteps && !view.options.isComing?.()) view.requests.wantSteps(steps);
     const isMade = !lacking.length && scene.make(moment.slice(0, 2), until);
-    view.root.dataset.lacking = String(lacking.length || Number(!isMade));
-    view.panel.wait(lacking, isMade, this.renderer.leavesOut);
+    const marks = view.requests.hasMarks ? scene.marks.lacking(view.settings, moment) : [];
+    if (!view.options.isComing?.()) view.requests.wantMarks(marks);
+    view.root.dataset.lacking = String(lacking.length + marks.length || Number(!isMade));
+    view.panel.wait(lacking, isMade, this.renderer.leavesOut, marks.length > 0);
+    view.panel.showKinds(scene.marks.legend(view.settings, moment));
     // A picture that was begun before the slices were there shows another moment.
     if (isMade && String(moment.slice(0, 2)) !== String(shown?.slice(0, 2))) {
       view.trim();
@@ -163,6 +166,12 @@ export class WebGL2Painter implements Painter {
     const { camera, canvas } = view;
     if (!tiles?.layers.length || !camera || !shown) return null;
     const { anchor } = view.view(shown, 1);
-    return pickedPoint({ layers: tiles.layers, camera, moment: shown, anchor, canvas }, x, y);
+    const found = pickedPoint({ layers: tiles.layers, camera, moment: shown, anchor, canvas }, x, y);
+    const { marks } = tiles.layers[0].scene;
+    if (found) {
+      const at = { place: [x, y] as [number, number], position: found.point.position, height: view.root.clientHeight };
+      found.point.mark = marks.at(at, camera, view.settings, shown);
+    }
+    return found;
   }
 }

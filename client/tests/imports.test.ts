@@ -20,6 +20,7 @@ const LAYERS = [
   "heldparts samples",
   "earthlayer arrows",
   "bodies",
+  "marks",
   "scene",
   "tiles",
   "picking pointpath pixelsum progressive",

@@ -218,34 +218,34 @@ let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*
 .5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
 v2]=between3(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between3(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
 texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=6,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],TYPES={float32:Float32Array,
-uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({
-low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.
-max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(
-high)),told=value=>Math.abs(value)<least?0:value;return[told(low),told(high)]}function isSignFree(header){return header.
-variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function isOfStep(name,step,{
-scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(number)]?.steps??scalars.steps;return kind===
-"scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,row2,column,...rest]=name.split("/");return kind===
-"tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?
-new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape:shape2,digest}=info,
-Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);
-return{name,shape:shape2,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(
-new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=
-info.bytes,info.differences===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+
-new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),
-first]}async function partOfText(info,text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.
-length;n+=1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream(
-"gzip"));return partOfPlanes(info,new Uint8Array(await new Response(unpacked).arrayBuffer()))}var UNSIGNED={1:Uint8Array,
-2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{shape:shape2,differences=[0,0],scale:scale3=null}=info,
-count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(
-`the part "${info.name}" is not packed as it tells`);let[line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(
--2),numbers=new UNSIGNED[width](count2);for(let c=0,from=0;c<channels;c+=1)for(let n=c;n<count2;n+=channels,from+=1){let bits=0;
-for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count2+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*
-channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<
-differences[1];order+=1)for(let first=0;first<count2;first+=row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=
-numbers[n-channels];return decoded(info,scale3?floats(numbers,scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){
-let channels=units.length;return numbers instanceof Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):
-Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
+toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=6,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],MARKS={critical:"criti\
+cal_points",separatrices:"separatrices"},TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,
+int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-
+low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,
+log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[
+told(low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){
+return Number(name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.
+choices[Number(number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){
+let[kind,level,row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:
+null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.
+byteLength):new Uint8Array(bytes),{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a pa\
+rt has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,digest,data:new Type(view.
+slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.
+map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,info.differences===void 0?decoded(info,
+bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+new DataView(file.buffer,file.byteOffset).getUint32(
+0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),first]}async function partOfText(info,text){let letters=atob(
+text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob(
+[packed]).stream().pipeThrough(new DecompressionStream("gzip"));return partOfPlanes(info,new Uint8Array(await new Response(
+unpacked).arrayBuffer()))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{
+shape:shape2,differences=[0,0],scale:scale3=null}=info,count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?planes.
+length/count2:1;if(!(width in UNSIGNED))throw new Error(`the part "${info.name}" is not packed as it tells`);let[line,channels]=shape2.
+length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](count2);for(let c=0,from=0;c<channels;c+=1)
+for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count2+from]<<
+8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<
+count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<count2;first+=
+row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=numbers[n-channels];return decoded(info,scale3?floats(numbers,
+scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){let channels=units.length;return numbers instanceof
+Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
 data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];return result2}function grid(us,vs){let result2=new Float32Array(
 2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
 shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},(_,n)=>(n+before+.5)/size);return grid(
@@ -257,7 +257,7 @@ corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+
 [aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){return corners.reduce((sum,[node,share])=>sum+
 share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
 geometry,camera,x,y),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&place[1]<=y1?place:null}let[
-start,along]=camera.ray(x,y),nearest=dot2(start,along),square=nearest**2-dot2(start,start)+earth.radius**2,depth=-nearest-
+start,along]=camera.ray(x,y),nearest2=dot2(start,along),square=nearest2**2-dot2(start,start)+earth.radius**2,depth=-nearest2-
 Math.sqrt(square);return depth>0?add(start,along,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1,this.drop(name==="position"?"lan\
 d":name)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.drawn.get(name);if(drawn){
@@ -398,9 +398,9 @@ length/unit2.length,flow=new Float32Array(4*unit2.length);for(let n=0,at=0;n<uni
 n+3]=trace.timed?trace.timed.unit:size}let result2=this.poles.laidOut(flow);return trace.timed&&(this.fastest=Math.max(this.
 fastest,this.poles.fastest(result2)*trace.timed.speed*trace.timed.unit)),result2}wholeSpeed(step){let data=this.numbers(
 `flow/${step}`),nodes=this.data("unit").length,channels=data.length/nodes,whole=new Float32Array(4*nodes);for(let n=0;n<
-nodes;n+=1)whole[4*n]=data[(n+1)*channels-1];return whole}cells(){let[rows,columns]=this.trace.nodes,[open,nearest]=["op\
-en","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<rows*columns;n+=1){
-cells[4*n]=open?open[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest?nearest[2*n+k]:0}return cells}padded(){let data=this.
+nodes;n+=1)whole[4*n]=data[(n+1)*channels-1];return whole}cells(){let[rows,columns]=this.trace.nodes,[open,nearest2]=["o\
+pen","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<rows*columns;n+=1){
+cells[4*n]=open?open[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest2?nearest2[2*n+k]:0}return cells}padded(){let data=this.
 data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=1)result2[4*
 n+k]=data[3*n+k];return result2}flowTexture(step){let{width,height}=this.poles.size,gl=this.graphics.context,texture=this.
 flows.get(step)??this.texture(width,height,gl.RGBA32F,this.flow(step));this.flows.delete(step),this.flows.set(step,texture);
@@ -440,14 +440,17 @@ before[0],far,rays],composer??follow,{u_lagEarlier:earlier,u_from:begin,u_to:end
 at=next,!((asked+=rows*columns)<PASS_NODES)&&(gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(4)),
 asked=0,yield)}}[before,now]=[now,at],m||(first=now);let fourth=m===1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],
 now[0]],{u_fourth:fourth,u_lag:sign*lag})}layer(start,slopes,[first[0],now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.
-finish(),result2}};var STEPS_HELD={slices:[12,4],flow:[100,24]},HeldParts=class{all=new Map;graphics;constructor(graphics){this.graphics=graphics}set(part){
-let{name,digest}=part;if(digest&&this.all.get(name)?.digest===digest)return!1;let held=this.graphics.hold(part);return this.
-remove(name),this.all.set(name,held),!0}remove(name){this.graphics.release(this.all.get(name)),this.all.delete(name)}clear(isGone=()=>!0){
-for(let name of[...this.all.keys()])isGone(name)&&this.remove(name)}trim(header,source,shown){let{hasSteps=!1,memory=0}=source??
-{};if(!header||!hasSteps)return;let kind=header.slices.trace?"flow":"slices",named=some=>[...this.all.keys()].filter(name=>name.
-startsWith(some)),needed=shown.flatMap(step=>flowsOf(header,step));for(let name of named(`${kind}/`).slice(0,-STEPS_HELD[kind][+(memory>
-0)])){let step=stepOf(name);if(needed.includes(step))continue;for(let held of[kind,"extra"])this.remove(`${held}/${step}`);
-let values=memory?named("scalars/"):[];for(let other of values)isOfStep(other,step,header)&&this.remove(other)}}};var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
+finish(),result2}};var STEPS_HELD={slices:[12,4],flow:[100,24]},MARKS_HELD=24,HeldParts=class{all=new Map;graphics;constructor(graphics){this.
+graphics=graphics}set(part){let{name,digest}=part;if(digest&&this.all.get(name)?.digest===digest)return!1;let held=this.
+graphics.hold(part);return this.remove(name),this.all.set(name,held),!0}remove(name){this.graphics.release(this.all.get(
+name)),this.all.delete(name)}clear(isGone=()=>!0){for(let name of[...this.all.keys()])isGone(name)&&this.remove(name)}trim(header,source,shown){
+let{hasSteps=!1,hasMarks=!1,memory=0}=source??{};if(!header||!hasSteps)return;for(let kind2 of hasMarks?Object.keys(MARKS):
+[]){let held=[...this.all.keys()].filter(name=>name.startsWith(`${kind2}/`));for(let name of held.slice(0,-MARKS_HELD))shown.
+includes(stepOf(name))||this.remove(name)}let kind=header.slices.trace?"flow":"slices",named=some=>[...this.all.keys()].
+filter(name=>name.startsWith(some)),needed=shown.flatMap(step=>flowsOf(header,step));for(let name of named(`${kind}/`).slice(
+0,-STEPS_HELD[kind][+(memory>0)])){let step=stepOf(name);if(needed.includes(step))continue;for(let held of[kind,"extra"])
+this.remove(`${held}/${step}`);let values=memory?named("scalars/"):[];for(let other of values)isOfStep(other,step,header)&&
+this.remove(other)}}};var Lifetime=class{controller=new AbortController;observers=new Set;timers=new Set;globalListeners=0;get isOver(){return this.
 controller.signal.aborted}listen(target,kind,call,options={}){(target===document||target===window)&&(this.globalListeners+=
 1);let{signal}=this.controller;target.addEventListener(kind,call,{...options,signal})}later(call,delay){let timer=setTimeout(
 ()=>{this.timers.delete(timer),call()},delay);return this.timers.add(timer),timer}cancel(timer){timer!==null&&(clearTimeout(
@@ -557,14 +560,14 @@ alue"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto
 ["auto"]);robust=dom("button",{type:"button",class:"link"},["robust"]);log=dom("input",{type:"checkbox",role:"switch"});opacity=dom(
 "input",{type:"range",min:"0",max:"1",step:"0.05"});logRow=labelled("Log scale",this.log);opacityRow=labelled("Opacity",
 this.opacity);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){this.viewer=viewer;let{scalars,swatches,
-ends,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours({scalars:scalars.value===PLAIN?
-!1:scalars.value,clim:null})});for(let end of ends)lifetime.listen(end,"change",()=>this.takeRange());lifetime.listen(auto,
-"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(this.robust,"click",()=>viewer.chooseColours({clim:"robus\
-t"})),lifetime.listen(this.log,"change",()=>viewer.chooseColours({log_scale:this.log.checked})),lifetime.listen(this.opacity,
-"input",()=>viewer.chooseColours({opacity:this.opacity.valueAsNumber})),this.robust.title="Leave out the least and the g\
-reatest values.",lifetime.listen(swatches,"click",event=>{let name=event.target.dataset.cmap;name&&viewer.chooseColours(
+ends:ends2,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours({scalars:scalars.value===
+PLAIN?!1:scalars.value,clim:null})});for(let end of ends2)lifetime.listen(end,"change",()=>this.takeRange());lifetime.listen(
+auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(this.robust,"click",()=>viewer.chooseColours({clim:"\
+robust"})),lifetime.listen(this.log,"change",()=>viewer.chooseColours({log_scale:this.log.checked})),lifetime.listen(this.
+opacity,"input",()=>viewer.chooseColours({opacity:this.opacity.valueAsNumber})),this.robust.title="Leave out the least a\
+nd the greatest values.",lifetime.listen(swatches,"click",event=>{let name=event.target.dataset.cmap;name&&viewer.chooseColours(
 {cmap:name})});let row2=(name,...fields)=>dom("div",{class:"row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=
-row2("Range",dom("span",{class:"between"},[...ends,auto,this.robust])),this.mapRow=row2("Colour map",swatches),this.mapRow.
+row2("Range",dom("span",{class:"between"},[...ends2,auto,this.robust])),this.mapRow=row2("Colour map",swatches),this.mapRow.
 classList.add("ranged"),this.opacityRow.classList.add("ranged"),this.element.append(row2("Colour by",scalars),this.mapRow,
 this.rangeRow,this.logRow,this.opacityRow)}get rows(){return[this.element,this.lines]}updateLines(){let{header,parts,lifetime}=this.
 viewer,names=EARTH_LINES.filter(name=>header?.earth&&parts.has(name));this.lines.hidden=!names.length,this.lines.children.
@@ -588,51 +591,54 @@ var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:ha
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
 noise_correction:({paper},rebuild)=>!!paper&&rebuild,lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,
-settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),critical_points:()=>!1,separatrices:()=>!1,
-lod:()=>!1,show_level:()=>!1};function isUseful({name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects===
-"uniform"||rebuild)}function isInUse({needs=[]},settings){let holds=needs.map(([name,sign,value])=>settings[name]===value==
-(sign==="=="));return!needs.length||holds.includes(!0)}var Controls=class{element=dom("div",{class:"settings glass",hidden:"",
-"aria-label":"Settings"});viewer;controls=new Map;rows=null;constructor(viewer){this.viewer=viewer}build(header){let rebuild=this.
-viewer.options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,header,rebuild)),kindOf=some=>JSON.stringify(some?.
-map(row2=>({...row2,default:null})));if(kindOf(rows)===kindOf(this.rows))return!1;this.rows=rows,this.controls.clear(),this.
-element.replaceChildren();for(let row2 of rows){let control=this.control(row2),{input,output}=control,name=dom("span",{class:"\
-name"},[row2.label]),attributes={class:"row","data-setting":row2.name},line=dom("label",attributes,[name,...output?[output]:
-[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row2.name,{...control,row:row2,line}),this.
-element.append(line)}return!0}get parameters(){return[...this.controls.values()].filter(({row:row2})=>row2.name.startsWith(
-"formula.")).map(({line})=>line)}update(){let{settings}=this.viewer;for(let[name,{row:row2,line,show}]of this.controls){
-name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.toggle("idle",isIdle),line.title=
-isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control==="checkbox"?this.switch(row2):row2.
-control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.slider(row2)}switch({name}){let input=dom(
-"input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.choose(name,input.
-checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom("option",
-{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.viewer.
-choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[min,max]=[
-low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.
-viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.viewer.choose(name,
-clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,fromSlider,min,max,step}=scaleOf2(
-row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("o\
-utput"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(Number(shown))};this.viewer.
-lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="uniform"?"input":"change";return this.viewer.
-lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,show:shown=>{input.value=String(toSlider(
-Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,[least,most]=[low??0,high??
-1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?
-Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?
-1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),critical_points:({structure})=>!!structure?.
+parts.includes("critical"),separatrices:({structure})=>!!structure?.parts.includes("separatrices"),lod:()=>!1,show_level:()=>!1};
+function isUseful({name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}function isInUse({
+needs=[]},settings){let holds=needs.map(([name,sign,value])=>settings[name]===value==(sign==="=="));return!needs.length||
+holds.includes(!0)}var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;rows=null;constructor(viewer){
+this.viewer=viewer}build(header){let rebuild=this.viewer.options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,
+header,rebuild)),kindOf=some=>JSON.stringify(some?.map(row2=>({...row2,default:null})));if(kindOf(rows)===kindOf(this.rows))
+return!1;this.rows=rows,this.controls.clear(),this.element.replaceChildren();for(let row2 of rows){let control=this.control(
+row2),{input,output}=control,name=dom("span",{class:"name"},[row2.label]),attributes={class:"row","data-setting":row2.name},
+line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.
+set(row2.name,{...control,row:row2,line}),this.element.append(line)}return!0}get parameters(){return[...this.controls.values()].
+filter(({row:row2})=>row2.name.startsWith("formula.")).map(({line})=>line)}update(){let{settings}=this.viewer;for(let[name,
+{row:row2,line,show}]of this.controls){name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.
+toggle("idle",isIdle),line.title=isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control===
+"checkbox"?this.switch(row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.
+slider(row2)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,
+"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.
+map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,
+"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,
+low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(
+max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&
+this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,
+fromSlider,min,max,step}=scaleOf2(row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"\
+range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(
+Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="uniform"?"input":
+"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,show:shown=>{
+input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,
+[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
+2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
+toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole",d:"detail",".":"next",",":"previous"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={
 left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}
 function forwardKeys(root,event){event.target===document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent(
 "keydown",event))&&event.preventDefault()}function toggleFullscreen(element){document.fullscreenElement?document.exitFullscreen():
-element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{element=dom("div",{class:"legend glass",hidden:""});mark=dom(
-"i",{hidden:""});show(header,settings,map){let{name,label,unit:unit2,bar}=header.scalars;if(this.element.hidden=name===null||
-!bar||!map||!!settings.show_level,this.element.hidden||!map)return;let ramp=dom("div",{class:"ramp"},[this.mark]);ramp.style.
-background=rampOf(map,header,settings,STOPS2),this.mark.hidden=!0;let placeOf=shareOf(header.scalars),ticks=legendTicks(
-header).map(({value,text})=>{let tick=dom("span",{},[text]),share=clamp(placeOf(value),0,1);tick.style.left=`${100*share}\
-%`;let isAtEnd=Math.abs(share-.5)>.5-END_SHARE;return tick.style.transform=`translateX(${isAtEnd?-100*share:-50}%)`,tick});
-this.element.replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:label]),ramp,dom("div",{class:"ticks"},
-ticks))}point(header,value=NaN){this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.mark.hidden)&&(this.mark.
-style.left=`${100*clamp(shareOf(header.scalars)(value),0,1)}%`)}};function legendTicks({scalars}){let[low,high]=legendLimits(
-scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.reduce((sum,{text})=>sum+text.length,
-0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
+element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{kinds=dom("div",{class:"kinds glass",hidden:""});shownKinds="";element=dom(
+"div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){let{name,label,unit:unit2,bar}=header.
+scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.element.hidden||!map)return;let ramp=dom(
+"div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,STOPS2),this.mark.hidden=!0;let placeOf=shareOf(
+header.scalars),ticks=legendTicks(header).map(({value,text})=>{let tick=dom("span",{},[text]),share=clamp(placeOf(value),
+0,1);tick.style.left=`${100*share}%`;let isAtEnd=Math.abs(share-.5)>.5-END_SHARE;return tick.style.transform=`translateX\
+(${isAtEnd?-100*share:-50}%)`,tick});this.element.replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:
+label]),ramp,dom("div",{class:"ticks"},ticks))}showKinds(kinds){let names=kinds.map(({name})=>name).join();names!==this.
+shownKinds&&(this.shownKinds=names,this.kinds.hidden=!names,this.kinds.replaceChildren(...kinds.map(({name,color,turns})=>{
+let mark=dom("i",{class:turns?"turns":""});return mark.style.background=`rgb(${color.map(c=>Math.round(255*c)).join(" ")}\
+)`,dom("span",{},[mark,name])})))}point(header,value=NaN){this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.
+mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(header.scalars)(value),0,1)}%`)}};function legendTicks({scalars}){
+let[low,high]=legendLimits(scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.reduce((sum,{
+text})=>sum+text.length,0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
 1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
 [ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
 for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
@@ -649,8 +655,8 @@ cellPixels*Math.max(1,2*streak/(pyramid.cellPixels*pyramid.pathCells))}var Pyram
 this.header=header;let start=0,starts=header.blocks.map(([rows,columns])=>(start+=rows*columns)-rows*columns);this.place=
 typeof places=="function"?places:(level,row2,column)=>{let at=PLACE*(starts[level]+row2*header.blocks[level][1]+column);
 return places.subarray(at,at+PLACE)}}blocksOf(name,[level,row2,column]){let[rows,columns]=this.header.blocks[level];if(name===
-ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends=[Math.min(size*(row2+1),rows),Math.min(size*(column+
-1),columns)];return[size*row2,size*column,...ends]}children(name,[level,row2,column]){let{blocks,tileBlocks}=this.header,
+ROOT)return[0,0,rows,columns];let{tileBlocks:size}=this.header,ends2=[Math.min(size*(row2+1),rows),Math.min(size*(column+
+1),columns)];return[size*row2,size*column,...ends2]}children(name,[level,row2,column]){let{blocks,tileBlocks}=this.header,
 counts=blocks[level-1].map(n=>Math.ceil(n/tileBlocks)),[from,to]=name===ROOT?[[0,0],counts]:[[2*row2,2*column],[row2,column].
 map((n,k)=>Math.min(2*n+2,counts[k]))],keys=[];for(let j=from[0];j<to[0];j+=1)for(let i=from[1];i<to[1];i+=1)keys.push([
 level-1,j,i]);return keys}finerPart([,row2,column],above){let{tileBlocks}=this.header,half=tileBlocks/2,[,j,i]=above===ROOT?
@@ -830,16 +836,17 @@ hward",withUnit(numberText(north,VELOCITY_DIGITS),unit2))}else{let text=vectorTe
 header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity"),withUnit(text,unit2))}lines.set(
 label,withUnit(numberText(size,VELOCITY_DIGITS),unit2));for(let[name,value]of Object.entries(point.values)){let named=header.
 scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,withUnit(numberText(value),named.unit))}
-for(let[word,text]of words)lines.set(word,text);this.list.replaceChildren(...[...lines].flatMap(([word,value])=>[dom("dt",
-{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.explainer!==void 0}draw(){let{drawn}=this,{camera,
-stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,placeOf=point2=>{let place=camera.
-project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.
-map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,
-sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),
-dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?[{place,radius:DOT_RADIUS*Math.
-sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,
-dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{let shape2=document.createElementNS(
-SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(name,`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+point.mark&&lines.set("critical point",point.mark);for(let[word,text]of words)lines.set(word,text);this.list.replaceChildren(
+...[...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=this.host.options.
+explainer!==void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,clientHeight:height}=stage,
+placeOf=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{
+let lines2=[[]];for(let place of points.map(placeOf))place?lines2[lines2.length-1].push(place):lines2.push([]);return lines2.
+filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf(drawn.point),{samples}=drawn,most=Math.max(
+...samples.map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf(position);return place?
+[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(
+sampled)},shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>{
+let shape2=document.createElementNS(SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(name,
+`${value}`);return shape2}))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -904,11 +911,11 @@ SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(n
 :host(.flowtex-framed) .top { height: 46px; padding: 5px 10px 0; align-items: center; }
 :host(.flowtex-framed) { --above-bar: 10px; }
 :host(.flowtex-framed) .bar { margin: 4px auto; }
-:host(.flowtex-framed) :is(.head, .legend, .bar) {
+:host(.flowtex-framed) :is(.head, .kinds, .legend, .bar) {
   background: none; border-color: transparent; box-shadow: none;
   backdrop-filter: none; -webkit-backdrop-filter: none;
 }
-:host(.flowtex-framed) :is(.head, .legend) { padding-inline: 0; padding-block: 0; }
+:host(.flowtex-framed) :is(.head, .kinds, .legend) { padding-inline: 0; padding-block: 0; }
 :host(.flowtex-framed) .legend { flex: 0 1 240px; }
 :host(.flowtex-framed[data-axes="ticks"]) .stage { margin: 0 16px 22px 58px; }
 :host(.flowtex-framed[data-axes="scale"]) .stage { margin-bottom: 20px; }
@@ -947,6 +954,15 @@ SVG3,tag);for(let[name,value]of Object.entries(attributes))shape2.setAttribute(n
   width: 0; min-width: 100%; margin-bottom: 3px; overflow: hidden; overflow-wrap: anywhere;
   display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 2;
 }
+.kinds {
+  flex: none; display: grid; grid-template-columns: auto auto; gap: 1px 12px; padding: 5px 10px 6px; font-size: 11px;
+  margin-left: auto; pointer-events: none;
+}
+.kinds:not([hidden]) + .legend { margin-left: 10px; }
+.kinds span { display: flex; align-items: center; gap: 5px; white-space: nowrap; }
+.kinds i { width: 9px; height: 9px; border-radius: 50%; box-shadow: 0 0 0 1.5px rgb(16 20 24 / 0.85); }
+.kinds .turns::after { content: ""; display: block; width: 4px; height: 4px; margin: 2.5px; border-radius: 50%; backgrou\
+nd: #fff; }
 .ramp { position: relative; height: 8px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
 .ramp i {
   position: absolute; top: -2px; bottom: -2px; width: 2px; margin-left: -1px; border-radius: 1px;
@@ -1036,7 +1052,7 @@ n;
   overscroll-behavior: contain; --glass: color-mix(in srgb, var(--ground) 90%, transparent);
   background: var(--glass);
 }
-:host(.flowtex-open:not(.flowtex-framed)) .legend { display: none; }
+:host(.flowtex-open:not(.flowtex-framed)) :is(.kinds, .legend) { display: none; }
 .row {
   display: grid; grid-template-columns: 1fr auto; align-items: center; column-gap: 10px;
   min-height: 30px; padding: 2px 0;
@@ -1103,6 +1119,7 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   .head > * { max-width: 100%; padding-right: 2px; overflow: hidden; text-overflow: ellipsis; }
   :host(.flowtex-framed[data-axes="ticks"]) .stage { margin-left: 50px; margin-right: 8px; }
 }
+@container (max-width: 420px) { .kinds { display: none; } }
 @container (max-width: 220px) { .legend { display: none; } }
 @container (max-width: 330px) { button { width: 27px; height: 27px; } }
 :host(.flowtex-bare) :is(.top, .path, .card, .settings, .bar, .handle) { display: none; }
@@ -1117,7 +1134,7 @@ bel",{class:"row",title:"How fast time goes by."},[dom("span",{class:"name"},["P
 alert"});doing=dom("span",{role:"status"});count=dom("span",{"aria-hidden":"true"});busy=dom("div",{class:"busy",hidden:""},
 [this.doing,this.count]);told=dom("div",{class:"told glass",hidden:"",role:"status"});words=new Set;hintBox=dom("div",{class:"\
 hint glass",hidden:""},[HINT]);bar;handle;playButton;stepButtons;toggles;gear;slider=dom("input",{type:"range",...TIME_RANGE});timeText=dom(
-"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;constructor(viewer){
+"span",{class:"time"});track=dom("div",{class:"track"},[this.slider,this.timeText]);hintTimer=null;lateTimer=null;isFinding=!1;constructor(viewer){
 this.viewer=viewer;let{root,stage,canvas,options}=viewer;this.isShown=options.controls??!0,this.axes=new Axes(viewer),viewer.
 lifetime.listen(this.axesMenu,"change",()=>{let kind=this.axesMenu.value;for(let{panel}of viewer.together)panel.chooseAxes(
 kind);options.onAxes?.(kind)}),this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.
@@ -1130,8 +1147,8 @@ etail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_
 s","Settings",()=>this.fold(!this.isOpen)),this.bar=this.makeBar(),canvas.className="picture",root.classList.toggle("flo\
 wtex-bare",options.bare??!1);let shadow=root.attachShadow({mode:"open"});shadow.adoptedStyleSheets=[styleSheet];let{legend,
 controls,head,bar,handle,busy,hintBox,told,note}=this,{card}=viewer;stage.className="stage",stage.append(canvas,card.overlay,
-this.axes.element,card.element,busy,hintBox,told),shadow.append(dom("div",{class:"top"},[head,legend.element]),stage,bar,
-handle),shadow.append(controls.element,note),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){
+this.axes.element,card.element,busy,hintBox,told),shadow.append(dom("div",{class:"top"},[head,legend.kinds,legend.element]),
+stage,bar,handle),shadow.append(controls.element,note),viewer.lifetime.listen(told,"click",()=>told.hidden=!0),this.arrange()}button(name,title,press){
 let button=dom("button",{type:"button",title,"aria-label":title,"data-name":name},[icon(name)]);return this.viewer.lifetime.
 listen(button,"click",press),button}makeBar(){let{viewer}=this;return dom("div",{class:"bar glass",role:"toolbar","aria-\
 label":"Controls"},[this.stepButtons[0],this.playButton,this.stepButtons[1],this.track,this.button("home","Show everythi\
@@ -1140,55 +1157,59 @@ this.save()}),this.button("full","Fill the screen (f)",()=>this.fullscreen()),th
 toggle())])}build(){let{header}=this.viewer;if(!header)return;this.note.hidden=!0;let isOther=this.controls.build(header);
 isOther&&this.controls.element.prepend(...this.colours.rows,this.axesRow,this.paceRow),isOther&&this.parameters.replaceChildren(
 ...this.controls.parameters),this.showLegend(),this.update(),this.arrange()}update(){let{header,settings}=this.viewer,{playing,
-varies}=this.viewer.player;this.name(),this.controls.update(),this.legendLook!==this.lookOf(settings)&&this.showLegend();
-for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-pressed",String(!!settings[name]));let title=playing?
-"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(playing?"pause":"play")),this.playButton.title=title,
-this.playButton.setAttribute("aria-label",title);let streams=header!==null&&hasStreaming(header);this.playButton.hidden=
-this.track.hidden=this.paceRow.hidden=!varies&&!streams;for(let button of this.stepButtons)button.hidden=!varies;this.paceMenu.
-value=String(this.viewer.player.pace),this.slider.disabled=!varies&&settings.motion==="off";let width=header&&this.date(
-header)?.length||8+withUnit("",header?.slices.timeUnit??"").length;this.timeText.style.minWidth=`${varies?width:7}ch`,this.
-tick()}name(){let{header,settings,root,options}=this.viewer,differences=(header?.differs??[]).filter(name2=>name2 in settings).
-map(name2=>{let label2=header?.table.find(row2=>row2.name===name2)?.label??name2,value=settings[name2];return`${label2}:\
- ${typeof value=="boolean"?value?"on":"off":value}`}),name=header?.name??"",title=differences.join(", ")||(options.named&&
-this.viewer.together.length<2?"":name),{first}=this,isApart=first!==this.viewer.player&&this.viewer.player.time!==first.
-time,moment=header&&isApart&&this.viewer.player.varies?this.moment(header):"";this.title.textContent=[title,moment].filter(
-Boolean).join(" · "),this.title.hidden=!this.title.textContent,this.title.classList.toggle("formula",/[=(]/.test(title));
-let label=options.label??(title||name);root.setAttribute("aria-label",label?`Flow texture: ${label}`:"Flow texture")}get first(){
-return this.viewer.together[0]?.player??this.viewer.player}tick(){let{header,player,settings}=this.viewer;if(!header||this.
-track.hidden)return;this.first!==player&&this.name();let{first,last,now}=player.range(settings);this.slider.value=String(
-(now-first)/(last-first||1));let text=player.varies?this.moment(header):`${now.toFixed(1)} s`;this.timeText.textContent!==
-text&&(this.timeText.textContent=text)}moment(header){let{player}=this.viewer;return this.date(header)??withUnit(numberText(
-player.time),header.slices.timeUnit)}date({slices}){return dateText(slices.dates,slices.times,this.viewer.player.time)}lookOf({
-show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){let{header,settings,parts}=this.
-viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(header,settings,parts.get("c\
-map")?.data)}read(point,ground=null){let{header}=this.viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.
-position??ground;if(!position||!header)return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(
-position,header,parts,camera)])),!point)return;let{name,label,unit:unit2}=header.scalars,value=point.values[name??""];value!==
-void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(header,value))}fold(open=!1){
-this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=shown;for(let{panel}of this.
-viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{header,options,root}=this.viewer;
-return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&root.clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){
-this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&hasTicks(header)?"ticks":"none",kind=this.
-axesKind??header?.axes??usual,shown=this.isFramed?kind:"none";this.axesMenu.value=kind,this.viewer.root.dataset.axes=shown,
-this.axes.draw(shown)}arrange(){let{header,options,root}=this.viewer,isReady=header!==null,follows=!!options.follows;this.
-bar.hidden=!(this.isShown||follows&&this.isFramed)||!isReady,this.bar.style.visibility=follows?"hidden":"",this.handle.hidden=
-this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,this.controls.element.hidden=!this.isShown||
-!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.hidden),root.classList.toggle("flowte\
-x-framed",this.isFramed),this.showAxes(),this.gear.setAttribute("aria-pressed",String(this.isOpen))}wait(missing,isMade,isCoarse=!1){
-let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},details=isCoarse?`Fewer details while ${viewer.player.playing?
-"playing":"moving"}`:"",doing="";missing.length?doing="Loading data":isMade?pending&&(doing="Loading tiles"):doing="Trac\
-ing paths";let count2=doing==="Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.textContent!==
-doing&&(this.doing.textContent=doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.hidden=!(doing||
-count2);let{source,isComing}=viewer.options;!missing.length||source?.hasSteps||isComing?.()||this.lateTimer||(this.lateTimer=
-viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The scene is not co\
-mplete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),this.hintTimer=
-shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(text)||(this.words.
-add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0),this.note.hidden=!0,delete this.viewer.
-root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},[problem]),dom("pre",{},[detail])),this.
-note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true",this.viewer.options.onError?.(problem,detail)}fullscreen(){
-let{root,together}=this.viewer;toggleFullscreen(together.length>1&&root.parentElement||root)}async save(){let{viewer}=this,
-href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||"flow").replace(FORBIDDEN," ").trim();
-dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
+varies}=this.viewer.player;this.name(),this.controls.update();let isMarked=this.viewer.options.streamed&&Number(settings.
+critical_points)>0;this.viewer.options.streamed&&this.showKinds(isMarked&&header?.structure?.kinds||[]),this.legendLook!==
+this.lookOf(settings)&&this.showLegend();for(let[name,button]of Object.entries(this.toggles))button.setAttribute("aria-p\
+ressed",String(!!settings[name]));let title=playing?"Pause (space)":"Play (space)";this.playButton.replaceChildren(icon(
+playing?"pause":"play")),this.playButton.title=title,this.playButton.setAttribute("aria-label",title);let streams=header!==
+null&&hasStreaming(header);this.playButton.hidden=this.track.hidden=this.paceRow.hidden=!varies&&!streams;for(let button of this.
+stepButtons)button.hidden=!varies;this.paceMenu.value=String(this.viewer.player.pace),this.slider.disabled=!varies&&settings.
+motion==="off";let width=header&&this.date(header)?.length||8+withUnit("",header?.slices.timeUnit??"").length;this.timeText.
+style.minWidth=`${varies?width:7}ch`,this.tick()}name(){let{header,settings,root,options}=this.viewer,differences=(header?.
+differs??[]).filter(name2=>name2 in settings).map(name2=>{let label2=header?.table.find(row2=>row2.name===name2)?.label??
+name2,value=settings[name2];return`${label2}: ${typeof value=="boolean"?value?"on":"off":value}`}),name=header?.name??"",
+title=differences.join(", ")||(options.named&&this.viewer.together.length<2?"":name),{first}=this,isApart=first!==this.viewer.
+player&&this.viewer.player.time!==first.time,moment=header&&isApart&&this.viewer.player.varies?this.moment(header):"";this.
+title.textContent=[title,moment].filter(Boolean).join(" · "),this.title.hidden=!this.title.textContent,this.title.classList.
+toggle("formula",/[=(]/.test(title));let label=options.label??(title||name);root.setAttribute("aria-label",label?`Flow t\
+exture: ${label}`:"Flow texture")}get first(){return this.viewer.together[0]?.player??this.viewer.player}tick(){let{header,
+player,settings}=this.viewer;if(!header||this.track.hidden)return;this.first!==player&&this.name();let{first,last,now}=player.
+range(settings);this.slider.value=String((now-first)/(last-first||1));let text=player.varies?this.moment(header):`${now.
+toFixed(1)} s`;this.timeText.textContent!==text&&(this.timeText.textContent=text)}moment(header){let{player}=this.viewer;
+return this.date(header)??withUnit(numberText(player.time),header.slices.timeUnit)}date({slices}){return dateText(slices.
+dates,slices.times,this.viewer.player.time)}lookOf({show_level,strength,contrast}){return`${show_level} ${strength} ${contrast}`}showLegend(){
+let{header,settings,parts}=this.viewer;this.legendLook=this.lookOf(settings),this.colours.update(),header&&this.legend.show(
+header,settings,parts.get("cmap")?.data)}showKinds(kinds){this.legend.showKinds(kinds)}read(point,ground=null){let{header}=this.
+viewer;this.readout.replaceChildren(),this.legend.point(null);let position=point?.position??ground;if(!position||!header)
+return;let{parts,camera}=this.viewer;if(this.readout.append(dom("span",{},[placeText(position,header,parts,camera)])),!point)
+return;point.mark&&this.readout.append(dom("b",{},[point.mark]));let{name,label,unit:unit2}=header.scalars,value=point.values[name??
+""];value!==void 0&&(this.readout.append(dom("b",{},[withUnit(`${label} ${numberText(value)}`,unit2)])),this.legend.point(
+header,value))}fold(open=!1){this.isOpen=open,this.arrange()}toggle(shown=!this.isShown){if(shown!==this.isShown){this.isShown=
+shown;for(let{panel}of this.viewer.together)panel.arrange();this.viewer.options.onControls?.(shown)}}get isFramed(){let{
+header,options,root}=this.viewer;return(options.follows?.panel.isShown??this.isShown)&&!options.bare&&header!==null&&root.
+clientHeight>=LEAST_FRAMED_PX}chooseAxes(kind){this.axesKind=kind,this.arrange()}showAxes(){let{header}=this.viewer,usual=header&&
+hasTicks(header)?"ticks":"none",kind=this.axesKind??header?.axes??usual,shown=this.isFramed?kind:"none";this.axesMenu.value=
+kind,this.viewer.root.dataset.axes=shown,this.axes.draw(shown)}arrange(){let{header,options,root}=this.viewer,isReady=header!==
+null,follows=!!options.follows;this.bar.hidden=!(this.isShown||follows&&this.isFramed)||!isReady,this.bar.style.visibility=
+follows?"hidden":"",this.handle.hidden=this.isShown||!isReady||follows,this.head.hidden=!(this.isShown||follows)||!isReady,
+this.controls.element.hidden=!this.isShown||!this.isOpen||!isReady,root.classList.toggle("flowtex-open",!this.controls.element.
+hidden),root.classList.toggle("flowtex-framed",this.isFramed),this.showAxes(),this.gear.setAttribute("aria-pressed",String(
+this.isOpen))}wait(missing,isMade,isCoarse=!1,isFinding=!1){let{viewer,busy}=this,{pending=0,wanted=0}=viewer.tiles??{},
+details=isCoarse?`Fewer details while ${viewer.player.playing?"playing":"moving"}`:"",doing="";missing.length?doing="Loa\
+ding data":isMade?pending?doing="Loading tiles":isFinding&&(doing="Finding critical points"):doing="Tracing paths",this.
+isFinding=isFinding;let count2=doing==="Loading tiles"?`: ${wanted-pending} of ${wanted}`:doing?" …":details;this.doing.
+textContent!==doing&&(this.doing.textContent=doing),this.count.textContent!==count2&&(this.count.textContent=count2),busy.
+hidden=!(doing||count2);let{source,isComing}=viewer.options;!missing.length||source?.hasSteps||isComing?.()||this.lateTimer||
+(this.lateTimer=viewer.lifetime.later(()=>{this.lateTimer=null;let names=viewer.lacking.join(", ");names&&this.fail("The\
+ scene is not complete.",`Missing: ${names}`)},LATE_MS))}hint(shown){let{lifetime}=this.viewer;lifetime.cancel(this.hintTimer),
+this.hintTimer=shown?lifetime.later(()=>this.hint(!1),HINT_MS):null,this.hintBox.hidden=!shown}tell(text){this.words.has(
+text)||(this.words.add(text),this.told.textContent=text,this.told.hidden=!1)}clear(){this.wait([],!0,!1,this.isFinding),
+this.note.hidden=!0,delete this.viewer.root.dataset.failed}fail(problem,detail){this.note.replaceChildren(dom("strong",{},
+[problem]),dom("pre",{},[detail])),this.note.hidden=!1,this.busy.hidden=!0,this.viewer.root.dataset.failed="true",this.viewer.
+options.onError?.(problem,detail)}fullscreen(){let{root,together}=this.viewer;toggleFullscreen(together.length>1&&root.parentElement||
+root)}async save(){let{viewer}=this,href=URL.createObjectURL(await pictureOf(viewer.together)),name=(viewer.header?.name||
+"flow").replace(FORBIDDEN," ").trim();dom("a",{href,download:`${name}.png`}).click(),viewer.lifetime.later(()=>URL.revokeObjectURL(
+href),SAVED_MS)}};var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
 0];lastFrame=0;hasHeader=!1;setHeader(header){let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.
 every((t,n)=>t===this.times[n]))||!this.hasHeader)&&(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.
 times=times2}get varies(){return this.times.length>1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){
@@ -1307,22 +1328,24 @@ Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor
 taker}want(jobs){this.jobs=jobs;let names=new Set(jobs.map(String));for(let[name,controller]of this.running)names.has(name)||
 (this.running.delete(name),controller.abort());this.next()}stop(){this.want([]),this.failed=new Failures}next(){for(let job of this.
 jobs){if(this.running.size>=(this.source()?.atOnce??AT_ONCE))return;!this.running.has(String(job))&&!this.failed.has(String(
-job))&&this.run(job)}}async run(job){let{taker}=this,source=this.source();if(!source)return;let[key,steps]=job,controller=new AbortController,
+job))&&this.run(job)}}async run(job){let{taker}=this,source=this.source();if(!source)return;let[key,steps,mark]=job,controller=new AbortController,
 {signal}=controller,has=part=>key?taker.tiles?.has(nameOf(key),part)??!1:taker.parts.has(part);this.running.set(String(job),
-controller);try{let parts=await source.load(key,steps,signal,has);if(!signal.aborted)for(let part of parts)taker.setPart(
+controller);try{let parts=await source.load(key,steps,signal,has,mark);if(!signal.aborted)for(let part of parts)taker.setPart(
 part)}catch(error){signal.aborted||this.fail(job,error)}signal.aborted||(this.running.delete(String(job)),this.failed.has(
 String(job))||(this.jobs=this.jobs.filter(other=>String(other)!==String(job))),this.next())}fail(job,error){let[key,steps]=job;
 this.failed.add(String(job)),setTimeout(()=>this.next(),FAILED_MS+SPARE_MS);let isAway=error.fault==="unreachable",name=key&&
 !isAway?nameOf(key):void 0;this.taker.lack(wordsOf(key?COARSE:ABSENT_STEP,error),name,steps)}};function wordsOf(what,error){
 let{fault,message=String(error),detail=""}=error;return console.warn(message,detail),fault==="other"?message:`${what}: ${message}`}
-var Requests=class{tiles;wholes;given;formula=null;constructor(source,taker){this.given=source,this.tiles=new Queue(()=>this.
-source,taker),this.wholes=new Queue(()=>this.source,taker)}get source(){return this.formula??this.given}get hasSteps(){return this.
-source?.hasSteps??!1}setHeader(header){this.stop(),this.formula=header.formula?new FormulaSource(header,header.formula):
-null}follow(settings){return this.formula?.follow(settings)??!1}open(){let{taker}=this.tiles;this.source?.open?.().catch(
-error=>taker.lack(wordsOf(ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.want(keys.map(key=>[key,steps]))}wantSteps(steps){
-let before=this.wholes.jobs.flatMap(([,some])=>some);if(steps.every(step=>before.includes(step)))return;let wanted=[...new Set(
-[...steps,...before])].slice(0,steps.length+SPARE_STEPS);this.wholes.want(wanted.map(step=>[null,[step]]))}stop(){this.tiles.
-stop(),this.wholes.stop()}};var StreamedPainter=class{view;isPainted=!0;constructor(view){this.view=view}resize(width,height){let{canvas}=this.view,
+var Requests=class{tiles;wholes;marks;given;formula=null;constructor(source,taker){this.given=source,this.tiles=new Queue(
+()=>this.source,taker),this.wholes=new Queue(()=>this.source,taker),this.marks=new Queue(()=>this.source,taker)}get source(){
+return this.formula??this.given}get hasSteps(){return this.source?.hasSteps??!1}get hasMarks(){return this.source?.hasMarks??
+!1}setHeader(header){this.stop(),this.formula=header.formula?new FormulaSource(header,header.formula):null}follow(settings){
+return this.formula?.follow(settings)??!1}open(){let{taker}=this.tiles;this.source?.open?.().catch(error=>taker.lack(wordsOf(
+ALL_COARSE,error)))}wantTiles(keys,steps){this.tiles.want(keys.map(key=>[key,steps]))}wantSteps(steps){let before=this.wholes.
+jobs.flatMap(([,some])=>some);if(steps.every(step=>before.includes(step)))return;let wanted=[...new Set([...steps,...before])].
+slice(0,steps.length+SPARE_STEPS);this.wholes.want(wanted.map(step=>[null,[step]]))}wantMarks(marks){let jobs=marks.map(
+([kind,step])=>[null,[step],kind]);String(jobs)!==String(this.marks.jobs)&&this.marks.want(jobs)}stop(){this.tiles.stop(),
+this.wholes.stop(),this.marks.stop()}};var StreamedPainter=class{view;isPainted=!0;constructor(view){this.view=view}resize(width,height){let{canvas}=this.view,
 before=new OffscreenCanvas(Math.max(canvas.width,1),Math.max(canvas.height,1));before.getContext("2d")?.drawImage(canvas,
 0,0),[canvas.width,canvas.height]=[width,height],this.pen?.drawImage(before,0,0,width,height)}get pen(){return this.view.
 canvas.getContext("2d",{alpha:!1})}frame(now){let{view}=this;view.camera||view.place(),!(!view.player.playing||!this.isPainted)&&
@@ -1403,22 +1426,23 @@ enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.C
 height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);
 let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.use(
 program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),this.drawArrows(
-shown,view,region,layer=>this.values(layer,scene,camera,view,samples,draft)),bodies.draw(around2,"clear"),smooth&&graphics.
-copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(shown,view,{width,height},values){
-let{camera,settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={
-...camera.sight(height/view.density),planes:camera.planes};for(let[layer,placed]of scene.arrows.share(seen,settings,this.
-layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));if(!program||!placed.length)
-continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.scalarParts(shown[0],shown[1]);arrows.draw(program,placed,
-painted,view.anchor,{...values(layer),u_picture:[width,height]})}}values({header,parts},{bodies},camera,view,samples,draft){
-let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get("noise")?.shape??null,plain=header.scalars.name!==
-null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{...uniforms(header,{...settings,samples},view,
-noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),
-u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_padding:[columns.before,rows.before],u_colour:header.colour,
-u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.
-geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,
-{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,
-pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,
-w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+shown,view,region,layer=>this.values(layer,scene,camera,view,samples,draft)),bodies.draw(around2,"clear"),scene.marks.draw(
+{...around2,ratio:view.density},viewer.settings,shown),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.
+RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(shown,view,{width,height},values){let{camera,settings}=this.viewer,{
+scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={...camera.sight(height/view.density),
+planes:camera.planes};for(let[layer,placed]of scene.arrows.share(seen,settings,this.layers)){let{arrows,header}=layer,program=arrows.
+program(settings,isNear(header,settings,view));if(!program||!placed.length)continue;layer.bindTextures(shown[0],shown[1]);
+let painted=layer.scalarParts(shown[0],shown[1]);arrows.draw(program,placed,painted,view.anchor,{...values(layer),u_picture:[
+width,height]})}}values({header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,{columns,rows}=header.
+geometry,noise=parts.get("noise")?.shape??null,plain=header.scalars.name!==null&&hasArrows(header,settings)&&settings.arrow_color===
+"scalars";return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):
+{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_padding:[
+columns.before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.
+areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){
+if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;
+if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,
+coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,
+0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
@@ -1430,8 +1454,8 @@ length2(away);return[0,1].flatMap(side=>[2,3].flatMap(end=>[-1,1].map(sign=>[sid
 a,b]=[normal(side),normal(end)],sum=add(scale2(cross2(b,away),-planes[side][3]),cross2(away,a),-planes[end][3]),both=cross2(
 a,b);return scale2(add(sum,both,dot2(away,center)+sign*reach),1/dot2(both,away))})}sees(view,point,reach){let slack=reach+
 this.limits.around*view.pixels*pixelAt(view,point);return view.planes.every(p=>dot2(p,point)+p[3]>=-slack*length2(p))}make(wanted){
-let[view,spacing]=wanted,{limits,sums,whole}=this,{extent,center}=this.surface.geometry,total2=sums[sums.length-1]??0,nearest=view.
-eye?Math.max(length2(subtract2(center,view.eye))-.5*extent,0):1,least=limits.closer*spacing*pixelOf(view,nearest),radius=extent,
+let[view,spacing]=wanted,{limits,sums,whole}=this,{extent,center}=this.surface.geometry,total2=sums[sums.length-1]??0,nearest2=view.
+eye?Math.max(length2(subtract2(center,view.eye))-.5*extent,0):1,least=limits.closer*spacing*pixelOf(view,nearest2),radius=extent,
 seeds=whole[0],parts=null;for(let octave=0;octave<limits.mostOctaves;octave+=1){let area=limits.candidateArea*radius**2;
 if(total2<=limits.mostCandidates*area)whole[octave+1]??=this.grown(seeds,this.spread(octave,area),radius),seeds=whole[octave+
 1];else{parts??=Array.from(sums,(_,cell)=>wholeCell(cell)),parts=this.divided(parts.filter(part=>this.isNeeded(part,wanted,
@@ -1460,13 +1484,13 @@ let shares2=[(1-j)*(1-i),(1-j)*i,j*(1-i),j*i],result2=new Array(size).fill(0);fo
 1)result2[k]+=shares2[n]*nodal[size*corners[n]+k];return result2}var Neighbours=class{most;cubes=new Map;constructor(most){
 this.most=most}cube(point){return point.map(x=>Math.floor(x/this.most))}add(point){let key=cubeKey(...this.cube(point)),
 there=this.cubes.get(key);there?there.push(point):this.cubes.set(key,[point])}distance(point){let[i,j,k]=this.cube(point),
-nearest=this.most;for(let n=0;n<27;n+=1){let key=cubeKey(i+n%3-1,j+Math.floor(n/3)%3-1,k+Math.floor(n/9)-1);for(let other of this.
-cubes.get(key)??[])nearest=Math.min(nearest,length2(subtract2(point,other)))}return nearest}},OCTAVE_PRIME=2654435769,SEED_PRIME=2246822507,
-HASH_FACTORS=[739982445,695872825],HASH_SHIFT=15;function cubeKey(i,j,k){return Math.imul(i,2376512323)^Math.imul(j,3625334849)^
-Math.imul(k,3407524639)}function mixed(key){let hash=key>>>0;for(let factor of HASH_FACTORS)hash=Math.imul(hash^hash>>>HASH_SHIFT,
-factor)>>>0;return(hash^hash>>>HASH_SHIFT)>>>0}var shareOf2=key=>key/2**32;function wholeCell(cell){return{cell,low:[0,0],
-size:[1,1],key:mixed(cell)}}var awayOf=({eye},point)=>eye?length2(subtract2(point,eye)):1,pixelOf=({halfHeight,pixels},away)=>2*
-halfHeight/pixels*away,pixelAt=(view,point)=>pixelOf(view,awayOf(view,point));var SIZES=[[0,3],[1,2],[2,3],[4,2],[5,3],[6,1]],FLOAT_BYTES=4,STRIDE=SIZES.reduce((sum,[,size])=>sum+size,0),isEqual=(a,b)=>a.
+nearest2=this.most;for(let n=0;n<27;n+=1){let key=cubeKey(i+n%3-1,j+Math.floor(n/3)%3-1,k+Math.floor(n/9)-1);for(let other of this.
+cubes.get(key)??[])nearest2=Math.min(nearest2,length2(subtract2(point,other)))}return nearest2}},OCTAVE_PRIME=2654435769,
+SEED_PRIME=2246822507,HASH_FACTORS=[739982445,695872825],HASH_SHIFT=15;function cubeKey(i,j,k){return Math.imul(i,2376512323)^
+Math.imul(j,3625334849)^Math.imul(k,3407524639)}function mixed(key){let hash=key>>>0;for(let factor of HASH_FACTORS)hash=
+Math.imul(hash^hash>>>HASH_SHIFT,factor)>>>0;return(hash^hash>>>HASH_SHIFT)>>>0}var shareOf2=key=>key/2**32;function wholeCell(cell){
+return{cell,low:[0,0],size:[1,1],key:mixed(cell)}}var awayOf=({eye},point)=>eye?length2(subtract2(point,eye)):1,pixelOf=({
+halfHeight,pixels},away)=>2*halfHeight/pixels*away,pixelAt=(view,point)=>pixelOf(view,awayOf(view,point));var SIZES=[[0,3],[1,2],[2,3],[4,2],[5,3],[6,1]],FLOAT_BYTES=4,STRIDE=SIZES.reduce((sum,[,size])=>sum+size,0),isEqual=(a,b)=>a.
 length===b.length&&a.every((each,n)=>each===b[n]),levelOf=({tile})=>tile?.[0]??1/0,Arrows=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}program(settings,isClose){let{shaders,geometry}=this.header;if(!hasArrows(
 this.header,settings))return null;let variant=isClose&&!geometry.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.
@@ -1505,8 +1529,8 @@ header,[rows,columns]=geometry.shape,result2=[];if(geometry.triangles){let nodes
 nodes.length;n+=3)result2.push(nodes[n],nodes[n+1],nodes[n+2],nodes[n+2]);return Uint32Array.from(result2)}let cells=this.
 parts.get("cells")?.data;for(let n=0;n<(rows-1)*(columns-1);n+=1){if(cells&&!cells[n])continue;let low=n+Math.floor(n/(columns-
 1));result2.push(low,low+1,low+columns,low+columns+1)}return Uint32Array.from(result2)}};var BODY_PARTS=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],LIGHTS=8,[ENDS_BYTES,COLOURS_BYTES]=[
-24,8],BEHIND=[1,2],PLATE_MARGIN=.2;function atEnds(values,pieces,size){let Type=values.constructor,ends=new Type(size*pieces.
-length);for(let n=0;n<pieces.length;n+=1)for(let k=0;k<size;k+=1)ends[size*n+k]=values[size*pieces[n]+k];return ends}function lightUniforms({
+24,8],BEHIND=[1,2],PLATE_MARGIN=.2;function atEnds(values,pieces,size){let Type=values.constructor,ends2=new Type(size*pieces.
+length);for(let n=0;n<pieces.length;n+=1)for(let k=0;k<size;k+=1)ends2[size*n+k]=values[size*pieces[n]+k];return ends2}function lightUniforms({
 geometry,bodies},camera){let[right,up,ahead]=camera.axes,lights=(bodies?.lights??[]).slice(0,LIGHTS),ways=lights.map(({way,
 turns})=>{let turned=add(add(scale2(right,way[0]),up,way[1]),ahead,-way[2]);return toFrame(geometry.frame,turns?turned:way)}),
 padded=vectors=>Float32Array.from({length:3*LIGHTS},(_,n)=>vectors.flat()[n]??0);return{u_lightWays:padded(ways),u_lightColours:padded(
@@ -1548,10 +1572,56 @@ array=()=>{let made=graphics.counted(gl.createVertexArray());return gl.bindVerte
 ARRAY_BUFFER)=>{let made=graphics.counted(gl.createBuffer());return gl.bindBuffer(target,made),gl.bufferData(target,data,
 gl.STATIC_DRAW),made},faces=array(),buffers=[[points,3,gl.FLOAT],[normals,3,gl.BYTE],[colours,4,gl.UNSIGNED_BYTE]].map(([
 data,size,type],n)=>{let made=buffer(data);return gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,type,type!==
-gl.FLOAT,0,0),made});buffers.push(buffer(corners,gl.ELEMENT_ARRAY_BUFFER));let lines=array(),ends=buffer(atEnds(points,pieces,
-3)),paints=buffer(atEnds(colours,pieces,4));for(let n=0;n<4;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(n,
-1);return gl.bindVertexArray(null),{faces,pieces:lines,ends,colours:paints,buffers:[...buffers,ends,paints]}}};function css([
-r,g,b,opacity=1]){return`rgb(${[r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var PLACE3=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
+gl.FLOAT,0,0),made});buffers.push(buffer(corners,gl.ELEMENT_ARRAY_BUFFER));let lines=array(),ends2=buffer(atEnds(points,
+pieces,3)),paints=buffer(atEnds(colours,pieces,4));for(let n=0;n<4;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(
+n,1);return gl.bindVertexArray(null),{faces,pieces:lines,ends:ends2,colours:paints,buffers:[...buffers,ends2,paints]}}};
+function css([r,g,b,opacity=1]){return`rgb(${[r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var[SADDLE,ORBIT,LEAVING]=[8,4,2],[NEARER,ABOVE_SHARE]=[.01,.2],[ROW,ENDS_BYTES2]=[4,24],REACH_PX=9;function shapesOf(points,lines,most){
+let shapes={lines:{leaving:[],coming:[],"closed orbit":[]},points:[]};for(let n=0;n<Math.min(points.length/ROW,most.points);n+=
+1){let kind=points[ROW*n+3];(shapes.points[kind]??=[]).push(...[0,1,2].map(k=>points[ROW*n+k]))}let last=NaN;for(let n=0;n<
+lines.length/ROW;n+=1){let number=lines[ROW*n+3];if(number>=SADDLE*most.saddles)continue;let turns=number&ORBIT?"closed \
+orbit":number&LEAVING?"leaving":"coming";number!==last&&shapes.lines[turns].push([]),last=number;let path=shapes.lines[turns];
+path[path.length-1].push(...[0,1,2].map(k=>lines[ROW*n+k]))}return shapes}function ends(paths,areDots=!1){let values=Float32Array.
+from(paths.flat());if(areDots)return atEnds(values,Array.from({length:2*values.length/3},(_,n)=>n>>1),3);let pieces=[],first=0;
+for(let path of paths){let count2=path.length/3;for(let n=first;n<first+count2-1;n+=1)pieces.push(n,n+1);first+=count2}return atEnds(
+values,pieces,3)}var Marks=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(graphics,header,parts){
+this.graphics=graphics,this.header=header,this.parts=parts}kinds(settings){let there=this.header.structure?.parts??[];return Object.
+keys(MARKS).filter(kind=>there.includes(kind)&&Number(settings[MARKS[kind]])>0)}lacking(settings,moment){let step=nearest(
+moment);return this.kinds(settings).flatMap(kind=>this.parts.has(`${kind}/${step}`)?[]:[[kind,step]])}get program(){let{
+lineVertex,lineFragment}=this.header.shaders;return this.graphics.programs.get(lineVertex,lineFragment,"FLOWTEX_BODY","F\
+LOWTEX_MARK")}isReady(settings){return!this.kinds(settings).length||this.program.ready}shown(settings,moment,kind){let part=this.
+kinds(settings).includes(kind)?this.parts.get(`${kind}/${nearest(moment)}`):void 0;return[part?Number(settings[MARKS[kind]]):
+0,part]}legend(settings,moment){let[most,part]=this.shown(settings,moment,"critical"),kinds=new Set;for(let n=0;n<Math.min(
+most,part?.shape[0]??0);n+=1)kinds.add(Number(part?.data[ROW*n+3]));return(this.header.structure?.kinds??[]).filter((_,n)=>kinds.
+has(n))}draw({camera,anchor,width,height,ratio},settings,moment){let{header,graphics}=this,{structure,geometry}=header,layers=structure&&
+this.layers(structure,settings,moment);if(!structure||!layers?.length)return;let gl=graphics.context,[x,y,z,w]=camera.eye,
+eye=toFrame(geometry.frame,subtract2([x,y,z],scale2(geometry.center,w))),wider=ratio*clamp(Math.sqrt(height/ratio/structure.
+usualHeight),...structure.widthRange),distance=w?1:camera.distance/Math.hypot(...eye);gl.bindVertexArray(this.array),gl.
+enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),gl.depthFunc(gl.LEQUAL);let program=this.
+program;graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),u_anchor:anchor,u_eye:[...subtract2(eye,
+scale2(anchor,w)),w],u_picture:[width,height],u_horizon:[0,0,0,1]}),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer);for(let{first,
+count:count2,color,width:thickness,above}of layers){let[r,g,b,opacity=1]=color;graphics.programs.use(program,{u_width:thickness*
+wider,u_nearer:NEARER*distance*(1+ABOVE_SHARE*above)});for(let end of[0,1])gl.vertexAttribPointer(end,3,gl.FLOAT,!1,ENDS_BYTES2,
+ENDS_BYTES2*(first+end/2)),gl.vertexAttrib4f(2+end,r,g,b,opacity);gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count2)}gl.
+bindVertexArray(null),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND)}layers(structure,settings,moment){let[[points,dots],[saddles,
+lines]]=["critical","separatrices"].map(kind=>this.shown(settings,moment,kind)),key=JSON.stringify([points,dots?.digest,
+saddles,lines?.digest,nearest(moment)]);if(this.drawn?.key===key)return this.drawn.layers;let shapes=shapesOf(dots?.data??
+[],lines?.data??[],{points,saddles}),{line,dot:dot3,rim,middle}=structure,layers=[],pieces=[],first=0,put=(data,color,width,above)=>{
+let count2=data.length/6;count2&&layers.push({first,count:count2,color,width,above}),pieces.push(data),first+=count2};put(
+ends(Object.values(shapes.lines).flat()),rim,line[0],0),Object.entries(shapes.lines).forEach(([name,paths],n)=>put(ends(
+paths),structure.lines[name],line[1],1+n));let places=structure.kinds.map((_,n)=>shapes.points[n]??[]);return put(ends(places,
+!0),rim,dot3[0],4),structure.kinds.forEach(({color},n)=>put(ends([places[n]],!0),color,dot3[1],5)),put(ends(places.filter(
+(_,n)=>structure.kinds[n].turns),!0),middle,dot3[2],6),this.send(pieces),this.drawn={key,layers},layers}send(pieces){let{
+graphics}=this,gl=graphics.context;this.array??=graphics.counted(gl.createVertexArray()),this.buffer??=graphics.counted(
+gl.createBuffer()),gl.bindVertexArray(this.array),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer),gl.bufferData(gl.ARRAY_BUFFER,
+Float32Array.from(pieces.flatMap(some=>[...some])),gl.STATIC_DRAW);for(let end of[0,1])gl.enableVertexAttribArray(end),gl.
+vertexAttribDivisor(end,1);gl.bindVertexArray(null)}at({place,position,height},camera,settings,moment){let{geometry,structure}=this.
+header,[most,part]=this.shown(settings,moment,"critical"),pixel=2*camera.height/Math.max(height,1),[kind,least]=["",REACH_PX];
+for(let n=0;n<Math.min(most,part?.shape[0]??0);n+=1){let[a,b,c,number]=[0,1,2,3].map(k=>Number(part?.data[ROW*n+k])),point=add(
+fromFrame(geometry.frame,[a,b,c]),geometry.center),seen=camera.project(point);if(!seen||Math.hypot(...subtract2(point,position))>
+4*REACH_PX*pixel)continue;let away=.5*height*Math.hypot((seen[0]-place[0])*camera.aspect,seen[1]-place[1]);away<least&&([
+kind,least]=[structure?.kinds[number]?.name??"",away])}return kind}dispose(){this.graphics.free("Buffer",this.buffer),this.
+graphics.free("VertexArray",this.array),this.array=this.buffer=this.drawn=null}};function nearest([before,after,between3]){
+return between3<.5?before:after}var PLACE3=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,
@@ -1597,118 +1667,119 @@ line.count-1),from=start+place[1-axis]*size,end=Math.max(Math.min(from+size,line
 end;n+=1)coarsest=Math.max(coarsest,values[line.at(pick,n)]);if(borders[4*own+side]=coarsest-step,!(level<0))for(let n=from;n<
 end;n+=1)changed||=values[line.at(pick,n)]!==coarsest,values[line.at(pick,n)]=coarsest})}return[borders,changed]}var USERS={position:["position","coordinate"],normal:["normal"],cells:["index"],mesh:["index"],triangles:["index","posit\
 ion","coordinate","corners","normal","scalar"],blocks:["index"],cmap:["cmap"],noise:["noise"],step:["step"],scalars:["sc\
-alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;tile;anchor=[
+alar"]},SOURCES=["padded","unit","open","nearest","rays"],TEXEL_BYTES=8*(4/3),count=0,Scene=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
 0,0,0];resources=new Map;scalarSteps="";drawn=null;meshLevels=null;tracing="";number=count+=1;constructor(graphics,header,parts,tile=null){
 this.tile=tile,this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),
-this.bodies=new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts)}isReady(settings){let programs=[
-!1,!0].map(isClose=>this.arrows.program(settings,isClose));return this.earth.isReady&&this.bodies.isReady&&programs.every(
-program=>program?.ready??!0)}missing(before,after){let{geometry,slices,scalars,paper,pyramid,formula}=this.header,{trace}=slices,
-names=["mesh",...trace?.parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.
-header.bodies?.runs.length&&names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
-[before,after]))trace?names.push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===
-2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cma\
-p"),paper&&names.push("noise","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(
-step,step).map(name=>name.startsWith("flow/")?stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.
-header.scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
-after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
-slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.
-nodes??[],shape2={flow:[...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.
-rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,
-part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.
-shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),
-digest=name=>this.key(["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.
-shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf(padded,trace,
-geometry.shape)),steps.every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.
-graphics,this.header,trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;
-if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],
-step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
-tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
-get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.
-advance(until),!texture)return!1;this.stopTracing()}return this.take(name,"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){
-let{graphics,parts}=this;if(parts.get(name)?.digest===digest)return;let part=graphics.stock.get(digest)?.part??{...make(),
-digest};graphics.release(parts.get(name)),parts.set(name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.
-missing(steps[0],steps[steps.length-1]).length&&(!this.header.slices.trace||this.isLoaded(steps))}stopTracing(){this.graphics.
-tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.
-parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,
-step]=name.split("/");USERS[kind]?.includes("index")&&(this.meshLevels=this.drawn=null),["position","cells","triangles"].
-includes(kind)&&this.arrows.forget();let sliced=["slices","extra","flow"].includes(kind);!sliced&&kind!=="scalars"&&this.
-earth.forget(name),BODY_PARTS.includes(kind)&&this.bodies.dispose();for(let user of sliced?[`slices/${step}`]:USERS[kind]??
-[])this.drop(user);SOURCES.includes(kind)&&this.dropSlices(NaN,NaN),this.drop("array")}drop(name){let resource=this.resources.
-get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.
-object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);
-this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),this.arrows.dispose()}key(names,...rest){let digests=names.
-map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):
-""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&
-`${name.split("/")[0]} ${key}`,shared2=whole?graphics.common.get(whole):void 0,object=shared2?.object??graphics.counted(
-make()),resource=shared2??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),
-shared2||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){
-let gl=this.graphics.context,fill=buffer=>{let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.
-bindVertexArray(null),gl.bindBuffer(target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.
-take(name,"Buffer",key,()=>gl.createBuffer(),fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.
-header;if(geometry.triangles)return this.meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape:shape2,
-periodic}=geometry,parts={blocks:this.part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels(
-{shape:shape2,periodic,...parts},mesh)}cornersAt(place){let{triangles,shape:shape2}=this.header.geometry;return triangles?
-cornersOf(this.part("triangles").data,place):cornersAt(shape2,place)}levels(sight){return{levels:this.mesh().levels(sight),
-shape:this.mesh().shape}}get hasTriangles(){return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;
-drawn&&String([levels,joins])===String([drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop(
-"array"))}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.
-header;return slices.trace?[...this.resources.keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.
-count*geometry.rows.size*geometry.columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){
-let gl=this.graphics.context,steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","arra\
-y"]:[];anchor.some((x,k)=>x!==this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.
-scalarSteps=steps,this.anchor=anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();
-gl.bindVertexArray(this.take("array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,
-{geometry,paper}=this.header,{shape:shape2,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},
-key=(names,...rest)=>this.key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["\
-cells","mesh","blocks"],shape2,[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?
-this.part("triangles").data:null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(
-positions(this.part("position").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?
-vertexNormals(nodal,this.part("position").data,corners):nodal,[colour,values]=this.shares(before,after),grid2=JSON.stringify(
-[shape2,rows,columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;
-normal instanceof Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("\
-position",key(["position"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.
-buffer("normal",key(["normal"]),()=>normals(normal)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),
-2,gl.FLOAT],[corners&&this.buffer("scalar",colour,()=>vertices(values(),2)),2,gl.FLOAT],[corners&&this.buffer("corners",
-key([]),()=>vertexCorners(corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),
-attributes.forEach(([buffer,size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),
-gl.vertexAttribPointer(n,size,kind,kind!==gl.FLOAT,0,0))})}shares(before,after){let{geometry,scalars}=this.header,{shape:shape2}=geometry,
-painted=this.scalarParts(before,after);return[this.key(["triangles",...new Set(painted)],shape2,scalars.low,scalars.high,
-scalars.log),()=>shares(painted.map(name=>this.part(name).data),scalars,shape2[0]*shape2[1])]}nodalShares(before,after){
-let gl=this.graphics.context,[rows,columns]=this.header.geometry.shape,[key,values]=this.shares(before,after);return this.
-texture("scalar",key,texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.texImage2D(gl.TEXTURE_2D,0,gl.RG32F,columns,rows,
-0,gl.RG,gl.FLOAT,values()),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,
-gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",
-key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],
-geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,
-height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{
-let own=data.subarray(n*texels*channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),
-place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=
-1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,
-channels:4,levels:geometry.levels},layer)})}get pickers(){let{programs}=this.graphics,{vertex,pick,fullVertex,probe}=this.
-header.shaders;return[programs.get(vertex,pick),programs.get(fullVertex,probe)]}texels(step,texels){let{graphics,header}=this,
-gl=graphics.context,{slices,geometry}=header,width=geometry.columns.size,texture=this.slices(step),draw=()=>{gl.activeTexture(
-gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.flatMap(n=>[n%width,
-Math.floor(n/width)]);graphics.programs.use(this.pickers[1],{u_texels:places}),gl.drawArrays(gl.TRIANGLES,0,3)},bits=graphics.
-numbers(draw,texels.length,slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{let[x,y,z,w]=numbers.subarray(
-4*(layer*texels.length+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.
-key([name],repeat),texture=>{let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,levels=Math.floor(Math.
-log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?
-gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,
-gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let{context:gl,floats:floats2}=this.graphics;makeLayers(gl,texture,
-size);for(let n=0;n<size.layers;n+=1)sendLayer(gl,floats2?{...size,levels:0}:size,n,layer(n));floats2&&size.levels&&gl.generateMipmap(
-gl.TEXTURE_2D_ARRAY)}colourMap(){let gl=this.graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.
-bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(
-1024);gl.texImage2D(gl.TEXTURE_2D,0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
-gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<
-this.header.slices.steps?after+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,
-next,after+1].includes(stepOf(name))||this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{geometry,
-paper,scalars}=this.header,repeat=paper?.repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&
-this.image("noise",paper.picture?[!0,!0]:repeat),paper&&this.image("step",repeat),this.colourMap(),geometry.triangles||scalars.
-name===null?null:this.nodalShares(before,after)].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<
-4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.
-resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){let gl=this.graphics.context;this.bindNodes(before,
-after,anchor),textures&&(this.dropSlices(before,after),this.bindTextures(before,after)),gl.drawElements(gl.TRIANGLES,this.
-resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(null)}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+this.bodies=new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts),this.marks=new Marks(graphics,
+header,parts)}isReady(settings){let programs=[!1,!0].map(isClose=>this.arrows.program(settings,isClose));return[this.earth.
+isReady,this.bodies.isReady,this.marks.isReady(settings)].every(Boolean)&&programs.every(program=>program?.ready??!0)}missing(before,after){
+let{geometry,slices,scalars,paper,pyramid,formula}=this.header,{trace}=slices,names=["mesh",...trace?.parts??["position",
+...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.header.bodies?.runs.length&&names.push(...BODY_PARTS),
+geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))trace?names.push(...flowsOf(
+this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===2&&names.push(`extra/${step}`);return names.
+push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),paper&&names.push("noise","step"),[...new Set(
+names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(step,step).map(name=>name.startsWith("flow/")?
+stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.header.scalars){let{name,steps,number}=of;
+if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){
+let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,paper,mesh}=this.header,blocks=geometry.shape.map(n=>Math.
+max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??[],shape2={flow:[...nodes,part.shape[2]],unit:nodes,padded:[
+...nodes.map(n=>n+2),3],slices:[slices.count,geometry.rows.size,geometry.columns.size,slices.channels],position:[...geometry.
+shape,3],mesh:geometry.triangles?part.shape:[...blocks,part.shape[2]],step:paper?[paper.size[1],paper.size[0]]:[]}[name.
+split("/")[0]];return!shape2||String(shape2)===String(part.shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;
+if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(["padded"],name,trace);return this.put("position",
+digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.
+put("normal",digest("normal"),()=>normalOf(padded,trace,geometry.shape)),steps.every(step=>this.trace(step,until))}prepare(){
+let{trace}=this.header.slices;trace&&programsOf(this.graphics,this.header,trace)}trace(step,until){let{graphics,header}=this,
+{trace,lags,sides}=header.slices,name=`slices/${step}`;if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,
+step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],step,trace,lags,sides,header.geometry.levels),texture=null;
+if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,tracked=key||`${this.number} ${step}`;this.tracing!==
+tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.get(tracked)??new Tracing(graphics,header,
+trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.advance(until),!texture)return!1;this.stopTracing()}
+return this.take(name,"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){let{graphics,parts}=this;if(parts.get(name)?.
+digest===digest)return;let part=graphics.stock.get(digest)?.part??{...make(),digest};graphics.release(parts.get(name)),parts.
+set(name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.missing(steps[0],steps[steps.length-1]).length&&
+(!this.header.slices.trace||this.isLoaded(steps))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.
+graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.parts.get(name);if(!part)throw new Error(
+`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,step]=name.split("/");USERS[kind]?.includes(
+"index")&&(this.meshLevels=this.drawn=null),["position","cells","triangles"].includes(kind)&&this.arrows.forget();let sliced=[
+"slices","extra","flow"].includes(kind);!sliced&&kind!=="scalars"&&this.earth.forget(name),BODY_PARTS.includes(kind)&&this.
+bodies.dispose();for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);SOURCES.includes(kind)&&this.
+dropSlices(NaN,NaN),this.drop("array")}drop(name){let resource=this.resources.get(name);this.resources.delete(name),resource&&
+(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.delete(resource.
+key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.dispose(),this.
+bodies.dispose(),this.arrows.dispose(),this.marks.dispose()}key(names,...rest){let digests=names.map(name=>this.parts.has(
+name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
+let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?
+graphics.common.get(whole):void 0,object=shared2?.object??graphics.counted(make()),resource=shared2??{kind,object,count:0,
+key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared2||(resource.count=fill(object)||0),
+whole&&graphics.common.set(whole,resource),object}buffer(name,key,data,elements=!1){let gl=this.graphics.context,fill=buffer=>{
+let target=elements?gl.ELEMENT_ARRAY_BUFFER:gl.ARRAY_BUFFER,numbers=data();return gl.bindVertexArray(null),gl.bindBuffer(
+target,buffer),gl.bufferData(target,numbers,gl.STATIC_DRAW),numbers.length};return this.take(name,"Buffer",key,()=>gl.createBuffer(),
+fill)}mesh(){if(this.meshLevels)return this.meshLevels;let{geometry,mesh}=this.header;if(geometry.triangles)return this.
+meshLevels=new TriangleMesh(this.part("mesh"),this.part("blocks"));let{shape:shape2,periodic}=geometry,parts={blocks:this.
+part("mesh").data,cells:this.parts.get("cells")?.data};return this.meshLevels=new MeshLevels({shape:shape2,periodic,...parts},
+mesh)}cornersAt(place){let{triangles,shape:shape2}=this.header.geometry;return triangles?cornersOf(this.part("triangles").
+data,place):cornersAt(shape2,place)}levels(sight){return{levels:this.mesh().levels(sight),shape:this.mesh().shape}}get hasTriangles(){
+return this.drawn!==null}setTriangles(levels,joins=new Int8Array){let{drawn}=this;drawn&&String([levels,joins])===String(
+[drawn.levels,drawn.joins])||(this.drawn={levels,joins},this.drop("index"),this.drop("array"))}isLoaded(steps){return steps.
+every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.header;return slices.trace?
+[...this.resources.keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.
+columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(before,after,anchor){let gl=this.graphics.context,
+steps=String(this.scalarParts(before,after)),stale=steps!==this.scalarSteps?["scalar","array"]:[];anchor.some((x,k)=>x!==
+this.anchor[k])&&stale.push("position","array");for(let name of stale)this.drop(name);this.scalarSteps=steps,this.anchor=
+anchor;let fill=array=>this.fillArray(array,before,after),make=()=>gl.createVertexArray();gl.bindVertexArray(this.take("\
+array","VertexArray","",make,fill))}fillArray(array,before,after){let gl=this.graphics.context,{geometry,paper}=this.header,
+{shape:shape2,rows,columns}=geometry,{levels,joins}=this.drawn??{levels:new Int8Array,joins:new Int8Array},key=(names,...rest)=>this.
+key(["triangles",...names],...rest),cells=()=>this.mesh().triangles(levels,joins),drawn=key(["cells","mesh","blocks"],shape2,
+[...levels],[...joins]),index=this.buffer("index",drawn,cells,!0),corners=geometry.triangles?this.part("triangles").data:
+null,vertices=(values2,size)=>corners?atVertices(values2,corners,size):values2,nodes=()=>vertices(positions(this.part("p\
+osition").data,this.anchor),3),normal=geometry.planar?null:this.part("normal").data,normals=nodal=>corners?vertexNormals(
+nodal,this.part("position").data,corners):nodal,[colour,values]=this.shares(before,after),grid2=JSON.stringify([shape2,rows,
+columns,corners?.length]),place=()=>corners?vertexShares(corners.length/3):coordinates(geometry),type=gl.FLOAT;normal instanceof
+Int8Array&&(type=gl.BYTE),normal instanceof Int16Array&&(type=gl.SHORT);let attributes=[[this.buffer("position",key(["po\
+sition"],this.anchor),nodes),3,gl.FLOAT],[this.buffer("coordinate",grid2,place),2,gl.FLOAT],[normal&&this.buffer("normal",
+key(["normal"]),()=>normals(normal)),3,type],[paper&&this.buffer("along","",()=>noiseCoordinates(paper)),2,gl.FLOAT],[corners&&
+this.buffer("scalar",colour,()=>vertices(values(),2)),2,gl.FLOAT],[corners&&this.buffer("corners",key([]),()=>vertexCorners(
+corners)),3,gl.FLOAT]];gl.bindVertexArray(array),gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER,index),attributes.forEach(([buffer,
+size,kind],n)=>{buffer&&(gl.bindBuffer(gl.ARRAY_BUFFER,buffer),gl.enableVertexAttribArray(n),gl.vertexAttribPointer(n,size,
+kind,kind!==gl.FLOAT,0,0))})}shares(before,after){let{geometry,scalars}=this.header,{shape:shape2}=geometry,painted=this.
+scalarParts(before,after);return[this.key(["triangles",...new Set(painted)],shape2,scalars.low,scalars.high,scalars.log),
+()=>shares(painted.map(name=>this.part(name).data),scalars,shape2[0]*shape2[1])]}nodalShares(before,after){let gl=this.graphics.
+context,[rows,columns]=this.header.geometry.shape,[key,values]=this.shares(before,after);return this.texture("scalar",key,
+texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),gl.texImage2D(gl.TEXTURE_2D,0,gl.RG32F,columns,rows,0,gl.RG,gl.FLOAT,values()),
+gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.
+NEAREST)})}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
+fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
+extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
+shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
+channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
+n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
+k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
+levels},layer)})}get pickers(){let{programs}=this.graphics,{vertex,pick,fullVertex,probe}=this.header.shaders;return[programs.
+get(vertex,pick),programs.get(fullVertex,probe)]}texels(step,texels){let{graphics,header}=this,gl=graphics.context,{slices,
+geometry}=header,width=geometry.columns.size,texture=this.slices(step),draw=()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(
+gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.flatMap(n=>[n%width,Math.floor(n/width)]);graphics.
+programs.use(this.pickers[1],{u_texels:places}),gl.drawArrays(gl.TRIANGLES,0,3)},bits=graphics.numbers(draw,texels.length,
+slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{let[x,y,z,w]=numbers.subarray(4*(layer*texels.length+
+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;return this.texture(name,this.key([name],repeat),texture=>{
+let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,levels=Math.floor(Math.log2(Math.max(width,height))),
+size={width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(
+0))})}fill(texture,size,layer){let{context:gl,floats:floats2}=this.graphics;makeLayers(gl,texture,size);for(let n=0;n<size.
+layers;n+=1)sendLayer(gl,floats2?{...size,levels:0}:size,n,layer(n));floats2&&size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}colourMap(){
+let gl=this.graphics.context;return this.texture("cmap",this.key(["cmap"]),texture=>{gl.bindTexture(gl.TEXTURE_2D,texture),
+gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let data=this.parts.get("cmap")?.data??new Uint8Array(1024);gl.texImage2D(gl.TEXTURE_2D,
+0,gl.RGBA8,256,1,0,gl.RGBA,gl.UNSIGNED_BYTE,data),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(
+gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST)})}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+
+1:0;for(let name of[...this.resources.keys()])name.startsWith("slices/")&&([before,after,next,after+1].includes(stepOf(name))||
+this.drop(name))}bindTextures(before,after){let gl=this.graphics.context,{geometry,paper,scalars}=this.header,repeat=paper?.
+repeat??[!1,!1];[this.slices(before),after===before?null:this.slices(after),paper&&this.image("noise",paper.picture?[!0,
+!0]:repeat),paper&&this.image("step",repeat),this.colourMap(),geometry.triangles||scalars.name===null?null:this.nodalShares(
+before,after)].forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),gl.bindTexture(n<4?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,
+texture)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}get triangles(){return(this.resources.get("index")?.count??0)/3}draw(before,after,anchor,textures){
+let gl=this.graphics.context;this.bindNodes(before,after,anchor),textures&&(this.dropSlices(before,after),this.bindTextures(
+before,after)),gl.drawElements(gl.TRIANGLES,this.resources.get("index")?.count??0,gl.UNSIGNED_INT,0),gl.bindVertexArray(
+null)}};var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};drawn="";count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;constructor(host,root){
 this.host=host,this.root=root}has(name,part){return this.tiles.get(name)?.parts.has(part)??!1}fail(name,steps){this.failed.
 add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.root.header.scalars.name}`}dispose(){
@@ -1716,27 +1787,27 @@ this.isOver=!0;for(let name of[...this.tiles.keys()])this.drop(name)}setPart(nam
 tiles.get(name)??this.emptyTile();if(this.tiles.set(name,tile),part.digest&&tile.parts.get(part.name)?.digest===part.digest)
 return;if(graphics.release(tile.parts.get(part.name)),tile.parts.set(part.name,graphics.hold(part)),part.name==="header"){
 let own=JSON.parse(new TextDecoder().decode(part.data));tile.scene?.dispose(),own&&(own.geometry.reach=header.geometry.reach),
-tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null,bodies:null},tile.parts,keyOf(name)),this.giveMap(tile)}else
-tile.scene?.forget(part.name);let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.isHere(missing,
-steps));let shown=cover(this.chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==names&&this.host.
-refine()}recolour(colours={}){let{steps}=this.chosen;for(let tile of this.tiles.values()){let{scene,parts}=tile;if(!scene||
-(Object.assign(scene.header,colours),this.giveMap(tile),scene.forget("scalars"),(steps.length?scene.scalarParts(steps[0],
-steps[steps.length-1]):[]).every(name=>parts.has(name))))continue;let others=[...parts.keys()].filter(name=>name.startsWith(
-"scalars/"));for(let name of others)this.release(tile,name)}}emptyTile(){return{parts:new Map,scene:void 0,used:this.count}}giveMap({
-scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange([before,after]){
-let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(camera,steps),
-layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.keys()){let scene=this.
-tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.sight(canvas.height),
-parts=layers.map(({scene,key},n)=>{let{levels,shape:shape2}=scene.levels(sight);for(let finer of shown.get(names[n])??[])
-this.hide(levels,shape2[1],finer,names[n]);let{pyramid}=this.root.header,[row2,column]=key.slice(1).map(at=>at*(pyramid?.
-tileBlocks??0)<<key[0]);return{step:key[0],row:row2,column,shape:shape2,levels}});return this.layers=layers,this.setTriangles(
-names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row2,column,size]=this.pyramid?.finerPart(
-keyOf(finer),above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/columns);j+=1)levels.fill(-1,j*columns+column,
-j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[names[n],levels]));
-if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,mesh,pyramid,
-formula}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.triangles||
-formula?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(levels,
-joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;
+tile.scene=own&&new Scene(graphics,{...header,...own,pyramid:null,bodies:null,structure:null},tile.parts,keyOf(name)),this.
+giveMap(tile)}else tile.scene?.forget(part.name);let{names,steps}=this.chosen;this.missing=this.missing.filter(missing=>!this.
+isHere(missing,steps));let shown=cover(this.chosen.choices,other=>this.isHere(other,steps));String([...shown.keys()])!==
+names&&this.host.refine()}recolour(colours={}){let{steps}=this.chosen;for(let tile of this.tiles.values()){let{scene,parts}=tile;
+if(!scene||(Object.assign(scene.header,colours),this.giveMap(tile),scene.forget("scalars"),(steps.length?scene.scalarParts(
+steps[0],steps[steps.length-1]):[]).every(name=>parts.has(name))))continue;let others=[...parts.keys()].filter(name=>name.
+startsWith("scalars/"));for(let name of others)this.release(tile,name)}}emptyTile(){return{parts:new Map,scene:void 0,used:this.
+count}}giveMap({scene,parts}){let map=this.root.parts.get("cmap");map&&parts.set("cmap",map),scene?.forget("cmap")}arrange([
+before,after]){let{camera,canvas}=this.host;if(!camera)return[];let steps=[...new Set([before,after])],shown=this.choose(
+camera,steps),layers=[{scene:this.root,key:[this.root.header.pyramid?.depth??0,0,0]}],names=[ROOT];for(let name of shown.
+keys()){let scene=this.tiles.get(name)?.scene;scene&&(names.push(name),layers.push({scene,key:keyOf(name)}))}let sight=camera.
+sight(canvas.height),parts=layers.map(({scene,key},n)=>{let{levels,shape:shape2}=scene.levels(sight);for(let finer of shown.
+get(names[n])??[])this.hide(levels,shape2[1],finer,names[n]);let{pyramid}=this.root.header,[row2,column]=key.slice(1).map(
+at=>at*(pyramid?.tileBlocks??0)<<key[0]);return{step:key[0],row:row2,column,shape:shape2,levels}});return this.layers=layers,
+this.setTriangles(names,parts),layers.map(({scene})=>scene)}hide(levels,columns,finer,above){let[row2,column,size]=this.
+pyramid?.finerPart(keyOf(finer),above)??[0,0,0];for(let j=row2;j<Math.min(row2+size,levels.length/columns);j+=1)levels.fill(
+-1,j*columns+column,j*columns+Math.min(column+size,columns))}setTriangles(names,parts){let drawn=String(parts.map(({levels},n)=>[
+names[n],levels]));if(drawn===this.drawn&&this.layers.every(({scene})=>scene.hasTriangles))return;this.drawn=drawn;let{geometry,
+mesh,pyramid,formula}=this.root.header,most=Math.log2(mesh.tileCells),blocks=pyramid?.blocks[0]??parts[0].shape,joins=geometry.
+triangles||formula?[]:join(parts,blocks,geometry.periodic,most);parts.forEach(({levels},n)=>this.layers[n].scene.setTriangles(
+levels,joins[n]))}choose(camera,steps){let{header}=this.root,{settings,canvas,ratio}=this.host;if(!header.pyramid)return new Map;
 this.pyramid??=new Pyramid(header.pyramid,placesOf(header)??this.root.part("places").data);let choices=this.pyramid.choose(
 {...camera.sight(canvas.height/ratio),planes:camera.planes,cellPixels:cellPixels(header.pyramid,settings)});this.count+=
 1;for(let name of choices.keys()){let tile=this.tiles.get(name);tile&&(tile.used=this.count)}let until=performance.now()+
@@ -1776,13 +1847,15 @@ steps.flatMap(step=>this.scene?.lacking(step)??[]))]}make(steps,until){return th
 !!this.scene?.make(steps,until)}available(until){let{view,scene,shown,lacking}=this,{header,player}=view;if(!header||!scene)
 return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.slices.steps):[],steps=this.
 missing([moment[0],moment[1],...this.next,...ahead]);steps.length&&view.requests.hasSteps&&!view.options.isComing?.()&&view.
-requests.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until);return view.root.dataset.lacking=
-String(lacking.length||+!isMade),view.panel.wait(lacking,isMade,this.renderer.leavesOut),isMade&&String(moment.slice(0,2))!==
-String(shown?.slice(0,2))&&(view.trim(),view.change()),isMade?this.shown=moment:(lacking.length||view.request(),shown&&scene.
-isMade(shown.slice(0,2))?shown:null)}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(
-header,this.view.settings,isClose);return this.view.graphics.programs.get(vertex,fragment,...variant)}isClose(header){let{
-view}=this;if(!view.camera)return!1;let seen=view.view([0,0,0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.
-header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(part,view.settings,seen))}frame(now,until){let{view,scene}=this,
+requests.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until),marks=view.requests.hasMarks?scene.
+marks.lacking(view.settings,moment):[];return view.options.isComing?.()||view.requests.wantMarks(marks),view.root.dataset.
+lacking=String(lacking.length+marks.length||+!isMade),view.panel.wait(lacking,isMade,this.renderer.leavesOut,marks.length>
+0),view.panel.showKinds(scene.marks.legend(view.settings,moment)),isMade&&String(moment.slice(0,2))!==String(shown?.slice(
+0,2))&&(view.trim(),view.change()),isMade?this.shown=moment:(lacking.length||view.request(),shown&&scene.isMade(shown.slice(
+0,2))?shown:null)}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(header,
+this.view.settings,isClose);return this.view.graphics.programs.get(vertex,fragment,...variant)}isClose(header){let{view}=this;
+if(!view.camera)return!1;let seen=view.view([0,0,0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??
+[];return(tiles.length?tiles:[header]).some(part=>isNear(part,view.settings,seen))}frame(now,until){let{view,scene}=this,
 {graphics,header}=view;if(graphics.isLost||!graphics.gl||!view.isVisible||!header||!scene||view.canvas.width<2)return;this.
 next=[],view.advance(now);let shown=this.available(until);view.camera||view.place();let program=this.program(header);if(scene.
 prepare(),!shown||!view.camera)return;if(program.error)return view.panel.fail("The shader does not compile with this gra\
@@ -1790,8 +1863,9 @@ phics driver.",program.error);if(!program.ready||!scene.isReady(view.settings))r
 sharp&&this.renderer.draw(program,shown,until);isComplete&&(scene.pickers,header.slices.critical&&this.program(header,!0)),
 view.painted(isComplete)}get canPick(){let{scene,view}=this,{graphics}=view;return!!scene&&!graphics.isLost&&!!graphics.
 gl&&scene.pickers.every(({ready})=>ready)}find(x,y){let{tiles,shown,view}=this,{camera,canvas}=view;if(!tiles?.layers.length||
-!camera||!shown)return null;let{anchor}=view.view(shown,1);return pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,
-canvas},x,y)}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
+!camera||!shown)return null;let{anchor}=view.view(shown,1),found=pickedPoint({layers:tiles.layers,camera,moment:shown,anchor,
+canvas},x,y),{marks}=tiles.layers[0].scene;if(found){let at={place:[x,y],position:found.point.position,height:view.root.
+clientHeight};found.point.mark=marks.at(at,camera,view.settings,shown)}return found}};var[STILL_MS,STEADY_MS]=[160,400],isEqual2=(a,b)=>JSON.stringify(a)===JSON.stringify(b),Viewer=class{options;requests;graphics=sharedGraphics();lifetime=new Lifetime;player=new Player;root=document.
 createElement("div");stage=document.createElement("div");canvas=document.createElement("canvas");card=new PointCard(this);panel;pointers;held=new HeldParts(
 this.graphics);parts=this.held.all;header=null;settings={};camera=null;sharp=!1;frames=0;isVisible=!0;together=[this];painter;page;given=null;isOnPage=!1;busyUntil=0;firstCamera=null;keptCamera=null;constructor(element,options={}){
 this.options=options,this.requests=new Requests(options.source??null,this);let{root}=this;root.className="flowtex",root.
@@ -1930,8 +2004,8 @@ displacement)??at.position,weight:weight/total(weights2),noise:value,grey:greyOf
 weight*sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*
 mean,Number(settings.contrast),c)}}var SVG4="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacin\
 g","Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Another noise",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
-hann:"smooth",box:"even",ramp:"falling"},ROW=40;function row(name,count2,marks){let svg=document.createElementNS(SVG4,"s\
-vg");svg.setAttribute("viewBox",`0 0 ${count2} ${ROW}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute(
+hann:"smooth",box:"even",ramp:"falling"},ROW2=40;function row(name,count2,marks){let svg=document.createElementNS(SVG4,"\
+svg");svg.setAttribute("viewBox",`0 0 ${count2} ${ROW2}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute(
 "aria-hidden","true");for(let{at,y,height,fill,title}of marks){let rect=document.createElementNS(SVG4,"rect"),shape2={x:at+
 .04,y,width:.92,height:Math.max(height,.4),fill};for(let[key,value]of Object.entries(shape2))rect.setAttribute(key,`${value}`);
 let words=document.createElementNS(SVG4,"title");words.textContent=title,rect.append(words),svg.append(rect)}return dom(
@@ -1961,14 +2035,15 @@ explained-box"},[input,dom("span",{},["Level of detail"])])}tell(sum){if(this.su
 "Click a point of the picture."),this.strip.replaceChildren(),[];let{samples,mean,gain,grey,level}=sum,most=Math.max(...samples.
 map(({weight})=>weight)),products=samples.map(({weight,noise})=>weight*noise),largest=Math.max(...products.map(Math.abs),
 1e-9),marks=mark=>samples.map(({weight,noise},at)=>{let title=`sample ${at-sum.middle}: weight ${weight.toFixed(3)}, noi\
-se ${signed(noise)}`;return{at,title,...mark(at)}}),noises=marks(n=>({y:0,height:ROW,fill:greyText(samples[n].grey)})),weights2=marks(
-n=>{let height=samples[n].weight/most*ROW;return{y:ROW-height,height,fill:"currentColor"}}),both=marks(n=>{let height=Math.
-abs(products[n])/largest*ROW/2;return{y:products[n]>0?ROW/2-height:ROW/2,height,fill:"currentColor"}}),ends=dom("div",{class:"\
-explained-ends"},[dom("span",{},["← where the particle was"]),dom("span",{},["where it will be →"])]);this.strip.replaceChildren(
-row("noise",samples.length,noises),row("weight",samples.length,weights2),row("product",samples.length,both),ends);let swatch=dom(
-"span",{class:"explained-pixel"});return swatch.style.background=greyText(grey),this.words.replaceChildren(`${samples.length}\
- samples at level ${level.toFixed(1)}. Sum of the products: ${signed(mean)}; `,`times ${gain.toFixed(2)}, so that the co\
-ntrast is the same for every K: `,dom("strong",{},[signed(gain*mean)]),", this grey: ",swatch),samples}};var LOADED_HEIGHTS=.5,KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained",scenes=new Map,texts=new Map,underway=new Map;function handedOver(address,takers){
+se ${signed(noise)}`;return{at,title,...mark(at)}}),noises=marks(n=>({y:0,height:ROW2,fill:greyText(samples[n].grey)})),
+weights2=marks(n=>{let height=samples[n].weight/most*ROW2;return{y:ROW2-height,height,fill:"currentColor"}}),both=marks(
+n=>{let height=Math.abs(products[n])/largest*ROW2/2;return{y:products[n]>0?ROW2/2-height:ROW2/2,height,fill:"currentColo\
+r"}}),ends2=dom("div",{class:"explained-ends"},[dom("span",{},["← where the particle was"]),dom("span",{},["where it w\
+ill be →"])]);this.strip.replaceChildren(row("noise",samples.length,noises),row("weight",samples.length,weights2),row(
+"product",samples.length,both),ends2);let swatch=dom("span",{class:"explained-pixel"});return swatch.style.background=greyText(
+grey),this.words.replaceChildren(`${samples.length} samples at level ${level.toFixed(1)}. Sum of the products: ${signed(
+mean)}; `,`times ${gain.toFixed(2)}, so that the contrast is the same for every K: `,dom("strong",{},[signed(gain*mean)]),
+", this grey: ",swatch),samples}};var LOADED_HEIGHTS=.5,KEPT_HEIGHTS=2,EXPLAINED=".flowtex-explained",scenes=new Map,texts=new Map,underway=new Map;function handedOver(address,takers){
 let name=address.replace(/^.*\//,"").replace(/\.js$/,""),begun=underway.get(address);if(begun)return begun;let result2=new Promise(
 (resolve,reject)=>{let script=document.createElement("script");takers.set(name,resolve),script.src=address,script.onload=
 ()=>script.remove(),script.onerror=()=>reject(new Error(`${address} cannot be loaded`)),document.head.append(script)}).finally(
@@ -2021,10 +2096,11 @@ drawn","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilt
 lastElementChild.textContent=`${which}, ${part} of ${parts} parts`}),{root}=view.first;document.addEventListener("keydow\
 n",event=>forwardKeys(root,event)),await filled,loading.textContent="Drawing the first picture"}catch(error){loading.remove(),
 status.hidden=!1;let reason=error instanceof Error?error.message:String(error);throw status.textContent=`The flow cannot\
- be drawn here: ${reason}`,error}}var Messages=class{hasSteps=!0;send;requests=new Map;constructor(send){this.send=send}load=(key,steps,signal)=>{let request=String(
-Math.random());return this.send({kind:"load",request,key,steps}),signal.addEventListener("abort",()=>{this.requests.delete(
-request),this.send({kind:"drop",request})}),new Promise((resolve,reject)=>{this.requests.set(request,error=>error?reject(
-new Error(error)):resolve([]))})};end({request,error}){this.requests.get(request)?.(error),this.requests.delete(request)}};var CAMERA_MS=100,TIME_MS=250,STILL_MS2=1500,STILL_FORMAT={type:"image/jpeg",quality:.9},HEADERS=["_header","_header_bes\
+ be drawn here: ${reason}`,error}}var Messages=class{hasSteps=!0;hasMarks=!0;send;requests=new Map;constructor(send){this.send=send}load=(key,steps,signal,_has,mark)=>{
+let request=String(Math.random());return this.send({kind:"load",request,key,steps,...mark&&{mark}}),signal.addEventListener(
+"abort",()=>{this.requests.delete(request),this.send({kind:"drop",request})}),new Promise((resolve,reject)=>{this.requests.
+set(request,error=>error?reject(new Error(error)):resolve([]))})};end({request,error}){this.requests.get(request)?.(error),
+this.requests.delete(request)}};var CAMERA_MS=100,TIME_MS=250,STILL_MS2=1500,STILL_FORMAT={type:"image/jpeg",quality:.9},HEADERS=["_header","_header_bes\
 ide"],ROOM=".flowtex-room { width: 100%; min-width: 160px; flex: 0 9999 auto }",HEIGHT_PX2=480;function opened(message,buffers){
 let graphics=sharedGraphics(),{view=0,generation=0,parts:infos=[]}=message,delivery={view,generation,parts:[],lacking:[]};
 return infos.forEach((info,n)=>{let stock=graphics.stock.get(info.digest)?.part;if(stock||message.kind!=="offer"){let part=graphics.

@@ -5,6 +5,7 @@
     parts(None, ())          what of the whole surface is the same at all times
     parts(None, (3,))        the flow and the values of the whole at a time step
     parts(key, (3, 4))       a tile: its header and surface, and its flow and values at two steps
+    parts(None, (3,), kind)  marks of a kind at a time step: critical points, or separatrices
 
 A widget sends them in messages, the application as files, and an exported page holds them;
 ``client/src/sources`` is the other side. A store has the same parts in files of its own, which
@@ -60,11 +61,13 @@ class TileSource:
         self._tiles: ByteCache[TileKey, _Tile] = ByteCache(budget)
         self._is_closed = False
 
-    def parts(self, key: TileKey | None, steps: Sequence[int]) -> Parts:
+    def parts(self, key: TileKey | None, steps: Sequence[int], kind: str = "") -> Parts:
         """Return the parts of a tile at time steps, or of the whole; see the module's text.
 
         A LookupError tells that there is no such tile or step.
         """
+        if kind:
+            return {n: part for step in steps for n, part in self.scene.mark(kind, step).items()}
         if key is None:
             scene = self.scene
             parts = {} if steps else scene.surface()
@@ -88,6 +91,7 @@ class TileSource:
         key: TileKey | None,
         steps: Sequence[int],
         is_over: Callable[[], bool] = lambda: False,
+        kind: str = "",
     ) -> Future[Parts]:
         """Make parts in a thread.
 
@@ -98,7 +102,7 @@ class TileSource:
         def make() -> Parts:
             with stoppable(lambda: self._is_closed or is_over()):
                 check()
-                return self.parts(key, steps)
+                return self.parts(key, steps, kind)
 
         return _pool.submit(make)
 

@@ -14,6 +14,7 @@ from flowtex.field import FlowField
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.bodies import Bodies
+from flowtex.rendering.webgl.marks import MARK_PARTS, Marks
 from flowtex.scene import Scene, share_field, steps_of
 from flowtex.settings import TABLE
 from flowtex.tiles import Pyramid
@@ -70,7 +71,12 @@ class WebView:
             for n, name in enumerate(names)
             if name != self.scene.scalar_name
         )
-        return data.recoloured(replace(data.colours, others=others))
+        colours, settings = replace(data.colours, others=others), self.scene.settings
+        # A client finds the structure of a formula itself.
+        is_whole = data.formula is not None
+        kinds = [part for name, part in MARK_PARTS.items() if is_whole or getattr(settings, name)]
+        marks = data.marks and replace(data.marks, kinds=tuple(kinds), carried=True)
+        return replace(data.recoloured(colours), marks=marks if kinds else None)
 
     def coarse_data(self, nodes: int) -> ClientData:
         """Return the same with so many nodes at most, for a first picture."""
@@ -79,7 +85,15 @@ class WebView:
     def _data(self, scene: Scene, pyramid: Pyramid | None = None) -> ClientData:
         textures = scene.textures
         colours = colours_of(self.scene, textures.geometry.field, self._background)
-        return ClientData(textures, colours, self._times, pyramid, traces=True, bodies=self._bodies)
+        return ClientData(
+            textures,
+            colours,
+            self._times,
+            pyramid,
+            traces=True,
+            bodies=self._bodies,
+            marks=marks_of(self.scene),
+        )
 
     def show(self, field: FlowField) -> None:
         """Show another flow in the same way; raises what :meth:`Scene.showing` does."""
@@ -93,6 +107,11 @@ class WebView:
     def close(self) -> None:
         """Follow the settings no longer."""
         self.scene.close()
+
+
+def marks_of(scene: Scene) -> Marks | None:
+    """Return the critical points and separatrices of a scene, found when they are asked for."""
+    return None if scene.field.sign_free else Marks(scene.structure)
 
 
 def colours_of(

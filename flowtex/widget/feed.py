@@ -26,6 +26,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import Stopped
 from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
 from flowtex.scene import Change
 from flowtex.tiles import TileKey
@@ -129,16 +130,16 @@ class Feed:
         """Note that the parts of the present moment are on their way."""
         self._coming = (time.monotonic() + COMING_S, scene.moment(self._moment()))
 
-    def load(self, request: str, key: TileKey | None, steps: Sequence[int]) -> None:
-        """Answer a client that needs a tile, or the whole, at time steps."""
+    def load(self, request: str, key: TileKey | None, steps: Sequence[int], kind: str = "") -> None:
+        """Answer a client that needs a tile, or the whole or marks of a kind, at time steps."""
         until, coming = self._coming
-        if key is None and time.monotonic() < until and set(steps) <= set(coming):
+        if key is None and not kind and time.monotonic() < until and set(steps) <= set(coming):
             self._answers.do(lambda: self._end(request))  # after what is being sent
             return
         self._requests.add(request)
         source = self._source
         answer = partial(self._answer, source.scene, request, key)
-        made = source.ask(key, steps, lambda: request not in self._requests)
+        made = source.ask(key, steps, lambda: request not in self._requests, kind)
         made.add_done_callback(answer)
 
     def drop(self, request: str) -> None:
@@ -318,9 +319,11 @@ class Feed:
         parts = scene.surface()
         # Tiles, and what is of no step, have other names.
         matches = map(_OF_STEP.fullmatch, names)
-        for step in {int(match[1]) for match in matches if match}:
+        kinds = set(MARK_PARTS.values())
+        of_steps = {(match[0].split("/")[0], int(match[1])) for match in matches if match}
+        for name, step in {(name if name in kinds else "", step) for name, step in of_steps}:
             if step < scene.steps:
-                parts |= scene.step(step)
+                parts |= scene.mark(name, step) if name else scene.step(step)
         with self._lock:
             if scene is self.scene:  # what was offered of another is not waited for any more
                 self._deliver({n: parts[n] for n in names if n in parts}, again=True, offer=False)

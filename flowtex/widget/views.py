@@ -15,6 +15,7 @@ from typing import Any, TypeGuard
 import numpy as np
 
 from flowtex.field import FlowField
+from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene import Change, Scene
 from flowtex.tiles import TileKey
@@ -102,8 +103,9 @@ class Views:
             self.feeds[number].drop(request)
         key, steps = message.get("key"), message.get("steps")
         if kind == "load" and isinstance(request, str) and _are_whole(steps):
-            if key is None:
-                self.feeds[number].load(request, None, steps)
+            mark = message.get("mark", "")
+            if key is None and mark in ("", *MARK_PARTS.values()):
+                self.feeds[number].load(request, None, steps, mark)
             elif _are_whole(key) and len(key) == len(TileKey._fields):
                 self.feeds[number].load(request, TileKey(*key), steps)
 

@@ -10,7 +10,7 @@
   vec2 flowtexTo = flowtexThere.xy / flowtexThere.w * flowtexHalf;
   vec2 flowtexWay = flowtexTo - flowtexFrom;
   // Of a dot the one end does not know where the other is.
-  flowtexWay = length(flowtexWay) > 1e-4 ? normalize(flowtexWay) : vec2(abs(flowtexSide) > 1.5 ? -1.0 : 1.0, 0.0);
+  flowtexWay = length(flowtexWay) > 1e-2 ? normalize(flowtexWay) : vec2(abs(flowtexSide) > 1.5 ? -1.0 : 1.0, 0.0);
   vec2 flowtexMiddle = flowtexViewport.xy + flowtexHalf;
   flowtexEndsVSOutput = vec4(flowtexMiddle + flowtexFrom, flowtexMiddle + flowtexTo);
   flowtexRadiusVSOutput = flowtexRadius;

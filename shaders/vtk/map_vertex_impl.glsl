@@ -1,2 +1,3 @@
   // Nearer to the eye, or farther, by a share of the distance, and at the same place of the picture.
-  gl_Position.z -= flowtexNearer;
+  // What was seen is not brought before the nearest depth.
+  gl_Position.z = max(gl_Position.z - flowtexNearer, min(gl_Position.z, -0.9999 * gl_Position.w));

@@ -1,4 +1,5 @@
-// A piece of a line on the surface, or of a body beside it, as a strip of four corners around it.
+// A piece of a line on the surface, or of a body beside it, as a strip of four corners around it. A mark is
+// a body of one colour that lies nearer than the surface, by a share of the distance.
 
 layout(location = 0) in vec3 flowtexFrom; // in the surface's own frame
 layout(location = 1) in vec3 flowtexTo;
@@ -10,6 +11,10 @@ out vec4 flowtexColourOut;
 
 uniform mat4 u_matrix;
 uniform vec3 u_anchor; // zero where positions are counted from it
+#ifdef FLOWTEX_MARK
+uniform vec4 u_eye; // as in common/uniforms.glsl
+uniform float u_nearer;
+#endif
 uniform vec2 u_picture; // width and height in pixels
 uniform float u_width;  // of the line, in pixels
 uniform vec4 u_horizon; // plane before which a globe is seen; on flat maps it is positive
@@ -19,6 +24,15 @@ out float flowtexSize;  // its length
 out float flowtexSeen;
 
 const float FLOWTEX_BREAK = 1e29; // coordinates above are no point: a line begins or ends
+
+#ifdef FLOWTEX_MARK
+// Depth of a point that is brought nearer, where it is not cut off.
+float flowtexNearerDepth(vec3 point, float w)
+{
+  vec4 nearer = u_matrix * vec4(point + u_nearer * (u_eye.xyz - u_eye.w * point), 1.0);
+  return max(nearer.z / nearer.w, -0.999) * w;
+}
+#endif
 
 void main()
 {
@@ -30,6 +44,10 @@ void main()
   flowtexSize = flowtexSeen = 0.0;
   if (max(abs(flowtexFrom.x), abs(flowtexTo.x)) > FLOWTEX_BREAK)
     return;
+#ifdef FLOWTEX_MARK
+  from.z = flowtexNearerDepth(flowtexFrom - u_anchor, from.w);
+  to.z = flowtexNearerDepth(flowtexTo - u_anchor, to.w);
+#endif
 #ifdef FLOWTEX_BODY
   // What lies before the nearest depth is cut off.
   float nearFrom = from.z + from.w, nearTo = to.z + to.w;

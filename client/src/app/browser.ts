@@ -192,7 +192,7 @@ class TrameView {
       this.loaded = [];
       view.open(scenes.length, (n) => ({
         reader: this.reader(n),
-        source: this.painter === "browser" ? { load: loads[n], hasSteps: true } : undefined,
+        source: this.painter === "browser" ? { load: loads[n], hasSteps: true, hasMarks: true } : undefined,
       }));
       this.watcher.disconnect();
       for (const { stage } of view.viewers) this.watcher.observe(stage);

@@ -13,6 +13,7 @@ export interface Loaded {
 
 export class Messages implements Source {
   readonly hasSteps = true;
+  readonly hasMarks = true;
   private readonly send: (content: object) => void;
   private readonly requests = new Map<string, (error?: string) => void>();
 
@@ -20,9 +21,9 @@ export class Messages implements Source {
     this.send = send;
   }
 
-  readonly load: LoadTile = (key, steps, signal) => {
+  readonly load: LoadTile = (key, steps, signal, _has, mark) => {
     const request = String(Math.random()); // no other view of the widget has it
-    this.send({ kind: "load", request, key, steps });
+    this.send({ kind: "load", request, key, steps, ...(mark && { mark }) });
     signal.addEventListener("abort", () => {
       this.requests.delete(request);
       this.send({ kind: "drop", request });

@@ -7,22 +7,28 @@
 // flowtex/web/source.py is the other side of the first three.
 
 import { FormulaSource } from "../formula.ts";
-import type { Header, NamedPart, Settings } from "../protocol.ts";
+import type { Header, MarkKind, NamedPart, Settings } from "../protocol.ts";
 import type { StoreError } from "./store.ts";
 import { nameOf, type TileKey } from "../tilechoice.ts";
 
-/** Gives the parts of a tile at time steps, or those of the whole; what is there already may be left out. */
+/**
+ * Gives the parts of a tile at time steps, or those of the whole, or of its marks of a kind; what is there
+ * already may be left out.
+ */
 export type LoadTile = (
   key: TileKey | null,
   steps: number[],
   signal: AbortSignal,
   has: (part: string) => boolean,
+  mark?: MarkKind,
 ) => Promise<NamedPart[]>;
 
 export interface Source {
   load: LoadTile;
   /** Whether it can load time steps of the whole again, and any tile at any time. */
   readonly hasSteps?: boolean;
+  /** Whether it can load marks. */
+  readonly hasMarks?: boolean;
   /** Tiles that are loaded at once. */
   readonly atOnce?: number;
   /** Memory in bytes that its parts may take, here and on the graphics card. */
@@ -39,7 +45,7 @@ export interface Taker {
   lack(reason: string, tile?: string, steps?: number[]): void;
 }
 
-type Job = readonly [key: TileKey | null, steps: number[]];
+type Job = readonly [key: TileKey | null, steps: number[], mark?: MarkKind];
 
 /** Milliseconds after which a failed request may be repeated. */
 const FAILED_MS = 10000;
@@ -113,14 +119,14 @@ class Queue {
     const { taker } = this;
     const source = this.source();
     if (!source) return;
-    const [key, steps] = job;
+    const [key, steps, mark] = job;
     const controller = new AbortController();
     const { signal } = controller;
     const has = (part: string) =>
       key ? (taker.tiles?.has(nameOf(key), part) ?? false) : taker.parts.has(part);
     this.running.set(String(job), controller);
     try {
-      const parts = await source.load(key, steps, signal, has);
+      const parts = await source.load(key, steps, signal, has, mark);
       if (!signal.aborted) for (const part of parts) taker.setPart(part);
     } catch (error) {
       if (!signal.aborted) this.fail(job, error);
@@ -153,6 +159,7 @@ function wordsOf(what: string, error: unknown): string {
 export class Requests {
   private readonly tiles: Queue;
   private readonly wholes: Queue;
+  private readonly marks: Queue;
   private readonly given: Source | null;
   private formula: FormulaSource | null = null;
 
@@ -160,6 +167,7 @@ export class Requests {
     this.given = source;
     this.tiles = new Queue(() => this.source, taker);
     this.wholes = new Queue(() => this.source, taker);
+    this.marks = new Queue(() => this.source, taker);
   }
 
   /** What comes from the host, or is computed here of a formula. */
@@ -170,6 +178,10 @@ export class Requests {
   /** Whether time steps of the whole can be had. */
   get hasSteps(): boolean {
     return this.source?.hasSteps ?? false;
+  }
+
+  get hasMarks(): boolean {
+    return this.source?.hasMarks ?? false;
   }
 
   /** Ask for what belongs to another scene from now on. */
@@ -202,9 +214,16 @@ export class Requests {
     this.wholes.want(wanted.map((step) => [null, [step]]));
   }
 
+  /** Marks of time steps are lacking; no others that were asked for before are needed. */
+  wantMarks(marks: [kind: MarkKind, step: number][]): void {
+    const jobs = marks.map(([kind, step]): Job => [null, [step], kind]);
+    if (String(jobs) !== String(this.marks.jobs)) this.marks.want(jobs);
+  }
+
   /** Cancel running requests: their scene or their colours are not shown any more. */
   stop(): void {
     this.tiles.stop();
     this.wholes.stop();
+    this.marks.stop();
   }
 }

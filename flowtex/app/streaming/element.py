@@ -31,12 +31,13 @@ from flowtex.errors import FieldError
 from flowtex.options import ROBUST
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.formula import PREFIX
+from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, Parts, parts_file
 from flowtex.settings import TABLE
 from flowtex.tiles import TileKey
 from flowtex.web.assets import client_module
 from flowtex.web.source import TileSource
-from flowtex.web.view import colours_of
+from flowtex.web.view import colours_of, marks_of
 
 _log = logging.getLogger(__name__)
 _numbers = itertools.count(1)
@@ -80,7 +81,8 @@ class HandedScene:
         textures = scene.textures
         colours = colours_of(scene, textures.geometry.field, rgb(background))
         colours = replace(colours, bar=True)  # VTK draws none into its pictures
-        data = ClientData(textures, colours, pyramid=scene.pyramid, traces=True)
+        marks = marks_of(scene)
+        data = ClientData(textures, colours, pyramid=scene.pyramid, traces=True, marks=marks)
         source = self._source
         if source is not None and source.scene.textures is textures:
             source.scene = source.scene.recoloured(colours)
@@ -110,7 +112,8 @@ class HandedScene:
         place, *numbers = name.split(".")
         steps = [int(number) for number in numbers]
         key = None
-        if place != WHOLE and place not in SOME:
+        mark = place if place in MARK_PARTS.values() else ""
+        if place != WHOLE and place not in SOME and not mark:
             level, row, column = map(int, place.split(","))
             key = TileKey(level, row, column)
         if not all(0 <= step < source.scene.steps for step in steps):
@@ -122,7 +125,7 @@ class HandedScene:
                 if place in SOME:
                     parts = await loop.run_in_executor(None, some_parts, source.scene, place)
                 else:
-                    parts = await asyncio.wrap_future(source.ask(key, steps))
+                    parts = await asyncio.wrap_future(source.ask(key, steps, kind=mark))
             except Stopped:  # of a scene that is not shown any more
                 parts = {}
             except Exception as error:

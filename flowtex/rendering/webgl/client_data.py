@@ -34,6 +34,7 @@ from flowtex.rendering.webgl import velocity
 from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.rendering.webgl.earth import dates_of, earth_header, earth_parts
 from flowtex.rendering.webgl.formula import client_formula, formula_header, parameter_rows
+from flowtex.rendering.webgl.marks import Marks
 from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts, plain_list
 from flowtex.settings import NEEDS, TABLE, Settings
@@ -145,7 +146,8 @@ class ClientData:
     ``chosen`` are the numbers of the destination times that are handed over, increasing; all are
     where it is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and
     ``finest`` is the finest level of those that are handed over. Where the client ``traces``, it is
-    handed the velocity in place of slices, if it can trace them. ``bodies`` stand beside it.
+    handed the velocity in place of slices, if it can trace them. ``bodies`` stand beside it, and
+    ``marks`` tell of its structure.
     """
 
     textures: TextureSet
@@ -155,6 +157,7 @@ class ClientData:
     finest: int = 0
     traces: bool = False
     bodies: Bodies | None = None
+    marks: Marks | None = None
 
     @cached_property
     def traced(self) -> bool:
@@ -275,6 +278,7 @@ class ClientData:
             "mesh": mesh_limits(),
             "earth": self._earth(),
             "bodies": None if self.bodies is None else self.bodies.header(),
+            "structure": None if self.marks is None or self.formula else self.marks.header(),
             "pyramid": None if self.pyramid is None else _pyramid(self.pyramid, self.finest),
             "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
             "table": _table(),
@@ -328,6 +332,8 @@ class ClientData:
         parts = self.values(step)
         if self.formula is not None:
             return parts
+        for kind in self.marks.kinds if self.marks and self.marks.carried else ():
+            parts |= self.mark(kind, step)
         if self.traced:
             parts[f"flow/{step}"] = velocity.velocity_part(self.textures, self.source(step))
             return parts
@@ -335,6 +341,12 @@ class ClientData:
         parts[f"extra/{step}"] = packed.extra
         parts[f"slices/{step}"] = packed.slopes
         return parts
+
+    def mark(self, kind: str, step: int) -> Parts:
+        """Return the marks of a kind of :data:`MARK_PARTS` at one destination time, if any."""
+        if self.marks is None:
+            return {}
+        return self.marks.parts(kind, self.source(step), step, self.textures.geometry)
 
     def values(self, step: int, *, shown: bool = False) -> Parts:
         """Return the values of one destination time, or only those that are shown.

@@ -27,7 +27,7 @@ name,value);camera!==void 0&&viewer.setCamera(camera),time!==void 0&&isStill&&vi
 viewer.setClock(clock)}typeof timeBeside=="number"&&viewers[1]?.setTime(timeBeside),playing===!0?first.play():playing===
 !1&&first.pause(),await loading}async show(scenes){let{view,scenes:before}=this;if(!view)return;this.scenes=scenes;let loads=scenes.
 map((_,n)=>this.load(n));if(before.length!==scenes.length){this.loaded=[],view.open(scenes.length,n=>({reader:this.reader(
-n),source:this.painter==="browser"?{load:loads[n],hasSteps:!0}:void 0})),this.watcher.disconnect();for(let{stage}of view.
+n),source:this.painter==="browser"?{load:loads[n],hasSteps:!0,hasMarks:!0}:void 0})),this.watcher.disconnect();for(let{stage}of view.
 viewers)this.watcher.observe(stage)}let fill=async(viewer,n)=>{let{generation}=scenes[n].header,isThere=this.loaded[n]===
 generation,name=this.painter==="server"?"controls":isThere?"colours":void 0;viewer.setHeader(scenes[n].header);try{let parts=await loads[n](
 null,[],void 0,void 0,name);if(this.scenes!==scenes)return;for(let part of parts)viewer.setPart(part);this.loaded[n]=generation}catch(error){

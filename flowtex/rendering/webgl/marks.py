@@ -1,0 +1,90 @@
+"""Critical points and separatrices as a browser is handed them: two parts of each time step.
+
+``critical/3`` has a row for each point of step 3, (K, 4): where it is, and the number of its kind.
+``separatrices/3`` has one for each point of its lines, (N, 4): where it is, and a number that tells
+the line. Both begin with the strongest; ``client/src/marks.ts`` is the other side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flowtex._util.array_types import Floats, Floats32
+from flowtex._util.colours import rgb
+from flowtex.rendering.map_overlay import USUAL_HEIGHT_PX, WIDTH_RANGE
+from flowtex.rendering.structure_marks import (
+    DOT_PX,
+    KIND_MARKS,
+    LINE_COLORS,
+    LINE_PX,
+    MIDDLE_COLOR,
+    RIM_COLOR,
+    RIM_OPACITY,
+)
+from flowtex.rendering.webgl.protocol import Header, Parts
+from flowtex.textures.geometry import DrawnSurface
+from flowtex.tiles import Structure
+
+#: Kinds of parts, by the settings that ask for them.
+MARK_PARTS = {"critical_points": "critical", "separatrices": "separatrices"}
+#: The number of a line is this many times that of its saddle, and the sum of what else it tells.
+SADDLE, ORBIT, LEAVING, SIDE = 8, 4, 2, 1
+
+
+@dataclass(frozen=True, eq=False)
+class Marks:
+    """What there is of the structure of a flow.
+
+    ``kinds`` are the parts that can be had; where they are ``carried`` they come with each step,
+    and elsewhere when they are asked for.
+    """
+
+    structure: Structure
+    kinds: tuple[str, ...] = tuple(MARK_PARTS.values())
+    carried: bool = False
+
+    def header(self) -> Header:
+        """Return what of the header tells of them."""
+        return {
+            "parts": list(self.kinds),
+            "kinds": [
+                {"name": name, "color": list(rgb(mark.color)), "turns": mark.turns}
+                for name, mark in KIND_MARKS.items()
+            ],
+            "lines": {name: list(rgb(color)) for name, color in LINE_COLORS.items()},
+            "rim": [*rgb(RIM_COLOR), RIM_OPACITY],
+            "middle": list(rgb(MIDDLE_COLOR)),
+            "dot": list(DOT_PX),
+            "line": list(LINE_PX),
+            "usualHeight": USUAL_HEIGHT_PX,
+            "widthRange": list(WIDTH_RANGE),
+        }
+
+    def parts(self, kind: str, source: int, step: int, geometry: DrawnSurface) -> Parts:
+        """Return the part of a kind, of step ``source`` of the field, by the name of a step."""
+        rows = self._points(source) if kind == "critical" else self._lines(source)
+        local = (rows[:, :3] - geometry.center) @ geometry.frame.T
+        part: Floats32 = np.concatenate([local, rows[:, 3:]], axis=1).astype("<f4")
+        return {f"{kind}/{step}": part}
+
+    def _points(self, step: int) -> Floats:
+        numbers = {kind: number for number, kind in enumerate(KIND_MARKS)}
+        rows = [[*p.position, numbers[p.kind]] for p in self.structure.points(step)]
+        return np.array(rows, dtype=float).reshape(-1, 4)
+
+    def _lines(self, step: int) -> Floats:
+        rows = [np.empty((0, 4))]
+        ranks: dict[int, int] = {}
+        count: dict[int, int] = {}
+        for line in self.structure.lines(step):
+            rank = ranks.setdefault(id(line.saddle), len(ranks))
+            number = SADDLE * rank + LEAVING * line.forward
+            count[number] = count.get(number, -1) + 1
+            number += SIDE * (count[number] % 2)
+            for path, is_orbit in ((line.unwound(), 0), (line.orbit, 1)):
+                if path is not None:
+                    codes = np.full((len(path), 1), number + ORBIT * is_orbit)
+                    rows.append(np.concatenate([path, codes], axis=1))
+        return np.concatenate(rows)

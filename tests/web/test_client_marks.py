@@ -1,0 +1,65 @@
+"""Critical points and separatrices in the browser: as VTK draws them, and who has them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from flows import gyre, scattered_gyre, swinging
+from matrix import COLOUR, GROUND, SIZE, TILTED, straight
+from scipy.spatial import ConvexHull
+from webgl_page import ClientPage, packed, state
+
+import flowtex
+from flowtex import FlowField
+from flowtex.camera import Camera
+from flowtex.rendering.webgl import ClientData, Colours
+from flowtex.rendering.webgl.marks import Marks
+from flowtex.scene import Scene
+from flowtex.settings import Settings
+
+pytestmark = pytest.mark.browser
+
+
+def sphere() -> FlowField:
+    p = np.random.default_rng(1).normal(size=(3, 2000))
+    p /= np.linalg.norm(p, axis=0)
+    x, y, z = p
+    velocity = np.stack([np.sin(3 * y) + z, np.cos(2 * z) * x, np.sin(4 * x)])
+    velocity -= (velocity * p).sum(axis=0) * p
+    return FlowField.from_triangles(p.T, ConvexHull(p.T).simplices, velocity.T)
+
+
+VIEWS: dict[str, tuple[Callable[[], FlowField], Camera | None, float | None]] = {
+    "plane": (gyre, straight(1), None),
+    "aslant": (gyre, TILTED, None),
+    "near": (gyre, straight(3), None),
+    "nearest step": (swinging, straight(1, (0, 0)), 0.7),
+    "triangles": (scattered_gyre, straight(1), None),
+    "sphere": (sphere, None, None),
+}
+OPTIONS: dict[str, Any] = {"samples": 5, "strength": 0.0, "critical_points": 40, "separatrices": 10}
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_marks_are_those_of_vtk(client: ClientPage, name: str) -> None:
+    make, camera, time = VIEWS[name]
+    scene = Scene(make(), Settings(**OPTIONS))
+    camera = camera or Camera.fit(scene.field.surface, SIZE[0] / SIZE[1])
+    marks = Marks(scene.structure, carried=True)
+    data = ClientData(scene.textures, Colours(plain=COLOUR, background=GROUND), marks=marks)
+    header = data.header(scene.settings, camera=state(camera), time=time)
+    steps = tuple(range(scene.textures.store.steps))
+    view = client.mount(packed(data, header, steps), SIZE, controls=False, smooth=False)
+    theirs = client.picture(view)
+    look = {"scalars": False, "color": COLOUR, "background": GROUND, "lighting": False}
+    common: dict[str, Any] = {**look, "camera": camera, "time": time, "size": SIZE}
+    ours = flowtex.render(make(), **common, **OPTIONS)
+    without = flowtex.render(make(), **common, samples=5, strength=0.0)
+    marked = (np.abs(ours.astype(int) - without) > 60).any(axis=-1)
+    assert marked.mean() > 0.0015
+    off = np.abs(theirs.astype(int) - ours).max(axis=-1)
+    # Outlines of the surface are smoothed in one of them; vertices lie at other shares of a pixel.
+    assert (off > 60).sum() < 0.1 * marked.sum()
