@@ -17,8 +17,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import ndimage
-from scipy.spatial import cKDTree
+import scipy
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
@@ -103,13 +102,14 @@ def alignment(
     (0, 1.0)
     """
     filled, u, v, mask = _checked(picture, u, v, mask)
-    gx = ndimage.gaussian_filter(filled, EDGE_PIXELS, order=(0, 1))
-    gy = ndimage.gaussian_filter(filled, EDGE_PIXELS, order=(1, 0))
+    gx = scipy.ndimage.gaussian_filter(filled, EDGE_PIXELS, order=(0, 1))
+    gy = scipy.ndimage.gaussian_filter(filled, EDGE_PIXELS, order=(1, 0))
     # As complex numbers of twice the angle, which do not tell a direction from its opposite.
-    turned = ndimage.gaussian_filter(gx * gx - gy * gy, window) + 2j * ndimage.gaussian_filter(
-        gx * gy, window
+    square, product = (
+        scipy.ndimage.gaussian_filter(part, window) for part in (gx * gx - gy * gy, gx * gy)
     )
-    energy = ndimage.gaussian_filter(gx * gx + gy * gy, window)
+    turned = square + 2j * product
+    energy = scipy.ndimage.gaussian_filter(gx * gx + gy * gy, window)
     flow = np.square(u - 1j * v)  # rows go down, v goes up
     with np.errstate(invalid="ignore"):
         between = np.abs(np.angle(-turned * np.conj(flow))) / 2
@@ -147,7 +147,7 @@ def grain(picture: Any, u: Any, v: Any, mask: Any = None, *, seed: int = 0) -> G
     (64.0, 1.0)
     """
     filled, u, v, mask = _checked(picture, u, v, mask)
-    flat = filled - ndimage.gaussian_filter(filled, SHADE_PIXELS)
+    flat = filled - scipy.ndimage.gaussian_filter(filled, SHADE_PIXELS)
     rows, columns = np.nonzero(mask)
     pick = np.random.default_rng(seed).integers(0, len(rows), min(GRAIN_POINTS, 4 * len(rows)))
     at = np.stack([rows[pick], columns[pick]]).astype(float)
@@ -164,7 +164,7 @@ def _half_width(flat: Floats, start: Floats, direction: Floats) -> float:
 
     Lines are followed from ``start``, (2, N) as (row, column), along unit vectors (2, H, W).
     """
-    here = ndimage.map_coordinates(flat, start, order=1, mode="nearest")
+    here = scipy.ndimage.map_coordinates(flat, start, order=1, mode="nearest")
     power = float(np.mean(here * here))
     if power == 0:
         return float(MAX_DISTANCE_PIXELS)
@@ -175,7 +175,7 @@ def _half_width(flat: Floats, start: Floats, direction: Floats) -> float:
         nearest = np.rint(at).astype(np.intp)
         row, column = (np.clip(nearest[a], 0, flat.shape[a] - 1) for a in (0, 1))
         at = at + step * direction[:, row, column]
-        there = ndimage.map_coordinates(flat, at, order=1, mode="nearest")
+        there = scipy.ndimage.map_coordinates(flat, at, order=1, mode="nearest")
         now = float(np.mean(here * there)) / power
         if now < 0.5:
             return distance + step * (before - 0.5) / (before - now)
@@ -219,8 +219,8 @@ def sense(picture: Any, u: Any, v: Any, mask: Any = None) -> float:
     down, right = np.gradient(filled)
     along = (right * u - down * v) / length
     edges = ~np.isfinite(np.atleast_3d(picture)).all(axis=-1)
-    along[ndimage.binary_dilation(edges, iterations=2)] = 0.0
-    cubes = ndimage.uniform_filter(along**3, SENSE_WINDOW)
+    along[scipy.ndimage.binary_dilation(edges, iterations=2)] = 0.0
+    cubes = scipy.ndimage.uniform_filter(along**3, SENSE_WINDOW)
     strokes = mask & (filled > np.percentile(filled[mask], STROKE_PERCENTILE))
     return float((cubes[strokes] < 0).mean()) if strokes.any() else 0.5
 
@@ -263,7 +263,7 @@ def sticking(first: Any, second: Any, dx: Any, dy: Any, mask: Any = None) -> flo
     place = [rows - dy, columns - dx]
     inside = mask & (place[0] >= 0) & (place[0] <= a.shape[0] - 1)
     inside &= (place[1] >= 0) & (place[1] <= a.shape[1] - 1)
-    moved = ndimage.map_coordinates(a, place, order=1, mode="nearest")
+    moved = scipy.ndimage.map_coordinates(a, place, order=1, mode="nearest")
     return float(np.corrcoef(moved[inside], b[inside])[0, 1])
 
 
@@ -333,7 +333,7 @@ def spacing(points: Any) -> float:
     if places.ndim != 2 or places.shape[1] != 2 or len(places) < 2 or not np.isfinite(places).all():
         msg = f"points has shape {places.shape}; expected (N, 2), two or more finite points"
         raise FieldError(msg)
-    nearest = np.asarray(cKDTree(places).query(places, k=2)[0])[:, 1]
+    nearest = np.asarray(scipy.spatial.cKDTree(places).query(places, k=2)[0])[:, 1]
     return float(nearest.std() / max(nearest.mean(), np.finfo(float).tiny))
 
 

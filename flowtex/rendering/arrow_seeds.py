@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.vectors import norm
@@ -181,14 +181,16 @@ class ArrowSeeds:
         most = least / OCTAVE
         away: Floats = np.full(len(candidates.cell), most)
         if len(seeds.cell):
-            found = cKDTree(seeds.position).query(candidates.position, distance_upper_bound=most)
+            found = scipy.spatial.cKDTree(seeds.position).query(
+                candidates.position, distance_upper_bound=most
+            )
             away = np.minimum(found[0], most)
         order = np.argsort(-away, kind="stable")
         order = order[away[order] >= least]
         position, away = candidates.position[order], away[order]
         taken = []
         if len(order):
-            around: Any = cKDTree(position).query_ball_point(position, most)
+            around: Any = scipy.spatial.cKDTree(position).query_ball_point(position, most)
             for n, others in enumerate(around):
                 if away[n] < least:
                     continue

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, overload
 
 import numpy as np
-from scipy import ndimage
-from scipy.spatial import KDTree
+import scipy
 
 from flowtex._util.arguments import check_field, checked_count
 from flowtex._util.array_types import AnyArray, Floats, Indices
@@ -227,7 +226,9 @@ def _on_grid(field: FlowField) -> list[CriticalPoint]:
     corners = [(slice(a, rows - 1 + a), slice(b, columns - 1 + b)) for a in (0, 1) for b in (0, 1)]
     usable = np.logical_and.reduce([valid[c] for c in corners])
     # A single node at rest may be a critical point; several are a wall or a region at rest.
-    several = rest & (ndimage.convolve(rest.astype(int), np.ones((3, 3), int), mode="constant") > 1)
+    several = rest & (
+        scipy.ndimage.convolve(rest.astype(int), np.ones((3, 3), int), mode="constant") > 1
+    )
     usable &= ~np.logical_or.reduce([several[c] for c in corners])
     poles = tuple(field.surface.poles or ())
     for pole in poles:
@@ -390,7 +391,7 @@ def _distinct(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoi
     near = SAME_POINT_CELLS * np.array([size[node] for node in at])
     positions = np.array([point.position for point in points])
     kept = np.ones(len(points), dtype=bool)
-    for one, other in sorted(KDTree(positions).query_pairs(near.max())):
+    for one, other in sorted(scipy.spatial.KDTree(positions).query_pairs(near.max())):
         if kept[one] and points[one].poincare_index == points[other].poincare_index:
             kept[other] &= np.linalg.norm(positions[one] - positions[other]) >= near[other]
     return [point for point, is_kept in zip(points, kept, strict=True) if is_kept]

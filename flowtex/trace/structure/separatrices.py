@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.spatial import KDTree
+import scipy
 
 from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import Bools, Floats
@@ -214,7 +214,7 @@ def _lines(
     spacing = POINT_CELLS * float(np.median(cells))
     lags = spacing * np.arange(1.0, min(int(most / spacing), MOST_POINTS) + 1)
     positions, reach = _followed(field, points, begin, lags, forward=forward)
-    ends = KDTree([point.position for point in points])
+    ends = scipy.spatial.KDTree([point.position for point in points])
     result = []
     for n, first in enumerate(begin):
         saddle, cell = saddles[n % len(saddles)], cells[n % len(saddles)]
@@ -255,7 +255,7 @@ def _followed(
     positions[:FIRST_POINTS] = first.positions
     away = np.flatnonzero(np.isinf(reach))
     if len(away) and len(lags) > FIRST_POINTS:
-        near = KDTree([point.index[::-1] for point in points])
+        near = scipy.spatial.KDTree([point.index[::-1] for point in points])
 
         def within(index: Floats) -> Bools:
             return np.isinf(near.query(index.T, distance_upper_bound=REST_CELLS)[0])
@@ -276,7 +276,7 @@ def _cell(field: FlowField, point: CriticalPoint) -> float:
 def _turned(line: Floats, spacing: float, near: float) -> tuple[int, int] | None:
     """Return the numbers of points (N, 3) between which a line turns once, or ``None``."""
     around = max(0.75 * spacing, 1.25 * near)
-    pairs = KDTree(line).query_pairs(around, output_type="ndarray")
+    pairs = scipy.spatial.KDTree(line).query_pairs(around, output_type="ndarray")
     pairs = pairs[pairs[:, 1] - pairs[:, 0] > LEAST_TURN]
     if not len(pairs):
         return None

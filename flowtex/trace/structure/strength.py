@@ -9,8 +9,7 @@ pairs that little speed parts.
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
@@ -45,8 +44,10 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
     left = np.argsort(-steepness)
     for level in np.quantile(speed[valid], SHARES):
         some = edges[: int(np.searchsorted(needed, level, side="right"))]
-        graph = coo_array((np.ones(len(some), bool), some.T), shape=(speed.size, speed.size))
-        region = connected_components(graph, directed=False)[1]
+        graph = scipy.sparse.coo_array(
+            (np.ones(len(some), bool), some.T), shape=(speed.size, speed.size)
+        )
+        region = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
         gone = _paired(region[nodes[left]].astype(np.intp), signs[left])
         result[left[gone]] = level
         left = left[~gone]
