@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from waiting import PATIENCE_S
 
 import flowtex
 from flowtex.field import FlowField
@@ -90,7 +91,7 @@ def test_tiles_in_the_background_come_after_a_coarse_picture(
     go, textures = threading.Event(), Pyramid.textures
 
     def slow(*arguments: Any) -> Any:
-        go.wait()
+        go.wait(PATIENCE_S)
         return textures(*arguments)
 
     monkeypatch.setattr(Pyramid, "textures", slow)

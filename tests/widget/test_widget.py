@@ -192,7 +192,7 @@ def refine(monkeypatch: pytest.MonkeyPatch) -> Iterator[threading.Event]:
     may, now = threading.Event(), feed.Feed._refine_to
 
     def later(*arguments: Any) -> None:
-        may.wait()
+        may.wait(PATIENCE_S)
         now(*arguments)
 
     monkeypatch.setattr(feed.Feed, "_refine_to", later)

@@ -16,7 +16,7 @@ import xarray as xr
 from earth_data import winds
 from lying_files import crashing
 from small_pages import Streamer, panned, played
-from waiting import until
+from waiting import PATIENCE_S, until
 
 from flowtex import examples
 from flowtex.app import FlowApp, Library
@@ -96,7 +96,7 @@ def test_the_view_moves_while_a_later_step_is_read(
 
     def read_slowly(time: float) -> None:
         asked.append(time)
-        slow.wait()
+        slow.wait(PATIENCE_S)
         read(time)
 
     monkeypatch.setattr(app.viewport, "trace", read_slowly)
