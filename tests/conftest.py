@@ -6,7 +6,9 @@ made a NaN. Python's warnings are errors through ``filterwarnings`` in pyproject
 
 from __future__ import annotations
 
+import asyncio
 import ctypes
+import inspect
 import os
 import shutil
 import subprocess
@@ -51,6 +53,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker("browser")
     items.sort(key=lambda item: ("browser" in item.keywords, item.path not in slow))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
+    """Run a coroutine that is a test, in an event loop of its own."""
+    if not inspect.iscoroutinefunction(pyfuncitem.obj):
+        return None
+    names = inspect.signature(pyfuncitem.obj).parameters
+    asyncio.run(pyfuncitem.obj(**{name: pyfuncitem.funcargs[name] for name in names}))
+    return True
 
 
 CHROMIUMS = ("chromium", "chromium-browser", "google-chrome")

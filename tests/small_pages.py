@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -87,14 +87,11 @@ def difference(one: Any, other: Any) -> float:
     return float(np.abs(np.asarray(one, int) - np.asarray(other, int)).mean())
 
 
-def played(app: FlowApp, story: Callable[[], Awaitable[None]]) -> None:
-    """Let something happen in an event loop, and close the application in it."""
-
-    async def run() -> None:
-        app.server.state.ready()
-        try:
-            await story()
-        finally:
-            app.close()
-
-    asyncio.run(run())
+@asynccontextmanager
+async def playing(app: FlowApp) -> AsyncIterator[None]:
+    """Let something happen on a page in the event loop, and close it there."""
+    app.server.state.ready()
+    try:
+        yield
+    finally:
+        app.close()

@@ -13,7 +13,7 @@ import pyvista as pv
 
 pytest.importorskip("trame_rca")
 
-from small_pages import played, small, small_page
+from small_pages import playing, small, small_page
 
 from flowtex import Camera, examples
 from flowtex.app import FlowApp, Library
@@ -56,7 +56,7 @@ def objects() -> Counter[str]:
     return Counter(kind.__qualname__ for kind in kinds if str(kind.__module__).startswith(KINDS))
 
 
-def test_use_leaves_no_object_behind() -> None:
+async def test_use_leaves_no_object_behind() -> None:
     app = small_page(small(), 3, 96, 64)
     app.area.settings.resolution = 32
 
@@ -76,13 +76,12 @@ def test_use_leaves_no_object_behind() -> None:
         element.take_playing(False)
         list(app.stream.painter.full())
 
-    async def story() -> None:
+    # A second move of the pointer soon after the first waits in the loop.
+    async with playing(app):
         use()  # every kind of noise has been shown once
         before = objects()
         use()
         assert objects() - before == Counter()
-
-    played(app, story)  # a second move of the pointer soon after the first waits in the loop
 
 
 def write_flow(path: Path) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from PIL import Image
-from small_pages import Streamer, played
+from small_pages import Streamer, playing
 from waiting import PATIENCE_S, until
 
 pytest.importorskip("trame_rca")
@@ -168,13 +168,14 @@ def raising(error: Exception) -> Callable[..., Any]:
     return fail
 
 
-def test_a_picture_that_fails_is_not_the_last_one(
+async def test_a_picture_that_fails_is_not_the_last_one(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
+    caplog.set_level(logging.ERROR)
     app, streamer = page(field()), Streamer()
     quick = app.stream.painter.quick
 
-    async def story() -> None:
+    async with playing(app):
         app.stream.set_streamer(streamer)
         monkeypatch.setattr(app.stream.painter, "quick", raising(RuntimeError("no context")))
         waiting = asyncio.create_task(app.stream.next_picture())
@@ -187,22 +188,16 @@ def test_a_picture_that_fails_is_not_the_last_one(
         assert not task.done()
         task.cancel()
 
-    with caplog.at_level(logging.ERROR):
-        played(app, story)
 
-
-def test_drawing_begins_once_however_often_a_page_has_it_said() -> None:
+async def test_drawing_begins_once_however_often_a_page_has_it_said() -> None:
     app = page(field())
-
-    async def story() -> None:
+    async with playing(app):
         app.area.server.controller.rc_area_register = lambda stream: None
         app.area._on_ready()
         tasks = list(app.area._tasks)
         for _ in range(5):
             app.area._on_ready()
         assert app.area._tasks == tasks and len(tasks) == 1
-
-    played(app, story)
 
 
 # --- pictures, movies, messages ------------------------------------------------------------------
@@ -243,7 +238,7 @@ def test_an_image_takes_no_more_room_than_it_may() -> None:
     app.close()
 
 
-def test_a_picture_is_decoded_beside_the_event_loop_and_the_latest_counts(
+async def test_a_picture_is_decoded_beside_the_event_loop_and_the_latest_counts(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     app = page(field())
@@ -257,8 +252,7 @@ def test_a_picture_is_decoded_beside_the_event_loop_and_the_latest_counts(
 
     monkeypatch.setattr("flowtex.app.controllers.appearance.decode_picture", slowly)
     picture = sent(Image.new("RGB", (9, 9)))
-
-    async def story() -> None:
+    async with playing(app):
         for name in ("first", "second"):
             app.state.set(image_file={**picture, "name": name})
             app.controllers.appearance.take_image()
@@ -272,8 +266,6 @@ def test_a_picture_is_decoded_beside_the_event_loop_and_the_latest_counts(
         assert laying is not None
         await until(laying.done)
         assert laying.cancelled()
-
-    played(app, story)
 
 
 @pytest.mark.parametrize("compared", ["Level of detail: off", "Noise: texture"])
@@ -308,7 +300,7 @@ def test_a_picture_of_no_size_is_refused_and_leaves_no_folder(app: FlowApp, name
     app.state.set(**before, problem="")
 
 
-def test_of_many_pictures_that_are_begun_one_is_made_at_a_time(
+async def test_of_many_pictures_that_are_begun_one_is_made_at_a_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
 
@@ -321,8 +313,7 @@ def test_of_many_pictures_that_are_begun_one_is_made_at_a_time(
         return copies[-1]
 
     monkeypatch.setattr(Viewport, "copy", counted)
-
-    async def story() -> None:
+    async with playing(app):
         app.state.set(out_width=40, out_height=30, out_smooth=False)
         for _ in range(20):
             app.controllers.sharing.start()
@@ -330,29 +321,24 @@ def test_of_many_pictures_that_are_begun_one_is_made_at_a_time(
         assert len(copies) == 1
         assert len(list(app.controllers.sharing.downloads.folder.iterdir())) == 1
 
-    played(app, story)
 
-
-def test_a_picture_that_fails_says_so(
+async def test_a_picture_that_fails_says_so(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     app = page(field())
 
     monkeypatch.setattr(Viewport, "copy", raising(RuntimeError("no memory")))
-
-    async def story() -> None:
+    async with playing(app):
         app.controllers.sharing.start()
         await until(lambda: "no memory" in app.state.get("problem"))
         assert app.state.get("out_progress") is None and "no memory" in caplog.text
         assert list(app.controllers.sharing.downloads.folder.iterdir()) == []
 
-    played(app, story)
-
 
 # --- files and planes ----------------------------------------------------------------------------
 
 
-def test_a_choice_of_any_kind_is_one_that_there_is() -> None:
+async def test_a_choice_of_any_kind_is_one_that_there_is() -> None:
     app = page(Library.of(block(), field(name="other")))
     data = app.controllers.data
 
@@ -370,13 +356,11 @@ def test_a_choice_of_any_kind_is_one_that_there_is() -> None:
             data.open(*before)
             await until(lambda: data.choice == before[1] and opened(app))
 
-    async def story() -> None:
+    async with playing(app):
         before = (data.name, data.choice)
         for name in ("file", "vectors", "block", "axis", "index"):
             for junk in JUNK:
                 await send(name, junk, before)
-
-    played(app, story)
 
 
 def slow(monkeypatch: pytest.MonkeyPatch, app: FlowApp) -> dict[str, threading.Event]:
@@ -394,7 +378,7 @@ def slow(monkeypatch: pytest.MonkeyPatch, app: FlowApp) -> dict[str, threading.E
     return gates
 
 
-def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     app = page(block())
     gates = slow(monkeypatch, app)
     shown: list[str] = []
@@ -406,8 +390,7 @@ def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(app.context, "show", noted)
     told: list[Any] = []
-
-    async def story() -> None:
+    async with playing(app):
         app.state.on("index")(lambda: told.append(app.state.get("index")))
         for index in (4, 5, 6):
             app.state.send(index=index)
@@ -428,15 +411,12 @@ def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.MonkeyPa
             shown == ["k=4", "k=6"] and app.state.get("index") == 6 and app.state.get("busy") == ""
         )
 
-    played(app, story)
 
-
-def test_a_file_that_fails_in_any_way_says_so_and_the_old_view_stands(
+async def test_a_file_that_fails_in_any_way_says_so_and_the_old_view_stands(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     app = page(Library.of(block(), field(name="other")))
-
-    async def story() -> None:
+    async with playing(app):
         before, failing = app.field, raising(RuntimeError("reader crashed"))
         places: list[tuple[Any, str]] = [
             (app.controllers.data, "_read"),
@@ -456,17 +436,14 @@ def test_a_file_that_fails_in_any_way_says_so_and_the_old_view_stands(
         app.state.send(file="other")
         await until(lambda: app.controllers.data.name == "other" and app.state.get("axes") == [])
 
-    played(app, story)
 
-
-def test_blocks_have_planes_of_their_own() -> None:
+async def test_blocks_have_planes_of_their_own() -> None:
     blocks = pv.MultiBlock(
         {"large": block((9, 8, 20)), "small": block((9, 8, 4), "other", "third")}
     )
     library = Library.of(blocks)
     app, beside = page(library), page(library)
-
-    async def story() -> None:
+    async with playing(app):
         app.state.send(index=15)
         await until(lambda: app.controllers.data.choice.plane == "k=15")
         app.state.send(block="small")
@@ -481,15 +458,12 @@ def test_blocks_have_planes_of_their_own() -> None:
         app.state.send(block="large")
         await until(lambda: app.controllers.data.choice == Choice("velocity", "k=10", "large"))
 
-    played(app, story)
 
-
-def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -> None:
+async def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -> None:
     steps = [block() for _ in range(3)]
     app = page(Library.of(steps, field(name="other")), times=None)
     assert len(app.field.times) == 3
-
-    async def story() -> None:
+    async with playing(app):
         app.area.scalars, app.area.clim = "depth", (-1.0, 99.0)
         app.area.element.take_time(1.0)
         app.viewport.camera = camera = app.viewport.camera.pan(0.2, 0.1, app.viewport.aspect)
@@ -501,8 +475,6 @@ def test_a_plane_keeps_time_range_and_camera_and_another_file_does_not() -> None
         app.state.send(file="other")
         await until(lambda: app.controllers.data.name == "other" and app.field.steady)
         assert app.area.scalars == "speed" and app.area.clim is None
-
-    played(app, story)
 
 
 def test_a_slow_file_of_one_page_keeps_nobody_from_another(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -563,29 +535,32 @@ def test_a_page_that_closes_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatc
     app = page(block())
     gates = slow(monkeypatch, app)
 
-    async def story() -> None:
-        app.area.element.take_playing(True)
-        app.state.send(index=5)
-        app.state.set(out_format="GIF", out_width=64, out_height=48, out_seconds=1.0, out_fps=10.0)
-        app.controllers.sharing.start()
-        reading = asyncio.create_task(app.area.points.read(0, {"place": [0, 0], "path": True}))
-        await until(lambda: "k=5" in gates)
-        app.close()
-        gates.setdefault("k=5", threading.Event()).set()
-        tasks = [
-            app.controllers.data._opening,
-            app.controllers.sharing._task,
-            reading,
-        ]
-        await asyncio.wait([task for task in tasks if task is not None], timeout=PATIENCE_S)
-        assert all(task is None or task.done() for task in tasks)
-        assert app.controllers.data.choice.plane == "k=3"
-        # What the page sends in its last moments is heard by nobody.
-        app.stream.update_size("test", {"w": 50, "h": 50})
-        app.stream.on_interaction("test", {"type": "MouseWheel", "spinY": 1, "w": 9, "h": 9})
-        app.stream.changed()
+    async def use() -> None:
+        async with playing(app):
+            app.area.element.take_playing(True)
+            app.state.send(index=5)
+            app.state.set(
+                out_format="GIF", out_width=64, out_height=48, out_seconds=1.0, out_fps=10.0
+            )
+            app.controllers.sharing.start()
+            reading = asyncio.create_task(app.area.points.read(0, {"place": [0, 0], "path": True}))
+            await until(lambda: "k=5" in gates)
+            app.close()
+            gates.setdefault("k=5", threading.Event()).set()
+            tasks = [
+                app.controllers.data._opening,
+                app.controllers.sharing._task,
+                reading,
+            ]
+            await asyncio.wait([task for task in tasks if task is not None], timeout=PATIENCE_S)
+            assert all(task is None or task.done() for task in tasks)
+            assert app.controllers.data.choice.plane == "k=3"
+            # What the page sends in its last moments is heard by nobody.
+            app.stream.update_size("test", {"w": 50, "h": 50})
+            app.stream.on_interaction("test", {"type": "MouseWheel", "spinY": 1, "w": 9, "h": 9})
+            app.stream.changed()
 
-    played(app, story)  # and it may be closed twice
+    asyncio.run(use())  # and it may be closed twice
     for thread in [thread for thread in threading.enumerate() if thread not in before]:
         thread.join(PATIENCE_S)
         assert not thread.is_alive(), thread.name
@@ -625,7 +600,7 @@ def test_playing_goes_over_from_times_to_streaming_and_back() -> None:
 # --- reading -------------------------------------------------------------------------------------
 
 
-def test_a_path_is_read_beside_the_page(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_path_is_read_beside_the_page(monkeypatch: pytest.MonkeyPatch) -> None:
     app = page(field())
     free = threading.Event()
     found: list[Any] = []
@@ -637,8 +612,7 @@ def test_a_path_is_read_beside_the_page(monkeypatch: pytest.MonkeyPatch) -> None
         return found[-1]
 
     monkeypatch.setattr(points, "probe", slowly)
-
-    async def story() -> None:
+    async with playing(app):
         reading = asyncio.create_task(app.area.points.read(0, {"index": [3, 1], "path": True}))
         await asyncio.sleep(0)
         app.area.settings.samples = 5  # what is read is not changed on the way
@@ -647,8 +621,6 @@ def test_a_path_is_read_beside_the_page(monkeypatch: pytest.MonkeyPatch) -> None
         assert told is not None
         assert told["point"]["index"] == [3, 1] and len(told["samples"]) == 3
         assert found[0].asked == 3
-
-    played(app, story)
 
 
 # --- where the camera stands ---------------------------------------------------------------------

@@ -15,7 +15,7 @@ pytest.importorskip("trame_rca")
 import xarray as xr
 from earth_data import winds
 from lying_files import crashing
-from small_pages import Streamer, panned, played
+from small_pages import Streamer, panned, playing
 from waiting import PATIENCE_S, until
 
 from flowtex import examples
@@ -39,13 +39,12 @@ def mean_speed(app: FlowApp) -> float:
     return float(np.linalg.norm(app.field.velocity[-1], axis=-1).mean())
 
 
-def test_a_file_is_read_again_when_the_page_asks_for_it(tmp_path: Path) -> None:
+async def test_a_file_is_read_again_when_the_page_asks_for_it(tmp_path: Path) -> None:
     path = tmp_path / "latest.vts"
     examples.double_gyre(0.0).save(path)
     app = FlowApp(Library.of(path), samples=5)
     app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})
-
-    async def story() -> None:
+    async with playing(app):
         data, source = app.controllers.data, app.controllers.data._current.source
         assert app.state.get("is_file")
         data.reload()
@@ -62,17 +61,14 @@ def test_a_file_is_read_again_when_the_page_asks_for_it(tmp_path: Path) -> None:
         assert mean_speed(app) > 2 * before and app.viewport.zoom == pytest.approx(3.0)
         assert app.area.scalars is None or app.area.scene.scalar_limits != limits
 
-    played(app, story)
 
-
-def test_a_file_that_crashes_its_reader_is_a_problem_of_one_page(tmp_path: Path) -> None:
+async def test_a_file_that_crashes_its_reader_is_a_problem_of_one_page(tmp_path: Path) -> None:
     examples.double_gyre(0.0).save(tmp_path / "flow.vts")
     (tmp_path / "torn.vtk").write_bytes(crashing())
     library = Library.of(tmp_path)
     app = FlowApp(library, samples=5)
     app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})
-
-    async def story() -> None:
+    async with playing(app):
         shown = app.field
         app.state.send(file="torn.vtk")
         await until(lambda: app.state.get("problem") != "")
@@ -80,10 +76,8 @@ def test_a_file_that_crashes_its_reader_is_a_problem_of_one_page(tmp_path: Path)
         assert app.field is shown and app.state.get("file") == "flow.vts"
         assert library.source("flow.vts").alive
 
-    played(app, story)
 
-
-def test_the_view_moves_while_a_later_step_is_read(
+async def test_the_view_moves_while_a_later_step_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("xarray")
@@ -100,8 +94,7 @@ def test_the_view_moves_while_a_later_step_is_read(
         read(time)
 
     monkeypatch.setattr(app.viewport, "trace", read_slowly)
-
-    async def story() -> None:
+    async with playing(app):
         app.stream.set_streamer(streamer)
         task = asyncio.create_task(app.stream.run())
         for day in (days[0], days[1], days[2]):
@@ -117,8 +110,6 @@ def test_the_view_moves_while_a_later_step_is_read(
         assert days[1] not in asked, "only the latest is read"
         task.cancel()
 
-    played(app, story)
-
 
 def daily(count: int) -> Any:
     """Winds of so many days."""
@@ -128,7 +119,7 @@ def daily(count: int) -> Any:
     return steps
 
 
-def test_a_later_step_that_cannot_be_read_is_told_and_the_page_goes_on(
+async def test_a_later_step_that_cannot_be_read_is_told_and_the_page_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("xarray")
@@ -136,8 +127,7 @@ def test_a_later_step_that_cannot_be_read_is_told_and_the_page_goes_on(
     daily(12).to_netcdf(tmp_path / "winds.nc")
     app, streamer = FlowApp(tmp_path / "winds.nc", lines="streamlines"), Streamer()
     app.stream.update_size("test", {"w": 120, "h": 80, "p": 1})
-
-    async def story() -> None:
+    async with playing(app):
         app.stream.set_streamer(streamer)
         task = asyncio.create_task(app.stream.run())
         app.stream.changed()
@@ -152,5 +142,3 @@ def test_a_later_step_that_cannot_be_read_is_told_and_the_page_goes_on(
         await until(lambda: streamer.sent)
         assert not task.done() and app.state.get("problem") == ""
         task.cancel()
-
-    played(app, story)

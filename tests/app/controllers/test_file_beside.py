@@ -14,7 +14,7 @@ from PIL import Image
 
 pytest.importorskip("trame_rca")
 
-from small_pages import difference, played, small
+from small_pages import difference, playing, small
 from waiting import PATIENCE_S, until
 
 from flowtex import FlowField
@@ -55,10 +55,9 @@ async def beside(app: FlowApp, name: str | None = None) -> None:
     await until(lambda: app.controllers.beside.name == app.state.get("file_beside") != "")
 
 
-def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
+async def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
     app = page(one=small(), two=other())
-
-    async def story() -> None:
+    async with playing(app):
         assert FILE in app.state.get("comparisons")
         app.area.cmap, app.area.settings.contrast = "magma", 2.0
         await beside(app)
@@ -79,22 +78,17 @@ def test_another_file_has_the_settings_and_a_range_of_its_own() -> None:
         assert len(app.viewport.panes) == 1 and not app.area.element.names
         assert "beside_file" not in app.controllers.sharing.present_state()
 
-    played(app, story)
 
-
-def test_colours_with_a_logarithm_where_the_other_file_has_none() -> None:
+async def test_colours_with_a_logarithm_where_the_other_file_has_none() -> None:
     still = other()
     halting = FlowField.from_arrays(still.points, still.velocity[0] - np.array([0, 3.0, 0]))
     app = page(one=small(), two=halting)
-
-    async def story() -> None:
+    async with playing(app):
         await beside(app)
         app.area.element.take_colours({"log_scale": True})
         first, second = (pane.handle for pane in app.viewport.panes)
         assert first.log_scale is True and second.log_scale is False
         assert app.state.get("problem") == ""
-
-    played(app, story)
 
 
 def test_one_file_alone_has_none_beside_it() -> None:
@@ -106,10 +100,9 @@ def test_one_file_alone_has_none_beside_it() -> None:
     app.close()
 
 
-def test_the_time_is_that_of_the_first_or_the_last() -> None:
+async def test_the_time_is_that_of_the_first_or_the_last() -> None:
     app = page(one=small(steps=4), two=other(steps=4), three=other())
-
-    async def story() -> None:
+    async with playing(app):
         await beside(app)
         second = app.viewport.panes[1].handle
         app.area.element.take_time(0.25)
@@ -123,24 +116,19 @@ def test_the_time_is_that_of_the_first_or_the_last() -> None:
         await until(lambda: app.controllers.beside.name == "one")
         assert app.area.element.names == ("three", "one")
 
-    played(app, story)
 
-
-def test_dates_are_those_of_the_first() -> None:
+async def test_dates_are_those_of_the_first() -> None:
     begin = datetime(2020, 1, 1)
     days = [np.datetime64(begin + timedelta(days=n)) for n in range(6)]
     early, late = other(steps=4, times=days[:4]), other(steps=4, times=days[2:])
     app = page(one=early, two=late)
-
-    async def story() -> None:
+    async with playing(app):
         await beside(app)
         second = app.viewport.panes[1].handle
         app.area.element.take_time(2.5 * 86400)
         assert second.time == 0.5 * 86400
         app.area.element.take_time(86400.0)
         assert second.time == late.times[-1]
-
-    played(app, story)
 
 
 def block(turn: float, nodes: int) -> pv.StructuredGrid:
@@ -154,7 +142,7 @@ def block(turn: float, nodes: int) -> pv.StructuredGrid:
 
 
 @pytest.mark.vtk_log_allowed("one of the files is broken")
-def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
+async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
     for name, turn, nodes in (("a", 1.0, 6), ("b", 2.0, 6), ("c", 1.0, 3)):
         block(turn, nodes).save(tmp_path / f"{name}.vts")
     (tmp_path / "torn.vts").write_text("<VTKFile")
@@ -163,7 +151,7 @@ def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
     def height() -> float:
         return float(app.viewport.panes[1].handle.field.points[0, 0, 2])
 
-    async def story() -> None:
+    async with playing(app):
         shown = app.controllers.beside
         app.state.send(index=4)
         await until(lambda: app.controllers.data.choice.plane == "k=4")
@@ -197,10 +185,8 @@ def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
         await until(lambda: app.state.get("problem"))
         assert "there is no file '../secret.vts'" in app.state.get("problem")
 
-    played(app, story)
 
-
-def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     app = page(one=small(), two=other(), three=other(steps=3))
     held = threading.Event()
     read = app.controllers.beside._read
@@ -210,8 +196,7 @@ def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> Non
         return read(request)
 
     monkeypatch.setattr(app.controllers.beside, "_read", slowly)
-
-    async def story() -> None:
+    async with playing(app):
         app.state.send(compare=FILE)
         await until(lambda: app.state.get("busy") == "Opening two")
         app.controllers.cancel_opening()
@@ -230,27 +215,21 @@ def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> Non
         await until(opening.done)
         assert len(app.viewport.panes) == 1
 
-    played(app, story)
 
-
-def test_two_units_of_length_are_refused() -> None:
+async def test_two_units_of_length_are_refused() -> None:
     kilometres = other(length_unit="km")
     metres = FlowField.from_arrays(kilometres.points, kilometres.velocity[0], length_unit="m")
     app = page(one=metres, two=kilometres)
-
-    async def story() -> None:
+    async with playing(app):
         app.state.send(compare=FILE)
         await until(lambda: app.state.get("problem"))
         assert app.state.get("problem").startswith("two is in km and one in m; expected one unit")
         assert len(app.viewport.panes) == 1
 
-    played(app, story)
 
-
-def test_a_point_is_read_in_its_own_pane() -> None:
+async def test_a_point_is_read_in_its_own_pane() -> None:
     app = page(one=small(), two=other())
-
-    async def story() -> None:
+    async with playing(app):
         await beside(app)
         read: Any = app.area.points.read
         at = {"place": [0.0, 0.0], "path": True}
@@ -264,13 +243,10 @@ def test_a_point_is_read_in_its_own_pane() -> None:
         both = await read(1, at)  # two panes of one flow
         assert both["alone"] is False and len(both["samples"]) == 5
 
-    played(app, story)
 
-
-def test_a_link_and_the_lines_of_python_name_both() -> None:
+async def test_a_link_and_the_lines_of_python_name_both() -> None:
     app = page(one=small(steps=4), two=other(steps=4), three=other())
-
-    async def story() -> None:
+    async with playing(app):
         app.area.player.go_to(3.0)
         await beside(app, "two")
         app.area.scalars = "height"
@@ -295,13 +271,10 @@ def test_a_link_and_the_lines_of_python_name_both() -> None:
         assert "there is no file '../four'" in app.state.get("problem")
         assert len(app.viewport.panes) == 1
 
-    played(app, story)
 
-
-def test_a_picture_shows_both_with_what_is_written_on_them(tmp_path: Path) -> None:
+async def test_a_picture_shows_both_with_what_is_written_on_them(tmp_path: Path) -> None:
     app = page(one=small(steps=4), two=other(steps=4))
-
-    async def story() -> None:
+    async with playing(app):
         await beside(app)
         path = await PictureJob(app.viewport, tmp_path / "both.png", (482, 160)).run()
         job = PictureJob(app.viewport, tmp_path / "told.png", (482, 160), annotations=True)
@@ -310,8 +283,6 @@ def test_a_picture_shows_both_with_what_is_written_on_them(tmp_path: Path) -> No
         assert difference(one[:, :240], one[:, 242:]) > 3
         for half in (slice(0, 240), slice(242, 482)):
             assert difference(one[:, half], told[:, half]) > 1
-
-    played(app, story)
 
 
 def test_a_choice_is_taken_as_far_as_a_file_has_it() -> None:

@@ -104,63 +104,51 @@ async def ended(stream: Stream) -> bytes:
             return b""
 
 
-def test_half_sent_requests_shut_nobody_out(caplog: pytest.LogCaptureFixture) -> None:
-    async def story() -> None:
-        async with place(8) as here, here.socket() as socket:
-            half = [await here.begin() for _ in range(40)]
-            assert await here.status() == 200
-            for stream in half[:30]:  # the oldest have given way
-                await ended(stream)
-            await socket.send_str("here")
-            assert await socket.receive_str(timeout=PATIENCE_S) == "here"
-
-    asyncio.run(story())
+async def test_half_sent_requests_shut_nobody_out(caplog: pytest.LogCaptureFixture) -> None:
+    async with place(8) as here, here.socket() as socket:
+        half = [await here.begin() for _ in range(40)]
+        assert await here.status() == 200
+        for stream in half[:30]:  # the oldest have given way
+            await ended(stream)
+        await socket.send_str("here")
+        assert await socket.receive_str(timeout=PATIENCE_S) == "here"
     assert not caplog.records
 
 
-def test_who_has_most_connections_gives_way() -> None:
-    async def story() -> None:
-        async with place(8) as here:
-            neighbour = await here.begin(address="127.0.0.2")
-            many = [await here.begin() for _ in range(30)]
-            for stream in many[:20]:
-                await ended(stream)
-            neighbour[1].write(b"no\r\n\r\n")
-            assert (await neighbour[0].readline()).startswith(b"HTTP/1.1 200")
-
-    asyncio.run(story())
+async def test_who_has_most_connections_gives_way() -> None:
+    async with place(8) as here:
+        neighbour = await here.begin(address="127.0.0.2")
+        many = [await here.begin() for _ in range(30)]
+        for stream in many[:20]:
+            await ended(stream)
+        neighbour[1].write(b"no\r\n\r\n")
+        assert (await neighbour[0].readline()).startswith(b"HTTP/1.1 200")
 
 
-def test_a_request_that_is_answered_outlives_those_that_wait(
+async def test_a_request_that_is_answered_outlives_those_that_wait(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    async def story() -> None:
-        async with place(4) as here:
-            slow = await here.begin_form()
-            for stream in [await here.begin() for _ in range(12)][:8]:
-                await ended(stream)
-            slow[1].write(b"cd")
-            assert (await slow[0].readline()).startswith(b"HTTP/1.1 200")
-            # Where all are being answered, the oldest of them gives way.
-            others = [await here.begin_form() for _ in range(5)]
-            await ended(others[0])
-            assert await here.status() == 200
-
-    asyncio.run(story())
+    async with place(4) as here:
+        slow = await here.begin_form()
+        for stream in [await here.begin() for _ in range(12)][:8]:
+            await ended(stream)
+        slow[1].write(b"cd")
+        assert (await slow[0].readline()).startswith(b"HTTP/1.1 200")
+        # Where all are being answered, the oldest of them gives way.
+        others = [await here.begin_form() for _ in range(5)]
+        await ended(others[0])
+        assert await here.status() == 200
     assert not caplog.records
 
 
-def test_where_nobody_gives_way_a_newcomer_is_refused() -> None:
-    async def story() -> None:
-        async with place(1) as here, here.socket() as socket:
-            assert await ended(await here.begin()) == b""
-            await socket.send_str("here")
-            assert await socket.receive_str(timeout=PATIENCE_S) == "here"
-
-    asyncio.run(story())
+async def test_where_nobody_gives_way_a_newcomer_is_refused() -> None:
+    async with place(1) as here, here.socket() as socket:
+        assert await ended(await here.begin()) == b""
+        await socket.send_str("here")
+        assert await socket.receive_str(timeout=PATIENCE_S) == "here"
 
 
-def test_a_head_and_a_body_have_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_head_and_a_body_have_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(connections, "LINGER_S", 0.0)
 
     def later(seconds: float) -> None:
@@ -168,21 +156,18 @@ def test_a_head_and_a_body_have_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
         now = loop.time
         monkeypatch.setattr(loop, "time", lambda: now() + seconds)
 
-    async def story() -> None:
-        async with place() as here, here.socket() as socket:
-            half, form = await here.begin(), await here.begin_form()
-            whole = await here.begin(HALF + b"no\r\n\r\n")
-            assert (await whole[0].readline()).startswith(b"HTTP/1.1 200")
-            later(connections.HEAD_S + 1)
-            assert await ended(half) == b""
-            assert (await ended(whole)).endswith(b"a page")  # which came before its time was over
-            assert not form[0].at_eof()
-            later(connections.ANSWER_S)
-            assert (await ended(form)).startswith(b"HTTP/1.1 408")
-            await socket.send_str("here")
-            assert await socket.receive_str(timeout=PATIENCE_S) == "here"
-
-    asyncio.run(story())
+    async with place() as here, here.socket() as socket:
+        half, form = await here.begin(), await here.begin_form()
+        whole = await here.begin(HALF + b"no\r\n\r\n")
+        assert (await whole[0].readline()).startswith(b"HTTP/1.1 200")
+        later(connections.HEAD_S + 1)
+        assert await ended(half) == b""
+        assert (await ended(whole)).endswith(b"a page")  # which came before its time was over
+        assert not form[0].at_eof()
+        later(connections.ANSWER_S)
+        assert (await ended(form)).startswith(b"HTTP/1.1 408")
+        await socket.send_str("here")
+        assert await socket.receive_str(timeout=PATIENCE_S) == "here"
 
 
 def test_files_of_the_process_are_left_for_others() -> None:

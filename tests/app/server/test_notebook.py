@@ -64,32 +64,27 @@ def test_without_a_loop_it_says_what_to_do() -> None:
 
 
 @pytest.mark.usefixtures("opengl")
-def test_all_frames_show_the_application_that_python_has() -> None:
-    async def story() -> None:
-        app = FlowApp(examples.double_gyre_field(), samples=3)
-        html = app._repr_mimebundle_()["text/html"]
-        frame = app.in_cell(height=300)
-        bare, _, secret = frame.address.partition("?secret=")
-        assert (
-            frame.address in html and secret not in repr(frame) and "300px" in frame._repr_html_()
-        )
-        async with aiohttp.ClientSession() as http:
-            (_, one), (_, other) = [await enter(http, bare, secret) for _ in range(2)]
-            assert one == other
-            links = [await Link.open(http, bare, one["session"], secret) for _ in range(2)]
-            with app.server.state:
-                app.server.state.answer = 42
-            for link in links:
-                await link.until(lambda link=link: link.state.get("answer") == 42)
-            app.close()
-            for link in links:
-                await asyncio.wait_for(link._task, PATIENCE_S)
-            with pytest.raises(aiohttp.ClientError):
-                async with asyncio.timeout(PATIENCE_S):
-                    while True:
-                        await enter(http, bare, secret)
-
-    asyncio.run(story())
+async def test_all_frames_show_the_application_that_python_has() -> None:
+    app = FlowApp(examples.double_gyre_field(), samples=3)
+    html = app._repr_mimebundle_()["text/html"]
+    frame = app.in_cell(height=300)
+    bare, _, secret = frame.address.partition("?secret=")
+    assert frame.address in html and secret not in repr(frame) and "300px" in frame._repr_html_()
+    async with aiohttp.ClientSession() as http:
+        (_, one), (_, other) = [await enter(http, bare, secret) for _ in range(2)]
+        assert one == other
+        links = [await Link.open(http, bare, one["session"], secret) for _ in range(2)]
+        with app.server.state:
+            app.server.state.answer = 42
+        for link in links:
+            await link.until(lambda link=link: link.state.get("answer") == 42)
+        app.close()
+        for link in links:
+            await asyncio.wait_for(link._task, PATIENCE_S)
+        with pytest.raises(aiohttp.ClientError):
+            async with asyncio.timeout(PATIENCE_S):
+                while True:
+                    await enter(http, bare, secret)
 
 
 def frame_of(page: Page) -> Frame:

@@ -1,13 +1,11 @@
 from __future__ import annotations
 
-import asyncio
 import io
 import os
 import signal
-from collections.abc import AsyncIterator, Coroutine
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import Any
 
 import aiohttp
 import pytest
@@ -64,91 +62,72 @@ def lives(pid: int) -> bool:
     return Path(f"/proc/{pid}").exists()
 
 
-def run(story: Coroutine[Any, Any, None]) -> None:
-    asyncio.run(story)
+async def test_each_page_has_a_process_of_its_own_that_ends_with_the_server() -> None:
+    async with place() as here:
+        (one, link), (_, other) = await here.link(), await here.link()
+        pids = {each.get("pid") for each in (link, other)}
+        assert len(pids) == 2 and os.getpid() not in pids and all(map(lives, pids))
+        await link.set(value=7)
+        await link.close()
+        again, link = await here.link(one)
+        assert (again, link.get("value"), other.get("value")) == (one, 7, 1)
+        # A second connection to a session ends the first.
+        newer = await Link.open(here.http, here.bare, one, here.secret)
+        await until(lambda: link.socket.closed)
+        assert newer.get("value") == 7
+        assert here.said == ["plain", "plain"]
+    assert not any(map(lives, pids))
 
 
-def test_each_page_has_a_process_of_its_own_that_ends_with_the_server() -> None:
-    async def story() -> None:
-        async with place() as here:
-            (one, link), (_, other) = await here.link(), await here.link()
-            pids = {each.get("pid") for each in (link, other)}
-            assert len(pids) == 2 and os.getpid() not in pids and all(map(lives, pids))
-            await link.set(value=7)
-            await link.close()
-            again, link = await here.link(one)
-            assert (again, link.get("value"), other.get("value")) == (one, 7, 1)
-            # A second connection to a session ends the first.
-            newer = await Link.open(here.http, here.bare, one, here.secret)
-            await until(lambda: link.socket.closed)
-            assert newer.get("value") == 7
-            assert here.said == ["plain", "plain"]
-        assert not any(map(lives, pids))
-
-    run(story())
+async def test_a_crash_ends_one_page() -> None:
+    async with place() as here:
+        (one, link), (other, second) = await here.link(), await here.link()
+        os.kill(link.get("pid"), signal.SIGSEGV)
+        await until(lambda: link.socket.closed)
+        await until(lambda: here.site.sessions.get(one) is None)
+        await second.set(value=3)
+        again, link = await here.link(one)
+        assert again not in (one, other) and link.get("value") == 1
+        await second.close()
+        _, second = await here.link(other)
+        assert second.get("value") == 3
 
 
-def test_a_crash_ends_one_page() -> None:
-    async def story() -> None:
-        async with place() as here:
-            (one, link), (other, second) = await here.link(), await here.link()
-            os.kill(link.get("pid"), signal.SIGSEGV)
-            await until(lambda: link.socket.closed)
-            await until(lambda: here.site.sessions.get(one) is None)
-            await second.set(value=3)
-            again, link = await here.link(one)
-            assert again not in (one, other) and link.get("value") == 1
-            await second.close()
-            _, second = await here.link(other)
-            assert second.get("value") == 3
-
-    run(story())
+async def test_sessions_outlive_what_they_were_forked_from() -> None:
+    async with place() as here:
+        one, link = await here.link()
+        forked = Path(f"/proc/{link.get('pid')}/stat").read_text(encoding="utf-8")
+        os.kill(int(forked.split()[3]), signal.SIGKILL)
+        other, second = await here.link()
+        await link.set(value=5)
+        assert other != one and second.get("value") == 1
+        pids = [each.get("pid") for each in (link, second)]
+    await until(lambda: not any(map(lives, pids)))
 
 
-def test_sessions_outlive_what_they_were_forked_from() -> None:
-    async def story() -> None:
-        async with place() as here:
-            one, link = await here.link()
-            forked = Path(f"/proc/{link.get('pid')}/stat").read_text(encoding="utf-8")
-            os.kill(int(forked.split()[3]), signal.SIGKILL)
-            other, second = await here.link()
-            await link.set(value=5)
-            assert other != one and second.get("value") == 1
-            pids = [each.get("pid") for each in (link, second)]
-        await until(lambda: not any(map(lives, pids)))
-
-    run(story())
-
-
-def test_files_are_handed_on() -> None:
-    async def story() -> None:
-        async with place() as here:
-            _, link = await here.link()
-            _, other = await here.link()
-            address = here.bare + link.get("file")
-            async with here.http.get(address) as answer:
-                assert (answer.status, await answer.text()) == (200, "words")
-                assert answer.headers["Content-Disposition"].endswith("filename*=UTF-8''%C3%A4.txt")
-                assert answer.headers["Cache-Control"] == "no-store"
-                assert "frame-ancestors" in answer.headers["Content-Security-Policy"]
-            async with here.http.get(address.replace("a%20b", "b")) as answer:
-                assert answer.status == 404
-            sends = here.bare + link.get("sends")
-            async with here.http.post(f"{sends}?name=a", data=b"1234") as answer:
-                assert answer.status == 200
-            await link.until(lambda: link.get("value") == 4)
-            assert other.get("value") == 1
-            large = io.BytesIO(bytes(3_000_000))
-            async with here.http.post(f"{sends}?name=%C3%A4", data=large) as answer:
-                assert (answer.status, await answer.text()) == (400, "ä is too large")
-
-    run(story())
+async def test_files_are_handed_on() -> None:
+    async with place() as here:
+        _, link = await here.link()
+        _, other = await here.link()
+        address = here.bare + link.get("file")
+        async with here.http.get(address) as answer:
+            assert (answer.status, await answer.text()) == (200, "words")
+            assert answer.headers["Content-Disposition"].endswith("filename*=UTF-8''%C3%A4.txt")
+            assert answer.headers["Cache-Control"] == "no-store"
+            assert "frame-ancestors" in answer.headers["Content-Security-Policy"]
+        async with here.http.get(address.replace("a%20b", "b")) as answer:
+            assert answer.status == 404
+        sends = here.bare + link.get("sends")
+        async with here.http.post(f"{sends}?name=a", data=b"1234") as answer:
+            assert answer.status == 200
+        await link.until(lambda: link.get("value") == 4)
+        assert other.get("value") == 1
+        large = io.BytesIO(bytes(3_000_000))
+        async with here.http.post(f"{sends}?name=%C3%A4", data=large) as answer:
+            assert (answer.status, await answer.text()) == (400, "ä is too large")
 
 
-def test_what_cannot_be_opened_is_told() -> None:
-    async def story() -> None:
-        with pytest.raises(FieldError, match=r"^the mesh is wrong$"):
-            async with place(fault="the mesh is wrong"):
-                pass
-
-    run(story())
+async def test_what_cannot_be_opened_is_told() -> None:
+    with pytest.raises(FieldError, match=r"^the mesh is wrong$"):
+        async with place(fault="the mesh is wrong"):
+            pass

@@ -5,7 +5,7 @@ import gc
 import signal
 import threading
 import weakref
-from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
 from itertools import product
 from pathlib import Path
@@ -95,123 +95,110 @@ async def place(
             await site.stop()
 
 
-def run(story: Coroutine[Any, Any, None]) -> None:
-    """Run a story, and see that nothing of it is left."""
+@pytest.fixture(autouse=True)
+def _no_server_is_left() -> Iterator[None]:
     before = set(AVAILABLE_SERVERS)
-    asyncio.run(story)
+    yield
     assert set(AVAILABLE_SERVERS) == before
 
 
-def test_each_page_has_a_state_of_its_own_and_comes_back_to_it() -> None:
-    async def story() -> None:
-        async with place() as here:
-            one, other = await here.token(), await here.token()
-            assert one != other
-            link, second = await here.link(one), await here.link(other)
-            await link.set(value=7)
-            assert here.app(one).server.state.flow0_value == 7
-            assert here.app(other).server.state.flow0_value == 1
-            assert here.app(one).stream.watched() is True
-            await link.close()
-            await until(lambda: not here.app(one).stream.watched())
-            assert await here.token(one) == one
-            link = await here.link(one)
-            assert link.get("value") == 7
-            # A second connection to a session ends the first.
-            newer = await here.link(one)
-            await until(lambda: link.socket.closed)
-            assert await newer.call("trame.state.get")
-            for each in (link, newer, second):
-                await each.close()
-
-    run(story())
+async def test_each_page_has_a_state_of_its_own_and_comes_back_to_it() -> None:
+    async with place() as here:
+        one, other = await here.token(), await here.token()
+        assert one != other
+        link, second = await here.link(one), await here.link(other)
+        await link.set(value=7)
+        assert here.app(one).server.state.flow0_value == 7
+        assert here.app(other).server.state.flow0_value == 1
+        assert here.app(one).stream.watched() is True
+        await link.close()
+        await until(lambda: not here.app(one).stream.watched())
+        assert await here.token(one) == one
+        link = await here.link(one)
+        assert link.get("value") == 7
+        # A second connection to a session ends the first.
+        newer = await here.link(one)
+        await until(lambda: link.socket.closed)
+        assert await newer.call("trame.state.get")
+        for each in (link, newer, second):
+            await each.close()
 
 
-def test_a_copied_tab_gets_a_session_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def story() -> None:
-        async with place() as here:
-            token = await here.token()
-            link = await here.link(token)
-            monkeypatch.setattr(sessions, "RECONNECT_WAIT_S", 0.0)
-            assert await here.token(token) != token
-            # A page that is loaded again asks before the end of its old connection is known.
-            monkeypatch.setattr(sessions, "RECONNECT_WAIT_S", PATIENCE_S)
-            asking = asyncio.create_task(here.token(token))
-            await link.close()
-            assert await asking == token
-
-    run(story())
+async def test_a_copied_tab_gets_a_session_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with place() as here:
+        token = await here.token()
+        link = await here.link(token)
+        monkeypatch.setattr(sessions, "RECONNECT_WAIT_S", 0.0)
+        assert await here.token(token) != token
+        # A page that is loaded again asks before the end of its old connection is known.
+        monkeypatch.setattr(sessions, "RECONNECT_WAIT_S", PATIENCE_S)
+        asking = asyncio.create_task(here.token(token))
+        await link.close()
+        assert await asking == token
 
 
-def test_the_end_waits_for_no_page_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_end_waits_for_no_page_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sessions, "CLOSE_S", PATIENCE_S)
 
-    async def story() -> None:
-        async with place() as here:
-            asleep = []
-            for _ in range(3):
-                address = f"{here.bare}page/{await here.token()}/ws"
-                asleep.append(await here.http.ws_connect(address, autoclose=False))
-            ending = asyncio.create_task(here.site.sessions.close())
-            for socket in asleep:
-                message = await socket.receive(timeout=PATIENCE_S / 2)
-                assert message.type == aiohttp.WSMsgType.CLOSE
-            for socket in asleep:
-                await socket.close()
-            await ending
-
-    run(story())
+    async with place() as here:
+        asleep = []
+        for _ in range(3):
+            address = f"{here.bare}page/{await here.token()}/ws"
+            asleep.append(await here.http.ws_connect(address, autoclose=False))
+        ending = asyncio.create_task(here.site.sessions.close())
+        for socket in asleep:
+            message = await socket.receive(timeout=PATIENCE_S / 2)
+            assert message.type == aiohttp.WSMsgType.CLOSE
+        for socket in asleep:
+            await socket.close()
+        await ending
 
 
-def test_the_page_that_is_one_too_many_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def story() -> None:
-        async with place(limit=2) as here:
-            # Many who come at once are no more than the limit.
-            answers = await asyncio.gather(*(here.enter() for _ in range(6)))
-            one, other = (said["session"] for status, said in answers if status == 200)
-            assert len(here.site.sessions) == 2
-            link = await here.link(one)
-            status, said = await here.enter()
-            assert status == 503 and "room for 2 pages at a time" in said["words"]
-            # Who has been away for a while makes room; who is there does not.
-            monkeypatch.setattr(sessions, "REPLACE_AFTER_S", 0.0)
-            gone = here.app(other)
-            assert await here.token() not in (one, other)
-            assert gone.closed and not here.app(one).closed
-            await link.close()
-
-    run(story())
+async def test_the_page_that_is_one_too_many_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with place(limit=2) as here:
+        # Many who come at once are no more than the limit.
+        answers = await asyncio.gather(*(here.enter() for _ in range(6)))
+        one, other = (said["session"] for status, said in answers if status == 200)
+        assert len(here.site.sessions) == 2
+        link = await here.link(one)
+        status, said = await here.enter()
+        assert status == 503 and "room for 2 pages at a time" in said["words"]
+        # Who has been away for a while makes room; who is there does not.
+        monkeypatch.setattr(sessions, "REPLACE_AFTER_S", 0.0)
+        gone = here.app(other)
+        assert await here.token() not in (one, other)
+        assert gone.closed and not here.app(one).closed
+        await link.close()
 
 
-def test_an_idle_session_ends_and_one_in_use_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_an_idle_session_ends_and_one_in_use_does_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     now = [0.0]
     monkeypatch.setattr(sessions, "time", SimpleNamespace(monotonic=lambda: now[0]))
 
-    async def story() -> None:
-        async with place(idle=0.004) as here:
-            used, idle = await here.token(), await here.token()
-            link = await here.link(used)
-            app = here.app(idle)
-            # A page that loads slowly finds its session.
-            now[0] = sessions.LOADING_S
-            session = here.site.sessions.get(idle)
-            assert session is not None and not session.is_idle(0.24)
-            await (await here.link(idle)).close()
-            await until(lambda: not session.connected)
-            assert not session.is_idle(0.24)
-            now[0] += 0.25
-            await until(lambda: app.closed)
-            assert here.site.sessions.get(idle) is None and not here.app(used).closed
-            await until(lambda: app.server.name not in AVAILABLE_SERVERS)
-            with pytest.raises(aiohttp.WSServerHandshakeError):
-                await here.link(idle)
-            assert await here.token(idle) != idle
-            await link.close()
-
-    run(story())
+    async with place(idle=0.004) as here:
+        used, idle = await here.token(), await here.token()
+        link = await here.link(used)
+        app = here.app(idle)
+        # A page that loads slowly finds its session.
+        now[0] = sessions.LOADING_S
+        session = here.site.sessions.get(idle)
+        assert session is not None and not session.is_idle(0.24)
+        await (await here.link(idle)).close()
+        await until(lambda: not session.connected)
+        assert not session.is_idle(0.24)
+        now[0] += 0.25
+        await until(lambda: app.closed)
+        assert here.site.sessions.get(idle) is None and not here.app(used).closed
+        await until(lambda: app.server.name not in AVAILABLE_SERVERS)
+        with pytest.raises(aiohttp.WSServerHandshakeError):
+            await here.link(idle)
+        assert await here.token(idle) != idle
+        await link.close()
 
 
-def test_what_cannot_be_made_is_told_and_leaves_nothing() -> None:
+async def test_what_cannot_be_made_is_told_and_leaves_nothing() -> None:
     def broken(server: Any) -> Any:
         if len(made) == 1:
             made.append(server)
@@ -222,185 +209,161 @@ def test_what_cannot_be_made_is_told_and_leaves_nothing() -> None:
 
     made: list[Any] = []
 
-    async def story() -> None:
-        async with place(broken) as here:
-            await here.token()
-            status, said = await here.enter()
-            assert status == 500 and "the file is gone" in said["words"]
-            assert made[1].name not in AVAILABLE_SERVERS
-            await here.token()
-
-    run(story())
+    async with place(broken) as here:
+        await here.token()
+        status, said = await here.enter()
+        assert status == 500 and "the file is gone" in said["words"]
+        assert made[1].name not in AVAILABLE_SERVERS
+        await here.token()
 
 
-def test_what_fails_first_ends_the_start() -> None:
+async def test_what_fails_first_ends_the_start() -> None:
     def broken(server: Any) -> Any:
         msg = "the mesh is wrong"
         raise FieldError(msg)
 
-    async def story() -> None:
-        with pytest.raises(FieldError, match="mesh is wrong"):
-            async with place(broken):
-                pass
-
-    run(story())
+    with pytest.raises(FieldError, match="mesh is wrong"):
+        async with place(broken):
+            pass
 
 
-def test_without_the_secret_there_is_no_session() -> None:
-    async def story() -> None:
-        async with place() as here:
-            token = await here.token()
-            secrets = ("", "wrong", "wslink-secret", "sécret")
-            for secret, known in product(secrets, (None, token)):
-                asked = {"secret": secret, "session": known}
-                async with here.http.post(f"{here.bare}flowtex/session", json=asked) as answer:
-                    assert answer.status == 403
-                    assert "secret included" in (await answer.json())["words"]
-            assert len(here.site.sessions) == 1
-            for secret in secrets:
-                with pytest.raises(RuntimeError, match="Authentication failed"):
-                    await Link.open(here.http, here.bare, token, secret)
-
-    run(story())
+async def test_without_the_secret_there_is_no_session() -> None:
+    async with place() as here:
+        token = await here.token()
+        secrets = ("", "wrong", "wslink-secret", "sécret")
+        for secret, known in product(secrets, (None, token)):
+            asked = {"secret": secret, "session": known}
+            async with here.http.post(f"{here.bare}flowtex/session", json=asked) as answer:
+                assert answer.status == 403
+                assert "secret included" in (await answer.json())["words"]
+        assert len(here.site.sessions) == 1
+        for secret in secrets:
+            with pytest.raises(RuntimeError, match="Authentication failed"):
+                await Link.open(here.http, here.bare, token, secret)
 
 
-def test_what_is_no_request_is_refused_as_such(caplog: pytest.LogCaptureFixture) -> None:
-    async def story() -> None:
-        async with place() as here:
-            for body in (
-                *(b"", b"[", b"[]", b"{}", b"3", b"\xff\xfe", b"[" * 4000, b'{"a":' * 700),
-                *(b'{"secret": null}', b'{"secret": 3}', b'{"secret": ["a"]}', b'{"secret": NaN}'),
-                b'{"secret": "\\ud800"}',
-                f'{{"secret": "{here.secret}", "session": 3}}'.encode(),
-                f'{{"secret": "{here.secret}", "session": "\\udfff"}}'.encode(),
-            ):
-                async with here.http.post(f"{here.bare}flowtex/session", data=body) as answer:
-                    assert answer.status == 400, body
-                    assert "no request" in (await answer.json())["words"]
-            for path in (
-                "page/%ED%A0%80/ws",
-                "flowtex/%ED%A0%80/%FF",
-                "page/%00/index.html",
-                "%2e",
-                "x" * 5000,
-            ):
-                async with here.http.get(f"{here.bare}{path}") as answer:
-                    assert answer.status in (200, 404)
-            # Files of the page are served, and no others.
-            for path, status in (
-                ("vue.global.js", 200),
-                ("..%2F..%2F__init__.py", 404),
-                ("__init__.py", 404),
-            ):
-                async with here.http.get(here.bare + path) as answer:
-                    assert answer.status == status, path
-            await here.token()
-
-    run(story())
+async def test_what_is_no_request_is_refused_as_such(caplog: pytest.LogCaptureFixture) -> None:
+    async with place() as here:
+        for body in (
+            *(b"", b"[", b"[]", b"{}", b"3", b"\xff\xfe", b"[" * 4000, b'{"a":' * 700),
+            *(b'{"secret": null}', b'{"secret": 3}', b'{"secret": ["a"]}', b'{"secret": NaN}'),
+            b'{"secret": "\\ud800"}',
+            f'{{"secret": "{here.secret}", "session": 3}}'.encode(),
+            f'{{"secret": "{here.secret}", "session": "\\udfff"}}'.encode(),
+        ):
+            async with here.http.post(f"{here.bare}flowtex/session", data=body) as answer:
+                assert answer.status == 400, body
+                assert "no request" in (await answer.json())["words"]
+        for path in (
+            "page/%ED%A0%80/ws",
+            "flowtex/%ED%A0%80/%FF",
+            "page/%00/index.html",
+            "%2e",
+            "x" * 5000,
+        ):
+            async with here.http.get(f"{here.bare}{path}") as answer:
+                assert answer.status in (200, 404)
+        # Files of the page are served, and no others.
+        for path, status in (
+            ("vue.global.js", 200),
+            ("..%2F..%2F__init__.py", 404),
+            ("__init__.py", 404),
+        ):
+            async with here.http.get(here.bare + path) as answer:
+                assert answer.status == status, path
+        await here.token()
     assert not caplog.records
 
 
-def test_a_page_cannot_add_to_the_state_and_learns_of_no_traceback(
+async def test_a_page_cannot_add_to_the_state_and_learns_of_no_traceback(
     caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    async def story() -> None:
-        async with place() as here:
-            token = await here.token()
-            link, server = await here.link(token), here.app(token).server
-            changes = [{"key": key, "value": 9} for key in ("flow0_value", "new", "__class__")]
-            await link.call("trame.state.update", changes)
-            assert server.state.flow0_value == 9 and not server.state.has("new")
-            for method in ("application.exit", "application.exit.later", "nothing"):
-                with pytest.raises(RuntimeError, match="Unregistered method called"):
-                    await link.call(method, "x" * 100)
-            server.controller.trigger("broken")(lambda: dict[str, int]()["secret"])
-            with pytest.raises(RuntimeError, match="Exception raised"):
-                await link.call("trame.trigger", "broken", [], {})
-            assert await link.call("trame.state.get")
-            # What is not packed though it says so is no fault of the program.
-            session, packed = f"{here.bare}flowtex/session", {"Content-Encoding": "gzip"}
-            async with here.http.post(session, data=b"abcd", headers=packed) as answer:
-                assert answer.status == 400
-            await link.socket.send_str("{}")  # no page of ours does that, and it is over
-            await until(lambda: link.socket.closed)
-            await link.close()
-
-    run(story())
+    async with place() as here:
+        token = await here.token()
+        link, server = await here.link(token), here.app(token).server
+        changes = [{"key": key, "value": 9} for key in ("flow0_value", "new", "__class__")]
+        await link.call("trame.state.update", changes)
+        assert server.state.flow0_value == 9 and not server.state.has("new")
+        for method in ("application.exit", "application.exit.later", "nothing"):
+            with pytest.raises(RuntimeError, match="Unregistered method called"):
+                await link.call(method, "x" * 100)
+        server.controller.trigger("broken")(lambda: dict[str, int]()["secret"])
+        with pytest.raises(RuntimeError, match="Exception raised"):
+            await link.call("trame.trigger", "broken", [], {})
+        assert await link.call("trame.state.get")
+        # What is not packed though it says so is no fault of the program.
+        session, packed = f"{here.bare}flowtex/session", {"Content-Encoding": "gzip"}
+        async with here.http.post(session, data=b"abcd", headers=packed) as answer:
+            assert answer.status == 400
+        await link.socket.send_str("{}")  # no page of ours does that, and it is over
+        await until(lambda: link.socket.closed)
+        await link.close()
     assert caplog.text.count("KeyError: 'secret'") == 1
     assert "No area" not in capfd.readouterr().out
 
 
-def test_other_sites_are_refused_and_proxies_are_known() -> None:
-    async def story() -> None:
-        async with place() as here:
-            token = await here.token()
-            asked = {"secret": here.secret}
-            evil = {"Origin": "http://evil.example"}
-            async with here.http.post(
-                f"{here.bare}flowtex/session", json=asked, headers=evil
-            ) as answer:
-                assert answer.status == 403
-            with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
-                await here.http.ws_connect(f"{here.bare}page/{token}/ws", headers=evil)
-            assert refused.value.status == 403
-            # A page of another site that would set the header is asked about it first.
-            async with here.http.options(f"{here.bare}flowtex/session", headers=evil) as answer:
-                assert answer.status == 403
-            proxied = {"Origin": "https://hub.example", "X-Forwarded-Host": "hub.example"}
-            async with here.http.ws_connect(
-                f"{here.bare}page/{token}/ws", headers=proxied
-            ) as socket:
-                assert not socket.closed
-            async with here.http.get(here.bare) as answer:
-                policy = answer.headers["Content-Security-Policy"]
-                assert "default-src 'self'" in policy and "frame-ancestors 'self'" in policy
-                assert answer.headers["Referrer-Policy"] == "no-referrer"
-
-    run(story())
+async def test_other_sites_are_refused_and_proxies_are_known() -> None:
+    async with place() as here:
+        token = await here.token()
+        asked = {"secret": here.secret}
+        evil = {"Origin": "http://evil.example"}
+        async with here.http.post(
+            f"{here.bare}flowtex/session", json=asked, headers=evil
+        ) as answer:
+            assert answer.status == 403
+        with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+            await here.http.ws_connect(f"{here.bare}page/{token}/ws", headers=evil)
+        assert refused.value.status == 403
+        # A page of another site that would set the header is asked about it first.
+        async with here.http.options(f"{here.bare}flowtex/session", headers=evil) as answer:
+            assert answer.status == 403
+        proxied = {"Origin": "https://hub.example", "X-Forwarded-Host": "hub.example"}
+        async with here.http.ws_connect(f"{here.bare}page/{token}/ws", headers=proxied) as socket:
+            assert not socket.closed
+        async with here.http.get(here.bare) as answer:
+            policy = answer.headers["Content-Security-Policy"]
+            assert "default-src 'self'" in policy and "frame-ancestors 'self'" in policy
+            assert answer.headers["Referrer-Policy"] == "no-referrer"
 
 
-def test_files_are_handed_out_to_who_has_their_address(tmp_path: Path) -> None:
+async def test_files_are_handed_out_to_who_has_their_address(tmp_path: Path) -> None:
     film = tmp_path / "a.mp4"
     film.write_bytes(b"film")
 
     async def later() -> Any:
         return b"later", "text/plain", None
 
-    async def story() -> None:
-        async with place() as here:
-            routes = [Routes.of(here.app(await here.token()).server) for _ in range(2)]
-            address = routes[0].give("a b.png", lambda: (b"png", "image/png", 'Düse "1".png'))
-            async with here.http.get(here.bare + address) as answer:
-                assert (answer.status, await answer.read()) == (200, b"png")
-                said = answer.headers
-                assert said["Content-Type"] == "image/png"
-                assert said["Cache-Control"] == "no-store"
-                assert said["X-Content-Type-Options"] == "nosniff"
-                assert said["Content-Disposition"] == (
-                    'attachment; filename="D?se _1_.png"; '
-                    "filename*=UTF-8''D%C3%BCse%20%221%22.png"
-                )
-            for give, body in ((later, b"later"), (lambda: (film, "video/mp4", "a.mp4"), b"film")):
-                async with here.http.get(here.bare + routes[0].give("next", give)) as answer:
-                    assert await answer.read() == body
-                    assert answer.headers["Cache-Control"] == "no-store"
-            for wrong in (
-                address.replace(routes[0].token, routes[1].token),
-                address.replace("a%20b", "b"),
-                f"flowtex/{routes[0].token}/..%2Fnext",
-            ):
-                async with here.http.get(here.bare + wrong) as answer:
-                    assert answer.status == 404
-            routes[0].withdraw("next")
-            async with here.http.get(f"{here.bare}flowtex/{routes[0].token}/next") as answer:
+    async with place() as here:
+        routes = [Routes.of(here.app(await here.token()).server) for _ in range(2)]
+        address = routes[0].give("a b.png", lambda: (b"png", "image/png", 'Düse "1".png'))
+        async with here.http.get(here.bare + address) as answer:
+            assert (answer.status, await answer.read()) == (200, b"png")
+            said = answer.headers
+            assert said["Content-Type"] == "image/png"
+            assert said["Cache-Control"] == "no-store"
+            assert said["X-Content-Type-Options"] == "nosniff"
+            assert said["Content-Disposition"] == (
+                "attachment; filename=\"D?se _1_.png\"; filename*=UTF-8''D%C3%BCse%20%221%22.png"
+            )
+        for give, body in ((later, b"later"), (lambda: (film, "video/mp4", "a.mp4"), b"film")):
+            async with here.http.get(here.bare + routes[0].give("next", give)) as answer:
+                assert await answer.read() == body
+                assert answer.headers["Cache-Control"] == "no-store"
+        for wrong in (
+            address.replace(routes[0].token, routes[1].token),
+            address.replace("a%20b", "b"),
+            f"flowtex/{routes[0].token}/..%2Fnext",
+        ):
+            async with here.http.get(here.bare + wrong) as answer:
                 assert answer.status == 404
-            await here.site.sessions.end(next(iter(here.site.sessions)).token)
-            async with here.http.get(here.bare + address) as answer:
-                assert answer.status == 404
-            with pytest.raises(ValueError, match="expected one part"):
-                routes[1].give("../a", lambda: (b"", "", None))
-
-    run(story())
+        routes[0].withdraw("next")
+        async with here.http.get(f"{here.bare}flowtex/{routes[0].token}/next") as answer:
+            assert answer.status == 404
+        await here.site.sessions.end(next(iter(here.site.sessions)).token)
+        async with here.http.get(here.bare + address) as answer:
+            assert answer.status == 404
+        with pytest.raises(ValueError, match="expected one part"):
+            routes[1].give("../a", lambda: (b"", "", None))
 
 
 @pytest.mark.usefixtures("opengl")
@@ -436,7 +399,7 @@ def test_sessions_that_end_leave_nothing(monkeypatch: pytest.MonkeyPatch) -> Non
             await here.site.sessions.end(token)
 
     threads = set(threading.enumerate())
-    run(story())
+    asyncio.run(story())
     gc.collect()
     assert len(made) == 4 * count and alive == [0] * count
     assert [ref() for ref in made if ref() is not None] == []
