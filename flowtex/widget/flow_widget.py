@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import html
 import sys
 import threading
 import uuid
 from collections.abc import Callable
+from contextlib import suppress
+from contextvars import copy_context
 from pathlib import Path
 from typing import Any
 
@@ -30,10 +33,38 @@ from flowtex.web.assets import client_module
 from flowtex.web.export import PREVIEW, page_text, write_page
 from flowtex.web.view import browser_options, checked_axes, web_views
 from flowtex.widget.display import Displayed
-from flowtex.widget.host import Host
 from flowtex.widget.panel import make_panel
 from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait, TraitValueError
 from flowtex.widget.views import HEADERS, Views
+
+
+class Host:
+    """The session in which it was made, as that of calls from any thread.
+
+    Solara and Shiny know by the context of a call which session it is for, and Shiny sends nothing
+    before its next flush.
+    """
+
+    def __init__(self) -> None:
+        self._context = copy_context()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        with suppress(RuntimeError):
+            self._loop = asyncio.get_running_loop()
+
+    def call(self, function: Callable[..., Any], *arguments: Any) -> None:
+        """Call a function in the session, and have sent what it sends."""
+        # A context cannot be entered twice at one time.
+        self._context.copy().run(function, *arguments)
+        reactive = sys.modules.get("shiny.reactive")
+        if reactive is None or self._loop is None or self._loop.is_closed():
+            return
+
+        async def flush() -> None:
+            async with reactive.lock():
+                await reactive.flush()
+
+        asyncio.run_coroutine_threadsafe(flush(), self._loop)
+
 
 SLACK = 1e-9  #: Share of the duration by which a time may lie outside it, for rounding's sake.
 

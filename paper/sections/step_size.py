@@ -10,7 +10,7 @@ import numpy as np
 from flowtex import quality
 from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Fragments
-from flowtex.rendering.cpu.paper_noise import PaperImages, PaperNoise
+from flowtex.rendering.cpu.noise import PaperImages, PaperNoise
 from flowtex.rendering.cpu.texture import LookupMaker
 from flowtex.textures import PaperTextures
 from paper import measures

@@ -11,7 +11,7 @@ from flowtex.examples import airfoil_field, cylinder_field, double_gyre_field
 from flowtex.field.grids.surface import GridSurface
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, SurfaceGeometry, TextureSet
-from flowtex.textures.displacements import NodeDisplacements
+from flowtex.textures.geometry import NodeDisplacements
 from flowtex.trace import SliceStore, TraceSlices, trace
 
 

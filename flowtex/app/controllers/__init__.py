@@ -6,12 +6,56 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from flowtex.app.controllers.appearance import Appearance
-from flowtex.app.controllers.context import Context
+from flowtex.app.controllers.context import Context, Controller
 from flowtex.app.controllers.data import Data
 from flowtex.app.controllers.file_beside import FileBeside
 from flowtex.app.controllers.library import Choice
 from flowtex.app.controllers.sharing import Sharing
-from flowtex.app.controllers.viewpoint import Viewpoint
+from flowtex.app.server.validation import name_among
+
+#: Directions from which a surface can be looked at, and what is up then.
+VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
+    "from +x": ((1, 0, 0), (0, 0, 1)),
+    "from -x": ((-1, 0, 0), (0, 0, 1)),
+    "from +y": ((0, 1, 0), (0, 0, 1)),
+    "from -y": ((0, -1, 0), (0, 0, 1)),
+    "from +z": ((0, 0, 1), (0, 1, 0)),
+    "from -z": ((0, 0, -1), (0, 1, 0)),
+}
+
+
+class Viewpoint(Controller):
+    """The camera and the time of a page."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self.state.set(views=self.views)
+        context.field_changed.connect(lambda: self.state.set(views=self.views))
+
+    @property
+    def views(self) -> list[str]:
+        """Directions that make sense: all of them for a surface that is not flat."""
+        return [] if self.viewport.flat else list(VIEWS)
+
+    def look_from(self, name: Any) -> None:
+        """Look at the whole of a curved surface from a side."""
+        if name_among(name, VIEWS):
+            toward, up = VIEWS[name]
+            self.viewport.home(toward=toward, up=up)
+            self.area.moved()
+
+    def describe(self) -> dict[str, Any]:
+        """Return the camera, and the time where it makes a difference."""
+        time = {} if self.viewport.field.steady else {"time": self.area.player.time}
+        return {"camera": self.viewport.camera.to_dict(), **time}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Look from a saved camera, at a saved time."""
+        if saved.get("camera"):
+            self.area.look(saved["camera"])
+        if "time" in saved and not self.viewport.field.steady:
+            self.area.player.go_to(float(saved["time"]))
+
 
 __all__ = ["Controllers"]
 

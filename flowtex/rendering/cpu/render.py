@@ -16,8 +16,7 @@ from flowtex.errors import FieldError
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import level_colour, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips
-from flowtex.rendering.cpu.noise import SpaceNoise
-from flowtex.rendering.cpu.paper_noise import PaperImages, PaperNoise, PaperPicture
+from flowtex.rendering.cpu.noise import PaperImages, PaperNoise, PaperPicture, SpaceNoise
 from flowtex.rendering.cpu.path import AxisSlices, Slices, TriangleSlices
 from flowtex.rendering.cpu.raster import cover
 from flowtex.rendering.cpu.shade import paint, shade
