@@ -2,7 +2,8 @@
 // the trees, and flowtex/rendering/webgl/formula.py what else comes. As there is no finest level of a
 // formula, the source has tiles of every level, each a grid of nodes in the plane.
 
-import type { FormulaHeader, Header, NamedPart, Settings, TileHeader, Tree } from "./protocol.ts";
+import { fixedPoints, separatrices, type Pair } from "./fixedpoints.ts";
+import { LINE, type FormulaHeader, type Header, type MarkKind, type NamedPart, type Settings, type TileHeader, type Tree } from "./protocol.ts";
 import { nameOf, type PlaceOf, type TileKey } from "./tilechoice.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
 
@@ -15,6 +16,8 @@ const PARAMETER = "formula.";
 const [HALO, BEFORE] = [36, 8];
 /** Mip levels of a tile, numbers of a block's place, and one in half precision. */
 const [LEVELS, PLACE, HALF_ONE] = [3, 5, 0x3c00];
+/** Saddles of which there are lines: as many as can be asked for. */
+const MOST_SADDLES = 50;
 /** Share of the cells of a path that is followed in a tile: rounding then asks for no longer lag. */
 const PATH_SHARE = 0.99;
 
@@ -80,6 +83,21 @@ class Grid {
     return line === cells ? high : low + ((high - low) * line) / cells;
   }
 
+  get ends(): FormulaHeader["ends"] {
+    return this.formula.ends;
+  }
+
+  /** What computes the rates at a time. */
+  rate(time: number, parameters: Values): (x: number, y: number) => Pair {
+    const values: Values = { ...parameters, t: time };
+    const [xName, yName] = this.formula.names;
+    return (x, y) => {
+      values[xName] = x;
+      values[yName] = y;
+      return [this.rates[0](values), this.rates[1](values)];
+    };
+  }
+
   /** How many times a level is finer than the root. */
   doublings(level: number): number {
     return (this.header.pyramid?.depth ?? 0) - level;
@@ -92,8 +110,13 @@ class Grid {
 
   /** Where a node is in the surface's frame. */
   local(level: number, row: number, column: number): Vector {
+    return this.localOf([this.at(1, level, column), this.at(0, level, row)]);
+  }
+
+  /** The same of a place in the plane. */
+  localOf([x, y]: Pair): Vector {
     const { center, frame } = this.header.geometry;
-    return toFrame(frame, subtract([this.at(1, level, column), this.at(0, level, row), 0], center as Vector));
+    return toFrame(frame, subtract([x, y, 0], center as Vector));
   }
 
   /** The flow at the nodes of a window, as Python hands it over, and the speed. */
@@ -161,6 +184,7 @@ export function placesOf(header: Header): PlaceOf | null {
 /** Gives what a formula is at the nodes of the whole, and of tiles: a Source. */
 export class FormulaSource {
   readonly hasSteps = true;
+  readonly hasMarks = true;
   readonly atOnce = 2;
   private readonly header: Header;
   private readonly grid: Grid;
@@ -183,8 +207,30 @@ export class FormulaSource {
     return before !== this.state;
   }
 
-  readonly load = (key: TileKey | null, steps: number[]) =>
-    Promise.resolve(key ? this.tile(key, steps) : this.whole(steps));
+  readonly load = (key: TileKey | null, steps: number[], _signal?: unknown, _has?: unknown, mark?: MarkKind) => {
+    if (mark) return Promise.resolve(steps.map((step) => this.marks(mark, step)));
+    return Promise.resolve(key ? this.tile(key, steps) : this.whole(steps));
+  };
+
+  /** Fixed points, or separatrices, at a step; flowtex/rendering/webgl/marks.py says in which form. */
+  private marks(kind: MarkKind, step: number): NamedPart {
+    const { grid, header } = this;
+    const rate = grid.rate(header.slices.times[step], this.parameters);
+    const points = fixedPoints(rate, grid.ends);
+    const kinds = header.structure?.kinds.map(({ name }) => name) ?? [];
+    const row = (at: Pair, number: number) => [...grid.localOf(at), number];
+    const rows: number[][] = [];
+    if (kind === "critical") rows.push(...points.map((point) => row(point.at, kinds.indexOf(point.kind))));
+    else {
+      const saddles = points.filter(({ ways }) => ways).slice(0, MOST_SADDLES);
+      separatrices(rate, grid.ends, points, saddles).forEach(({ path, orbit, saddle, leaves }, n) => {
+        const number = LINE.saddle * saddles.indexOf(saddle) + LINE.leaving * Number(leaves) + (n % 2);
+        rows.push(...path.map((at) => row(at, number)));
+        rows.push(...(orbit ?? []).map((at) => row(at, number + LINE.orbit)));
+      });
+    }
+    return this.named(`${kind}/${step}`, { data: Float32Array.from(rows.flat()), shape: [rows.length, 4] });
+  }
 
   /** The flow and the values of the whole at some steps. */
   private whole(steps: number[]): NamedPart[] {

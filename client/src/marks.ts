@@ -6,12 +6,10 @@ import { projection, type Camera } from "./camera.ts";
 import type { Graphics } from "./context.ts";
 import type { EarthView } from "./earthlayer.ts";
 import type { Program } from "./programs.ts";
-import { MARKS, type Header, type MarkKind, type Part, type Settings, type StructureHeader } from "./protocol.ts";
+import { LINE, MARKS, type Header, type MarkKind, type Part, type Settings, type StructureHeader } from "./protocol.ts";
 import type { Moment } from "./uniforms.ts";
 import { add, clamp, fromFrame, scale, subtract, toFrame, type Vector } from "./vectors.ts";
 
-/** How the number of a line tells of it: as in Python. */
-const [SADDLE, ORBIT, LEAVING] = [8, 4, 2];
 /** How much nearer than the surface lines are, and those above them, as a share of the distance. */
 const [NEARER, ABOVE_SHARE] = [1e-2, 0.2];
 /** Numbers of a point, and bytes of both ends of a piece. */
@@ -44,8 +42,8 @@ export function shapesOf(points: ArrayLike<number>, lines: ArrayLike<number>, mo
   let last = NaN;
   for (let n = 0; n < lines.length / ROW; n += 1) {
     const number = lines[ROW * n + 3];
-    if (number >= SADDLE * most.saddles) continue;
-    const turns = number & ORBIT ? "closed orbit" : number & LEAVING ? "leaving" : "coming";
+    if (number >= LINE.saddle * most.saddles) continue;
+    const turns = number & LINE.orbit ? "closed orbit" : number & LINE.leaving ? "leaving" : "coming";
     if (number !== last) shapes.lines[turns].push([]);
     last = number;
     const path = shapes.lines[turns];

@@ -165,6 +165,9 @@ export interface BodiesHeader {
 export const MARKS = { critical: "critical_points", separatrices: "separatrices" } as const;
 export type MarkKind = keyof typeof MARKS;
 
+/** How the number of a line tells of it: as in Python. */
+export const LINE = { saddle: 8, orbit: 4, leaving: 2 };
+
 /** What there is of critical points and separatrices, and how they look: flowtex/rendering/webgl/marks.py. */
 export interface StructureHeader {
   /** Kinds of parts that can be had. */

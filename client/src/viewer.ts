@@ -220,7 +220,7 @@ export class Viewer implements User, View {
 
   /** Have the flow computed anew. */
   private renew(): void {
-    this.held.clear((name) => /^(flow|scalars)\//.test(name));
+    this.held.clear((name) => /^(flow|scalars|critical|separatrices)\//.test(name));
     this.requests.stop();
     if (this.header) this.painter.open?.(this.header);
   }

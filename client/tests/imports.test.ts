@@ -13,6 +13,7 @@ const LAYERS = [
   "protocol",
   "uniforms quality",
   "layers noise poles programs mesh maplines lonlat meshlevels tilechoice arrowseeds trianglemesh player colours legend viewstate",
+  "fixedpoints",
   "formula",
   "tracer sources/source",
   "sources/embedded sources/files sources/messages sources/stream",

@@ -94,28 +94,28 @@ zoom,deepest/this.zoom),[right,up,ahead]=this.axes,height=this.height*(1-1/by);t
 height),up,y*height)),this.state.parallel?this.state.parallel_scale/=by:this.approach(this.height/by,ahead)}ray(x,y){let[
 right,up,ahead]=this.axes,{height,state}=this,there=add(add(state.focal_point,right,x*this.aspect*height),up,y*height);return state.
 parallel?[add(there,ahead,-this.distance),ahead]:[add(state.position,[0,0,0]),unit(subtract2(there,state.position))]}approach(height,ahead){
-let distance=Math.max(height/tangent(this.limits.view_angle),this.nearest);this.state.position=add(this.state.focal_point,
-ahead,-distance),this.state.view_angle=Math.atan(height/distance)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);if(!point)
-return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=add(
-this.state.position,ahead,depth))}shift(by){this.state.focal_point=add(this.state.focal_point,by),this.state.position=add(
-this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,up}=state;return{...state,position:[...position],
-focal_point:[...focus],up:[...up]}}function fitted(surface,limits,positions2,aspect){let{center,extent,planar,frame}=surface,
-half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),up=planar?fromFrame(frame,[0,1,0]):[0,
-0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row2=>toFrame(frame,row2)),[low,high]=[[1/0,1/0],
-[-1/0,-1/0]],distance=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+1],positions2[n+2]];if(!Number.
-isFinite(node[0]))continue;let[x,y,z]=rows.map(row2=>dot2(row2,node));[x,y].forEach((value,k)=>{low[k]=Math.min(low[k],value),
-high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance=Math.max(distance,z+wide/half/
-(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);return{position:add(center,back,
-planar?extent:distance),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/(1-2*limits.margin),view_angle:limits.
-view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,extent,planar}=surface,camera=copyOf(state);
-if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&state.parallel){let[high,usual,all]=[
-1e9,limits.aspect,aspect].map(shape2=>fitted(surface,limits,positions2,shape2).parallel_scale),isUsual=Math.abs(state.parallel_scale/
-usual-1)<.001;state.parallel_scale>.98*high&&(camera.parallel_scale=isUsual?all:Math.max(state.parallel_scale,all))}else if(!state.
-parallel&&state.view_angle>.9*limits.view_angle){let back=subtract2(state.position,state.focal_point);camera.position=add(
-state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function firstLook(surface,limits,first,nodes,aspect){
+let distance2=Math.max(height/tangent(this.limits.view_angle),this.nearest);this.state.position=add(this.state.focal_point,
+ahead,-distance2),this.state.view_angle=Math.atan(height/distance2)*360/Math.PI}focusAt(x,y){let point=this.pick?.(x,y);
+if(!point)return;let ahead=this.axes[2],depth=dot2(subtract2(point,this.state.position),ahead);depth>0&&(this.state.focal_point=
+add(this.state.position,ahead,depth))}shift(by){this.state.focal_point=add(this.state.focal_point,by),this.state.position=
+add(this.state.position,by)}};function copyOf(state){let{position,focal_point:focus,up}=state;return{...state,position:[
+...position],focal_point:[...focus],up:[...up]}}function fitted(surface,limits,positions2,aspect){let{center,extent,planar,
+frame}=surface,half=tangent(limits.view_angle),back=planar?fromFrame(frame,[0,0,1]):unit([1,1,1]),up=planar?fromFrame(frame,
+[0,1,0]):[0,0,1],right=unit(cross2(up,back)),rows=[right,cross2(back,right),back].map(row2=>toFrame(frame,row2)),[low,high]=[
+[1/0,1/0],[-1/0,-1/0]],distance2=0;for(let n=0;n<positions2.length;n+=3){let node=[positions2[n],positions2[n+1],positions2[n+
+2]];if(!Number.isFinite(node[0]))continue;let[x,y,z]=rows.map(row2=>dot2(row2,node));[x,y].forEach((value,k)=>{low[k]=Math.
+min(low[k],value),high[k]=Math.max(high[k],value)});let wide=Math.max(Math.abs(x)/aspect,Math.abs(y));distance2=Math.max(
+distance2,z+wide/half/(1-2*limits.margin))}let tall=Math.max(high[1]-low[1],(high[0]-low[0])/aspect,1e-12*extent);return{
+position:add(center,back,planar?extent:distance2),focal_point:[...center],up,parallel:planar,parallel_scale:.5*tall/(1-2*
+limits.margin),view_angle:limits.view_angle}}function widened(surface,limits,state,positions2,aspect){let{center,extent,
+planar}=surface,camera=copyOf(state);if(length2(subtract2(state.focal_point,center))>.001*extent)return camera;if(planar&&
+state.parallel){let[high,usual,all]=[1e9,limits.aspect,aspect].map(shape2=>fitted(surface,limits,positions2,shape2).parallel_scale),
+isUsual=Math.abs(state.parallel_scale/usual-1)<.001;state.parallel_scale>.98*high&&(camera.parallel_scale=isUsual?all:Math.
+max(state.parallel_scale,all))}else if(!state.parallel&&state.view_angle>.9*limits.view_angle){let back=subtract2(state.
+position,state.focal_point);camera.position=add(state.focal_point,back,Math.max(1,limits.aspect/aspect))}return camera}function firstLook(surface,limits,first,nodes,aspect){
 return first?widened(surface,limits,first,nodes,aspect):fitted(surface,limits,nodes,aspect)}function pointInPlane({center,
-frame},camera,x,y){let[start,along]=camera.ray(x,y),normal=fromFrame(frame,[0,0,1]);return add(start,along,dot2(subtract2(
-center,start),normal)/dot2(along,normal))}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.
+frame},camera,x,y){let[start,along2]=camera.ray(x,y),normal=fromFrame(frame,[0,0,1]);return add(start,along2,dot2(subtract2(
+center,start),normal)/dot2(along2,normal))}function isSamePlace(a,b){let near=length2(subtract2(a.center,b.center))<.1*a.
 extent,ratio=a.extent/b.extent;return a.planar===b.planar&&near&&ratio>.8&&ratio<1.25}function projection(surface,camera,anchor){
 let{state,aspect}=camera,{center,extent,frame}=surface,[right,up,ahead]=camera.axes.map(axis=>toFrame(frame,axis)),local=point=>subtract2(
 toFrame(frame,subtract2(point,center)),anchor),focus=local(state.focal_point),middle=scale2(anchor,-1),radius=Math.max(.51*
@@ -199,9 +199,9 @@ gl.DEPTH_TEST),gl.clearBufferuiv(gl.COLOR,0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_
 height);return gl.readPixels(0,0,width,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null),
 bits}};function sharedGraphics(){let page=globalThis;return page[SHARED]??=new Graphics}function linesOf(steps,{low,size}){let lines=[],place=[0,0,0];for(let n=0;n<steps.length;n+=4){steps[n+3]&&lines.push([]);
 let point=place.map((_,k)=>(place[k]=place[k]+steps[n+k]&65535,low[k]+place[k]/65535*size[k]));lines[lines.length-1].push(
-point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along=0,kept=line.filter((point,n)=>{
-let before=along;return n&&(along+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along/spacing)>Math.floor(
-before/spacing)||n===0||n===line.length-1});return along<spacing?[]:[kept]}):lines}function linePoints(lines,anchor){let size=lines.
+point)}return lines}function thinned(lines,spacing){return spacing?lines.flatMap(line=>{let along2=0,kept=line.filter((point,n)=>{
+let before=along2;return n&&(along2+=Math.hypot(...point.map((x,k)=>x-line[n-1][k]))),Math.floor(along2/spacing)>Math.floor(
+before/spacing)||n===0||n===line.length-1});return along2<spacing?[]:[kept]}):lines}function linePoints(lines,anchor){let size=lines.
 reduce((count2,line)=>count2+line.length+1,0),points=new Float32Array(3*size).fill(1e30),n=0;for(let line of lines){n+=3;
 for(let point of line)for(let k=0;k<3;k+=1)points[n++]=point[k]-anchor[k]}return points}function pieceGroups(points){let groups=[],
 pieces=points.length/3-1;for(let first=0;first<pieces;first+=256){let count2=Math.min(256,pieces-first),[low,high]=[[1/0,
@@ -219,32 +219,32 @@ let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*
 v2]=between3(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between3(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
 texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
 toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=6,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],MARKS={critical:"criti\
-cal_points",separatrices:"separatrices"},TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,
-int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){if(!log)return value=>(value-low)/(high-
-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/low)/span}function legendLimits({low,high,
-log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.abs(value)<least?0:value;return[
-told(low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){
-return Number(name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.
-choices[Number(number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){
-let[kind,level,row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:
-null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.
-byteLength):new Uint8Array(bytes),{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a pa\
-rt has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,digest,data:new Type(view.
-slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.
-map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,info.differences===void 0?decoded(info,
-bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+new DataView(file.buffer,file.byteOffset).getUint32(
-0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),first]}async function partOfText(info,text){let letters=atob(
-text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(n);let unpacked=new Blob(
-[packed]).stream().pipeThrough(new DecompressionStream("gzip"));return partOfPlanes(info,new Uint8Array(await new Response(
-unpacked).arrayBuffer()))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{
-shape:shape2,differences=[0,0],scale:scale3=null}=info,count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?planes.
-length/count2:1;if(!(width in UNSIGNED))throw new Error(`the part "${info.name}" is not packed as it tells`);let[line,channels]=shape2.
-length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](count2);for(let c=0,from=0;c<channels;c+=1)
-for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count2+from]<<
-8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<
-count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<count2;first+=
-row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=numbers[n-channels];return decoded(info,scale3?floats(numbers,
-scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){let channels=units.length;return numbers instanceof
+cal_points",separatrices:"separatrices"},LINE={saddle:8,orbit:4,leaving:2},TYPES={float32:Float32Array,uint32:Uint32Array,
+float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){
+if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/
+low)/span}function legendLimits({low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.
+abs(value)<least?0:value;return[told(low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTE\
+X_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,
+number="0"]=name.split("/"),steps=scalars.choices[Number(number)]?.steps??scalars.steps;return kind==="scalars"&&Number(
+own)===step&&steps>1}function tilePart(name){let[kind,level,row2,column,...rest]=name.split("/");return kind==="tile"?[[
+level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(
+bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];
+if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,
+digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(new Uint8Array(file)),
+start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,info.differences===
+void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+new DataView(file.buffer,file.
+byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),first]}async function partOfText(info,text){
+let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(
+n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));return partOfPlanes(info,new Uint8Array(
+await new Response(unpacked).arrayBuffer()))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){
+let{shape:shape2,differences=[0,0],scale:scale3=null}=info,count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?
+planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(`the part "${info.name}" is not packed as it tells`);let[
+line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](count2);for(let c=0,
+from=0;c<channels;c+=1)for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width;plane+=1)bits|=planes[plane*
+count2+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*channels;for(let order=0;order<differences[0];order+=1)
+for(let n=row2;n<count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<
+count2;first+=row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=numbers[n-channels];return decoded(info,scale3?
+floats(numbers,scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){let channels=units.length;return numbers instanceof
 Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
 data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];return result2}function grid(us,vs){let result2=new Float32Array(
 2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
@@ -257,8 +257,8 @@ corner=low*columns+left,[least,most]=[Math.min(a,b),Math.max(a,b)],aside=corner+
 [aside,most-least],[corner+columns+1,least]]}function interpolated(corners,value){return corners.reduce((sum,[node,share])=>sum+
 share*value(node),0)}var POINT_BYTES=12,PIECE_ENDS=2;function groundAt({earth,geometry},camera,x,y){if(!earth)return null;if(earth.map){let place=pointInPlane(
 geometry,camera,x,y),[x0,y0,x1,y1]=earth.map;return place[0]>=x0&&place[0]<=x1&&place[1]>=y0&&place[1]<=y1?place:null}let[
-start,along]=camera.ray(x,y),nearest2=dot2(start,along),square=nearest2**2-dot2(start,start)+earth.radius**2,depth=-nearest2-
-Math.sqrt(square);return depth>0?add(start,along,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
+start,along2]=camera.ray(x,y),nearest2=dot2(start,along2),square=nearest2**2-dot2(start,start)+earth.radius**2,depth=-nearest2-
+Math.sqrt(square);return depth>0?add(start,along2,depth):null}var EarthLayer=class{version=0;graphics;header;parts;drawn=new Map;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}forget(name){this.version+=1,this.drop(name==="position"?"lan\
 d":name)}dispose(){for(let name of[...this.drawn.keys()])this.drop(name)}drop(name){let drawn=this.drawn.get(name);if(drawn){
 for(let buffer of drawn.buffers)this.graphics.free("Buffer",buffer);this.graphics.free("VertexArray",drawn.array),this.drawn.
@@ -357,8 +357,8 @@ let[rows,columns]=shape2,width=padded.shape[1],[top,left]=trace.drawn,data=new F
 n=0;j<rows;j+=1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.
 middle[k%3]}return{data,shape:[rows,columns,3]}}function normalOf(padded,trace,shape2){let[rows,columns]=shape2,width=3*
 padded.shape[1],[top,left]=trace.drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=
-1,n+=3){let at=width*(j+top+1)+3*(i+left+1),along=step=>[0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(
-along(3),along(width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}for(let{
+1,n+=3){let at=width*(j+top+1)+3*(i+left+1),along2=step=>[0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(
+along2(3),along2(width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}for(let{
 component,line,inward}of trace.poles??[]){let[at,last]=component?[line-top,columns]:[line-left,rows];if(at<0||at>=(component?
 rows:columns))continue;let offset=(across,around2)=>3*(component?across*columns+around2:around2*columns+across),sum=[0,0,
 0];for(let m=0;m<last;m+=1)for(let k=0;k<3;k+=1)sum[k]+=data[offset(at+inward,m)+k];let size=length2(sum)||1,mean=sum.map(
@@ -545,9 +545,9 @@ let[east,north]=[to[0]-from[0],to[1]-from[1]].map(degrees=>degrees*Math.PI/180),
 hypot(Math.sin(east/2)*2*Math.cos(middle),north)*earth.radius/length2(subtract2(b,a))||1}function borderOf(host,from,to){
 let{header,camera,parts}=host;if(!header||!camera||!hasTicks(header))return null;let places=Array.from({length:PARTS+1},
 (_,n)=>pointInPlane(header.geometry,camera,from[0]+(to[0]-from[0])*n/PARTS,from[1]+(to[1]-from[1])*n/PARTS)),{earth,lengthUnit}=header;
-if(earth?.map){let along=from[1]===to[1]?0:1,[low,high]=[earth.map.slice(0,2),earth.map.slice(2)],degrees=places.map(place=>{
-if(place[along]<low[along]||place[along]>high[along])return NaN;let inside=place.map((c,n)=>n<2?clamp(c,low[n],high[n]):
-c);return lonLatOf(earth,inside,parts.get("lonlat"))?.[along]??NaN});return{letters:along?"NS":"EW",values:unwrapped(degrees)}}
+if(earth?.map){let along2=from[1]===to[1]?0:1,[low,high]=[earth.map.slice(0,2),earth.map.slice(2)],degrees=places.map(place=>{
+if(place[along2]<low[along2]||place[along2]>high[along2])return NaN;let inside=place.map((c,n)=>n<2?clamp(c,low[n],high[n]):
+c);return lonLatOf(earth,inside,parts.get("lonlat"))?.[along2]??NaN});return{letters:along2?"NS":"EW",values:unwrapped(degrees)}}
 let way=subtract2(places[PARTS],places[0]),axis=way.map(Math.abs).indexOf(Math.max(...way.map(Math.abs)));if(Math.abs(way[axis])<
 LEAST_SHARE*length2(way))return null;let[right,up]=camera.axes,border=from[1]===to[1]?right:up,normal=header.geometry.frame.
 slice(6).map(Math.abs),across=[0,1,2].find(n=>n!==axis&&n!==normal.indexOf(Math.max(...normal)));return Math.abs(border[across??
@@ -701,12 +701,12 @@ share*size-.5-before,0,nodes-1);return[at(u,columns,shape2[1]),at(v2,rows,shape2
 i,j]){let{pyramid,geometry,mesh}=header,[level,row2,column]=key,[rows,columns]=pyramid?.shapes[0]??geometry.shape,side=mesh.
 tileCells*(pyramid?.tileBlocks??0),at=(n,tile,nodes)=>fullIndex(n+tile*side,level,nodes);return[at(i,column,columns),at(
 j,row2,rows)]}function positionAt(scene,camera,corners,x,y){let{data}=scene.part("position"),{frame,center}=scene.header.
-geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along]=camera.
-ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along,ahead);return add(start,along,depth)}function valuesAt(scene,moment,corners){
-let{header,parts}=scene,{scalars}=header,[from,to,between3]=moment,values={},others=scalars.choices.map(({name,steps},number)=>({
-name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.
-map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)continue;let value=n=>before[n]+
-between3*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
+geometry,local=[0,1,2].map(k=>interpolated(corners,n=>data[3*n+k])),about=add(fromFrame(frame,local),center),[start,along2]=camera.
+ray(x,y),ahead=camera.axes[2],depth=dot2(subtract2(about,start),ahead)/dot2(along2,ahead);return add(start,along2,depth)}
+function valuesAt(scene,moment,corners){let{header,parts}=scene,{scalars}=header,[from,to,between3]=moment,values={},others=scalars.
+choices.map(({name,steps},number)=>({name,steps,number}));for(let each of[scalars,...others]){let names=scene.scalarParts(
+from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.name===null||each.name in values||!before||!after)
+continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.name]=interpolated(corners,value)}return values}function uniforms(header,settings,view,noiseShape=null){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(
 header),finest=2**(Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,
 subtract2(view.eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2?"ramp":s.kernel,kernel=signFree&&
 chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[
@@ -767,16 +767,16 @@ function between(values,at){let n=Math.min(Math.floor(at),values.length-2);retur
 function indexOf(values,value){let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-
 values[n-1])/(values[n]-values[n-1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.
 header,normal=normalAt(scene,place),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),
-pixel=2*height/rows;if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along,axis)=>{let n=Math.min(Math.floor(place[axis]),
-along.length-2);return(along[n+1]-along[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.
+pixel=2*height/rows;if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),
+along2.length-2);return(along2[n+1]-along2[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.
 grain*(settings.lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),
 grain=pixel/facing*Number(settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
 let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
 0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
 function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),
 directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),small=scale2(slope,SMALL2*
-(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along=length2(slope)>LEAST_SLOPE?subtract2(moved(small)??position,
-position):slope,velocity=scale2(unit(along),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
+(paper?1/paper.size[0]:slices.cell)/(length2(slope)||1)),along2=length2(slope)>LEAST_SLOPE?subtract2(moved(small)??position,
+position):slope,velocity=scale2(unit(along2),layers(2)[3]*speed.typical),whole=[],sides=settings.two_sided||!directed?slices.
 sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=paper?1:base[3]*slices.unit,points=sideOf(
 layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(
 points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings)?2*set-1:set,count2=sides===
@@ -1265,8 +1265,47 @@ camera.pan(x,y),viewer.reportCamera()}else if(command==="closer"||command==="far
 camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(command==="whole")viewer.reset();else if(command===
 "next"||command==="previous")viewer.step(command==="next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.
 lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.
-follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],PATH_SHARE=.99,OPERATIONS=new Map(Object.
-entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
+follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[CELLS,NEWTON_STEPS,FAR_CELLS]=[160,40,2],[ZERO_SHARE2,SINGULAR,SAME_CELLS]=[1e-7,1e-7,.001],CENTRE_SHARE=.05,[STEPS2,
+MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[8,.08,2],difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[
+a[0]+step*way[0],a[1]+step*way[1]],distance=(a,b)=>Math.hypot(a[0]-b[0],a[1]-b[1]);function gradient(rate,[x,y],[dx,dy]){
+let[east,west,north,south]=[rate(x+dx,y),rate(x-dx,y),rate(x,y+dy),rate(x,y-dy)];return[0,1].flatMap(k=>[(east[k]-west[k])/
+(2*dx),(north[k]-south[k])/(2*dy)])}function described(at,[a,b,c,d]){let[trace,steepness]=[a+d,Math.abs(a*d-b*c)],square=trace**
+2/4-(a*d-b*c),root=Math.sqrt(Math.abs(square)),turned=Math.abs(trace)/2<=CENTRE_SHARE*root?"centre":trace>0?"spiral sour\
+ce":"spiral sink",kind=a*d-b*c<0?"saddle":square<0?turned:trace>0?"source":"sink",way=value=>{let[one,two]=[[b,value-a],
+[value-d,c]],[x,y]=Math.hypot(...one)>Math.hypot(...two)?one:two;return[x/Math.hypot(x,y),y/Math.hypot(x,y)]},ways=kind===
+"saddle"?{leaving:way(trace/2+root),coming:way(trace/2-root)}:null;return{at,kind,steepness,ways}}function fixedPoints(rate,[
+xs,ys]){let sides=[xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.map(side=>Math.max(Math.round(CELLS*side/Math.max(...sides)),
+8)),cell=[sides[0]/columns,sides[1]/rows],nodes=Array.from({length:(rows+1)*(columns+1)},(_,n)=>rate(xs[0]+cell[0]*(n%(columns+
+1)),ys[0]+cell[1]*Math.floor(n/(columns+1)))),points=[];for(let n=0;n<rows*columns;n+=1){let low=n+Math.floor(n/columns),
+corners=[low,low+1,low+columns+1,low+columns+2].map(node=>nodes[node]);if(![0,1].every(k=>corners.some(v2=>v2[k]>=0)&&corners.
+some(v2=>v2[k]<=0)))continue;let middle=[xs[0]+cell[0]*(n%columns+.5),ys[0]+cell[1]*(Math.floor(n/columns)+.5)],found=zero(
+rate,middle,cell,Math.max(...corners.map(v2=>Math.hypot(...v2)))),isInside=found&&[xs,ys].every(([least,most],k)=>found.
+at[k]>=least-SAME_CELLS*cell[k]&&found.at[k]<=most+SAME_CELLS*cell[k]);!found||!isInside||points.some(({at})=>distance(at,
+found.at)<SAME_CELLS*Math.hypot(...cell))||points.push(found)}return points.sort((one,two)=>two.steepness-one.steepness)}
+function zero(rate,start,cell,speed){let small=[1e-5*cell[0],1e-5*cell[1]],at=start;for(let n=0;n<NEWTON_STEPS;n+=1){let[
+u,v2]=rate(...at),matrix=gradient(rate,at,small),[a,b,c,d]=matrix,determinant2=a*d-b*c;if(!(Math.abs(determinant2)>SINGULAR*
+(a*a+b*b+c*c+d*d)))return null;let step=[(b*v2-d*u)/determinant2,(c*u-a*v2)/determinant2],share=Math.min(1,1/Math.max(Math.
+abs(step[0]/cell[0]),Math.abs(step[1]/cell[1]),1e-30));if(at=along(at,step,share),!(Math.max(...difference(at,start).map(
+(x,k)=>Math.abs(x/cell[k])))<FAR_CELLS))return null;if(Math.hypot(step[0]/cell[0],step[1]/cell[1])<1e-10)break}return Math.
+hypot(...rate(...at))<=ZERO_SHARE2*speed?described(at,gradient(rate,at,small)):null}function separatrices(rate,ends2,points,saddles){
+let step=Math.hypot(...ends2.map(([low,high])=>high-low))/STEPS2;return saddles.flatMap(saddle=>{let{ways}=saddle;return ways?
+[!0,!1].flatMap(leaves=>[1,-1].map(side=>{let way=leaves?ways.leaving:ways.coming,begin=along(saddle.at,way,side*BEGIN*step),
+path=followed(rate,ends2,points,[saddle.at,begin],leaves?step:-step),closed=turnOf(path,step,CLOSED),wound=turnOf(path,step,
+WOUND);return{path:wound?path.slice(0,2*wound[1]-wound[0]+1):path,saddle,leaves,orbit:closed&&path.slice(closed[0],closed[1]+
+1)}})):[]})}function followed(rate,ends2,points,path,step){let unit2=at=>{let[u,v2]=rate(...at),size=Math.hypot(u,v2);return[
+u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<MOST_STEPS;n+=1){let at=path[path.length-1],one=unit2(at),
+two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/2)),four=unit2(along(at,three,step)),next=along(at,[0,1].map(
+k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(Number.isFinite))return path;let share=Math.min(...ends2.
+map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/
+(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),share)),share<1)return path;let end=points.find(point=>distance(
+point.at,next)<near);if(end&&isAway)return[...path,end.at];isAway||=!points.some(point=>distance(point.at,next)<2*near)}
+return path}function turnOf(path,step,apart){let around2=Math.max(.75,1.25*apart)*step,places=new Map,cellOf=at=>at.map(
+x=>Math.floor(x/around2));for(let n=0;n<path.length;n+=1){let[i,j]=cellOf(path[n]);for(let m=0;m<9;m+=1)for(let before of places.
+get(`${i+m%3-1} ${j+Math.floor(m/3)-1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>around2||before+1>=
+path.length)continue;let way=difference(path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],path[before]);
+if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;
+places.set(name,[...places.get(name)??[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,PATH_SHARE=.99,OPERATIONS=new Map(
+Object.entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
 b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.min(a,b),
 max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
 sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function compiled(tree){if(typeof tree=="number")return()=>tree;
@@ -1276,52 +1315,61 @@ map(compiled);return second?rest.length?name==="where"?values=>first(values)?sec
 reduce((sum,part)=>call(sum,part(values)),call(first(values),second(values))):values=>call(first(values),second(values)):
 values=>call(first(values))}var Grid=class{header;formula;rates;constructor(header,formula){[this.header,this.formula]=[
 header,formula],this.rates=formula.trees.map(compiled)}at(axis,level,line){let[low,high]=this.formula.ends[1-axis],cells=(this.
-header.geometry.shape[axis]-1)*2**this.doublings(level);return line===cells?high:low+(high-low)*line/cells}doublings(level){
-return(this.header.pyramid?.depth??0)-level}shape(level){return this.header.geometry.shape.map(n=>(n-1)*2**this.doublings(
-level)+1)}local(level,row2,column){let{center,frame}=this.header.geometry;return toFrame(frame,subtract2([this.at(1,level,
-column),this.at(0,level,row2),0],center))}flow({level,from,to},step,parameters){let[rows,columns]=[to[0]-from[0]+1,to[1]-
-from[1]+1],{speed:{typical},slices}=this.header,share=2**-this.doublings(level),size=(slices.trace?.unit??1)*share,[dx,dy]=[
-1,0].map(axis=>this.at(axis,level,1)-this.at(axis,level,0)),data=new Float32Array(3*rows*columns),speeds=new Float32Array(
-rows*columns),values={...parameters,t:slices.times[step]},[xName,yName]=this.formula.names;for(let j=0,n=0;j<rows;j+=1){
-values[yName]=this.at(0,level,from[0]+j);for(let i=0;i<columns;i+=1,n+=1){values[xName]=this.at(1,level,from[1]+i);let[u,
-v2]=this.rates.map(rate=>rate(values)),speed=Math.hypot(u,v2);speed>0&&speed<1e30&&(speeds[n]=speed,data.set([u/dx*size/
-speed,v2/dy*size/speed,speed/typical],3*n))}}return{flow:{data,shape:[rows,columns,3]},speeds}}padded({level,from,to}){let middle=this.
-local(level,.5*(from[0]+to[0]),.5*(from[1]+to[1])),[rows,columns]=[to[0]-from[0]+3,to[1]-from[1]+3],data=new Float32Array(
-3*rows*columns);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3)data.set(subtract2(this.local(level,from[0]+
-j-1,from[1]+i-1),middle),n);return{middle,part:{data,shape:[rows,columns,3]}}}};function placesOf(header){let{formula,mesh}=header;
-if(!formula)return null;let grid2=new Grid(header,formula);return(level,row2,column)=>{let shape2=grid2.shape(level),corner=far=>grid2.
+header.geometry.shape[axis]-1)*2**this.doublings(level);return line===cells?high:low+(high-low)*line/cells}get ends(){return this.
+formula.ends}rate(time,parameters){let values={...parameters,t:time},[xName,yName]=this.formula.names;return(x,y)=>(values[xName]=
+x,values[yName]=y,[this.rates[0](values),this.rates[1](values)])}doublings(level){return(this.header.pyramid?.depth??0)-
+level}shape(level){return this.header.geometry.shape.map(n=>(n-1)*2**this.doublings(level)+1)}local(level,row2,column){return this.
+localOf([this.at(1,level,column),this.at(0,level,row2)])}localOf([x,y]){let{center,frame}=this.header.geometry;return toFrame(
+frame,subtract2([x,y,0],center))}flow({level,from,to},step,parameters){let[rows,columns]=[to[0]-from[0]+1,to[1]-from[1]+
+1],{speed:{typical},slices}=this.header,share=2**-this.doublings(level),size=(slices.trace?.unit??1)*share,[dx,dy]=[1,0].
+map(axis=>this.at(axis,level,1)-this.at(axis,level,0)),data=new Float32Array(3*rows*columns),speeds=new Float32Array(rows*
+columns),values={...parameters,t:slices.times[step]},[xName,yName]=this.formula.names;for(let j=0,n=0;j<rows;j+=1){values[yName]=
+this.at(0,level,from[0]+j);for(let i=0;i<columns;i+=1,n+=1){values[xName]=this.at(1,level,from[1]+i);let[u,v2]=this.rates.
+map(rate=>rate(values)),speed=Math.hypot(u,v2);speed>0&&speed<1e30&&(speeds[n]=speed,data.set([u/dx*size/speed,v2/dy*size/
+speed,speed/typical],3*n))}}return{flow:{data,shape:[rows,columns,3]},speeds}}padded({level,from,to}){let middle=this.local(
+level,.5*(from[0]+to[0]),.5*(from[1]+to[1])),[rows,columns]=[to[0]-from[0]+3,to[1]-from[1]+3],data=new Float32Array(3*rows*
+columns);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3)data.set(subtract2(this.local(level,from[0]+j-1,from[1]+
+i-1),middle),n);return{middle,part:{data,shape:[rows,columns,3]}}}};function placesOf(header){let{formula,mesh}=header;if(!formula)
+return null;let grid2=new Grid(header,formula);return(level,row2,column)=>{let shape2=grid2.shape(level),corner=far=>grid2.
 local(level,Math.min((row2+far)*mesh.tileCells,shape2[0]-1),Math.min((column+far)*mesh.tileCells,shape2[1]-1)),[low,high]=[
 corner(0),corner(1)],cell=Math.hypot(...subtract2(grid2.local(level,0,1),grid2.local(level,0,0))),own=low.map((x,k)=>.5*
 (x+high[k])),{center,frame}=header.geometry;return[...[0,1,2].map(k=>center[k]+own.reduce((sum,x,m)=>sum+frame[3*m+k]*x,
-0)),.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var FormulaSource=class{hasSteps=!0;atOnce=2;header;grid;parameters={};state="";constructor(header,formula){
+0)),.5*Math.hypot(...subtract2(high,low))+cell,cell]}}var FormulaSource=class{hasSteps=!0;hasMarks=!0;atOnce=2;header;grid;parameters={};state="";constructor(header,formula){
 this.header=header,this.grid=new Grid(header,formula),this.follow(header.settings)}follow(settings){let own=Object.entries(
 settings).filter(([name])=>name.startsWith(PARAMETER));this.parameters=Object.fromEntries(own.map(([name,value])=>[name.
 slice(PARAMETER.length),Number(value)]));let before=this.state;return this.state=JSON.stringify([this.header.formula,this.
-header.geometry,this.parameters]),before!==this.state}load=(key,steps)=>Promise.resolve(key?this.tile(key,steps):this.whole(
-steps));whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,
-from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
-return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
-shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
-start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
-w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
-{mesh,pyramid,geometry,slices}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("a formula comes without its le\
-vels");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*
-cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map(
-(at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),
-shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),share=2**
--grid2.doublings(level),longest=PATH_SHARE*pyramid.pathCells,lags=[...slices.lags.filter(lag=>lag<longest),longest],texels=n=>({
-before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),
-columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.
-length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,
-first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},
-prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,
-prefix);return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(
-`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(
-key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.
-tileCells)),size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),
-tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),
-block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,(block+1)*size-PLACE2)}
-return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+header.geometry,this.parameters]),before!==this.state}load=(key,steps,_signal,_has,mark)=>mark?Promise.resolve(steps.map(
+step=>this.marks(mark,step))):Promise.resolve(key?this.tile(key,steps):this.whole(steps));marks(kind,step){let{grid:grid2,
+header}=this,rate=grid2.rate(header.slices.times[step],this.parameters),points=fixedPoints(rate,grid2.ends),kinds=header.
+structure?.kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid2.localOf(at),number],rows=[];if(kind==="critical")rows.
+push(...points.map(point=>row2(point.at,kinds.indexOf(point.kind))));else{let saddles=points.filter(({ways})=>ways).slice(
+0,MOST_SADDLES);separatrices(rate,grid2.ends,points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.saddle*
+saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??
+[]).map(at=>row2(at,number+LINE.orbit)))})}return this.named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[
+rows.length,4]})}whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts(
+{level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.
+state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(
+window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=
+1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,start+shape2[1]),j*shape2[1])}let values=`scalar\
+s/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flow/${step}`,flow),this.named(`${prefix}${values}`,
+{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,{mesh,pyramid,geometry,slices}=header,{trace}=slices;
+if(!pyramid||!trace)throw new Error("a formula comes without its levels");let[level,...place]=key,cells=pyramid.tileBlocks*
+mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-
+1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-
+from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,
+to},{middle,part:padded}=grid2.padded(window2),share=2**-grid2.doublings(level),longest=PATH_SHARE*pyramid.pathCells,lags=[
+...slices.lags.filter(lag=>lag<longest),longest],texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),
+own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,
+lags,count:slices.count-slices.sides*(slices.lags.length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,
+critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.
+timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.
+stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);return[this.named(`${prefix}header`,{data:text,shape:[
+text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).
+fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.
+header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(
+rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=
+1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+
+column)??[];data.set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
@@ -1575,12 +1623,12 @@ data,size,type],n)=>{let made=buffer(data);return gl.enableVertexAttribArray(n),
 gl.FLOAT,0,0),made});buffers.push(buffer(corners,gl.ELEMENT_ARRAY_BUFFER));let lines=array(),ends2=buffer(atEnds(points,
 pieces,3)),paints=buffer(atEnds(colours,pieces,4));for(let n=0;n<4;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(
 n,1);return gl.bindVertexArray(null),{faces,pieces:lines,ends:ends2,colours:paints,buffers:[...buffers,ends2,paints]}}};
-function css([r,g,b,opacity=1]){return`rgb(${[r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var[SADDLE,ORBIT,LEAVING]=[8,4,2],[NEARER,ABOVE_SHARE]=[.01,.2],[ROW,ENDS_BYTES2]=[4,24],REACH_PX=9;function shapesOf(points,lines,most){
-let shapes={lines:{leaving:[],coming:[],"closed orbit":[]},points:[]};for(let n=0;n<Math.min(points.length/ROW,most.points);n+=
-1){let kind=points[ROW*n+3];(shapes.points[kind]??=[]).push(...[0,1,2].map(k=>points[ROW*n+k]))}let last=NaN;for(let n=0;n<
-lines.length/ROW;n+=1){let number=lines[ROW*n+3];if(number>=SADDLE*most.saddles)continue;let turns=number&ORBIT?"closed \
-orbit":number&LEAVING?"leaving":"coming";number!==last&&shapes.lines[turns].push([]),last=number;let path=shapes.lines[turns];
-path[path.length-1].push(...[0,1,2].map(k=>lines[ROW*n+k]))}return shapes}function ends(paths,areDots=!1){let values=Float32Array.
+function css([r,g,b,opacity=1]){return`rgb(${[r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var[NEARER,ABOVE_SHARE]=[.01,.2],[ROW,ENDS_BYTES2]=[4,24],REACH_PX=9;function shapesOf(points,lines,most){let shapes={lines:{
+leaving:[],coming:[],"closed orbit":[]},points:[]};for(let n=0;n<Math.min(points.length/ROW,most.points);n+=1){let kind=points[ROW*
+n+3];(shapes.points[kind]??=[]).push(...[0,1,2].map(k=>points[ROW*n+k]))}let last=NaN;for(let n=0;n<lines.length/ROW;n+=
+1){let number=lines[ROW*n+3];if(number>=LINE.saddle*most.saddles)continue;let turns=number&LINE.orbit?"closed orbit":number&
+LINE.leaving?"leaving":"coming";number!==last&&shapes.lines[turns].push([]),last=number;let path=shapes.lines[turns];path[path.
+length-1].push(...[0,1,2].map(k=>lines[ROW*n+k]))}return shapes}function ends(paths,areDots=!1){let values=Float32Array.
 from(paths.flat());if(areDots)return atEnds(values,Array.from({length:2*values.length/3},(_,n)=>n>>1),3);let pieces=[],first=0;
 for(let path of paths){let count2=path.length/3;for(let n=first;n<first+count2-1;n+=1)pieces.push(n,n+1);first+=count2}return atEnds(
 values,pieces,3)}var Marks=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(graphics,header,parts){
@@ -1595,12 +1643,12 @@ most,part?.shape[0]??0);n+=1)kinds.add(Number(part?.data[ROW*n+3]));return(this.
 has(n))}draw({camera,anchor,width,height,ratio},settings,moment){let{header,graphics}=this,{structure,geometry}=header,layers=structure&&
 this.layers(structure,settings,moment);if(!structure||!layers?.length)return;let gl=graphics.context,[x,y,z,w]=camera.eye,
 eye=toFrame(geometry.frame,subtract2([x,y,z],scale2(geometry.center,w))),wider=ratio*clamp(Math.sqrt(height/ratio/structure.
-usualHeight),...structure.widthRange),distance=w?1:camera.distance/Math.hypot(...eye);gl.bindVertexArray(this.array),gl.
+usualHeight),...structure.widthRange),distance2=w?1:camera.distance/Math.hypot(...eye);gl.bindVertexArray(this.array),gl.
 enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),gl.depthFunc(gl.LEQUAL);let program=this.
 program;graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),u_anchor:anchor,u_eye:[...subtract2(eye,
 scale2(anchor,w)),w],u_picture:[width,height],u_horizon:[0,0,0,1]}),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer);for(let{first,
 count:count2,color,width:thickness,above}of layers){let[r,g,b,opacity=1]=color;graphics.programs.use(program,{u_width:thickness*
-wider,u_nearer:NEARER*distance*(1+ABOVE_SHARE*above)});for(let end of[0,1])gl.vertexAttribPointer(end,3,gl.FLOAT,!1,ENDS_BYTES2,
+wider,u_nearer:NEARER*distance2*(1+ABOVE_SHARE*above)});for(let end of[0,1])gl.vertexAttribPointer(end,3,gl.FLOAT,!1,ENDS_BYTES2,
 ENDS_BYTES2*(first+end/2)),gl.vertexAttrib4f(2+end,r,g,b,opacity);gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count2)}gl.
 bindVertexArray(null),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND)}layers(structure,settings,moment){let[[points,dots],[saddles,
 lines]]=["critical","separatrices"].map(kind=>this.shown(settings,moment,kind)),key=JSON.stringify([points,dots?.digest,
@@ -1643,12 +1691,12 @@ r)};for(let b=0;b<count2-1;b+=1){let y=Math.min(row2.first+Math.min(b*step,row2.
 1;a+=1){let x=Math.min(column.first+Math.min(a*step,column.cells),shape2[1]-2);if(cells&&!cells[y*(shape2[1]-1)+x])continue;
 let at=b*count2+a,[p,q,r,s]=[nodes[at],nodes[at+1],nodes[at+count2+1],nodes[at+count2]];put(p,q,r),put(p,r,s)}}return end}},
 NOT_DRAWN=99,Lines=class{values;strides;count;width;constructor([rows,columns],axis){[this.count,this.width]=axis?[columns+
-1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(this.count*this.width)}at(line,along){
-return line*this.strides[0]+along*this.strides[1]}close(){for(let n=0;n<this.width;n+=1){let[first,last]=[this.at(0,n),this.
-at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=this.values[last]=most}}};function eachBlock({
-step,row:row2,column,shape:shape2},[rows,columns],call){let bottom=Math.min(row2+(shape2[0]<<step),rows),right=Math.min(
-column+(shape2[1]<<step),columns);for(let j=row2;j<bottom;j+=1){let own=(j-row2>>step)*shape2[1];for(let i=column;i<right;i+=
-1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around2=(n,by,count2,closed)=>closed?
+1,rows]:[rows+1,columns],this.strides=axis?[1,columns+1]:[columns,1],this.values=new Int16Array(this.count*this.width)}at(line,along2){
+return line*this.strides[0]+along2*this.strides[1]}close(){for(let n=0;n<this.width;n+=1){let[first,last]=[this.at(0,n),
+this.at(this.count-1,n)],most=Math.max(this.values[first],this.values[last]);this.values[first]=this.values[last]=most}}};
+function eachBlock({step,row:row2,column,shape:shape2},[rows,columns],call){let bottom=Math.min(row2+(shape2[0]<<step),rows),
+right=Math.min(column+(shape2[1]<<step),columns);for(let j=row2;j<bottom;j+=1){let own=(j-row2>>step)*shape2[1];for(let i=column;i<
+right;i+=1)call(j*columns+i,own+(i-column>>step))}}function finestAround(nodes,[rows,columns],periodic){let around2=(n,by,count2,closed)=>closed?
 (n+by+count2)%count2:clamp(n+by,0,count2-1);return nodes.map((own,block)=>{let[j,i]=[Math.floor(block/columns),block%columns],
 least=own;for(let by of[-1,1]){let row2=around2(j,by,rows,periodic[0]),column=around2(i,by,columns,periodic[1]);least=Math.
 min(least,nodes[row2*columns+i],nodes[j*columns+column])}return least})}function join(parts,blocks,periodic,most){let nodes=new Int16Array(
@@ -1657,7 +1705,7 @@ value(part.levels[own]))});for(let part of parts)put(nodes,part,()=>part.step);l
 strides=new Int16Array(nodes.length);for(let part of parts){let{levels,step}=part;eachBlock(part,blocks,(block,own)=>{levels[own]=
 Math.min(levels[own],finest[block]+most-step)}),put(strides,part,level=>level+step)}let lines=[new Lines(blocks,0),new Lines(
 blocks,1)];for(strides.forEach((stride,block)=>{let[j,i]=[Math.floor(block/blocks[1]),block%blocks[1]];[[j,i],[i,j]].forEach(
-([line,along],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(line+far,along);values[at]=Math.
+([line,along2],axis)=>{let{values}=lines[axis];for(let far of[0,1]){let at=lines[axis].at(line+far,along2);values[at]=Math.
 max(values[at],stride)}})});;){lines.forEach((line,axis)=>periodic[axis]&&line.close());let joined=parts.map(part=>bordersOf(
 part,lines));if(!joined.some(([,changed])=>changed))return joined.map(([borders])=>borders)}}function bordersOf({step,row:row2,
 column,shape:shape2,levels},lines){let size=1<<step,borders=new Int8Array(4*levels.length),changed=!1;for(let side of[0,
@@ -1898,49 +1946,50 @@ part)&&(this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour
 name)&&this.panel.showLegend(),this.change())}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(
 0,2))}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(
 this.settings,settings),this.requests.follow(this.settings)&&this.renew(),this.panel.update(),this.change())}renew(){this.
-held.clear(name=>/^(flow|scalars)\//.test(name)),this.requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){
-name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),
-this.options.onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?
-copyOf(state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.
-firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(this.camera.state,state))return;this.camera.state=copyOf(
-state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.
-camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,
-aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,
-first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.
-keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){
-return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
-this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.header??{};if(timeShift===
-null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=last?own:last)}step(count2){
-let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&(this.pause(),this.setTime(
-player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,options}=this,{first,last}=player.range(
-this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.
-time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.player.clock=seconds,this.panel.tick(),
-this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.
-varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),
-this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.
-playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??
-this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=performance.now()+duration}get isHeld(){
-return performance.now()<this.busyUntil}change(cameraOnly=!1){this.painter.restart?.(cameraOnly),this.card.draw(),this.panel.
-showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.setSharp(!1),this.request()}draw(){this.
-frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.dataset.drawn="true",isComplete&&(this.
-frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear(),this.setSharp(!this.playing)),this.sharp||this.
-request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.
-update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){
-let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].
-map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;
-painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=
-this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),this.change()}get ratio(){return this.canvas.height/
-Math.max(this.stage.clientHeight,1)}lost(){this.header&&this.painter.open?.(this.header),this.setSharp(!1)}get scene(){return this.
-painter.scene??null}get tiles(){return this.painter.tiles??null}get shown(){return this.painter.shown??null}get lacking(){
-return this.painter.lacking??[]}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){
-if(!this.lifetime.isOver)try{this.painter.frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could \
-not be drawn.",String(error))}}advance(now){let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;
-!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),
-this.panel.tick(),painter.restart?.(!1),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||
-!camera)throw new Error("there is nothing to look at yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,
-anchor,player,rows:this.stage.clientHeight},shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.
-find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
-return this.canPick?this.painter.find?.(x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+held.clear(name=>/^(flow|scalars|critical|separatrices)\//.test(name)),this.requests.stop(),this.header&&this.painter.open?.(
+this.header)}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
+this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
+camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!state)this.firstCamera=
+this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(
+this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(
+!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){
+let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;
+let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(
+x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&
+this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.
+clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}followTime(time){
+let{timeShift=0}=this.header??{};if(timeShift===null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(
+first<=own&&own<=last?own:last)}step(count2){let{player,options}=this;if(options.follows)return options.follows.step(count2);
+player.varies&&(this.pause(),this.setTime(player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,
+options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.
+setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.
+player.clock=seconds,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.
+playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),
+this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.
+pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
+let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=
+performance.now()+duration}get isHeld(){return performance.now()<this.busyUntil}change(cameraOnly=!1){this.painter.restart?.(
+cameraOnly),this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.
+setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.
+dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear(),this.setSharp(
+!this.playing)),this.sharp||this.request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=
+String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.
+graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,
+[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===
+this.canvas.height)return;let{painter,canvas}=this;painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=
+[width,height],this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),
+this.change()}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,1)}lost(){this.header&&this.painter.
+open?.(this.header),this.setSharp(!1)}get scene(){return this.painter.scene??null}get tiles(){return this.painter.tiles??
+null}get shown(){return this.painter.shown??null}get lacking(){return this.painter.lacking??[]}lack(reason,tile,steps=[]){
+tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){if(!this.lifetime.isOver)try{this.painter.
+frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}advance(now){
+let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;!player.playing||!player.advance(now,isMade)||
+(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),painter.restart?.(!1),this.
+setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is not\
+hing to look at yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},
+shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{
+header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){return this.canPick?this.painter.find?.(
+x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
 controls",onAxes:"axes",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
 height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.
@@ -1979,8 +2028,8 @@ function noiseAround(local,octave,isPlanar,isSparse2,u,c){let point=add(local,sc
 octaveAt(coarse,displacement,c,axes,isSparse2)]}function kernelAt(x,u,c){return u.u_kernel===c.KERNEL_BOX[0]?1:u.u_kernel===c.KERNEL_RAMP[0]?u.u_sides===2?.5*(1-x):1-Math.
 abs(x):.5+.5*Math.cos(Math.PI*x)}function sideSteps(layers,side,spacing,u,c){let lags=u.u_lags,slope=layer=>layers(layer).
 slice(0,3),by=layers(0)[3]*Number(u.u_unit),first=side*lags.length,end=Math.min(layers(first+1)[3],lags[lags.length-1]),
-sign=side?1:-1,set=Number(u.u_samples),count2=u.u_sides===2?Math.floor(set/2):set-1,stepAt=along=>spacing/by/Math.max(length2(
-along),c.LEAST_SPEED[0]),[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],[lag,step]=[0,stepAt(before)],result2=[];
+sign=side?1:-1,set=Number(u.u_samples),count2=u.u_sides===2?Math.floor(set/2):set-1,stepAt=along2=>spacing/by/Math.max(length2(
+along2),c.LEAST_SPEED[0]),[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],[lag,step]=[0,stepAt(before)],result2=[];
 for(let k=1;k<=count2;k+=1){lag+=step;let alive=clamp((end-lag)/step+1,0,1);if(!alive)break;for(;lag>lags[m]&&m<lags.length-
 1;m+=1)[before,from]=[after,lags[m]],after=slope(first+m+2);let bend=scale2(subtract2(after,before),1/(lags[m]-from)),at=lateness=>before.
 map((x,n)=>x+bend[n]*lateness),weight=alive*kernelAt(sign*k/(count2+1),u,c);result2.push({displacement:scale2(at(lag-from),

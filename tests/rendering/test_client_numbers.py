@@ -36,13 +36,16 @@ from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_p
 from flowtex.rendering.triangle_blocks import TriangleBlocks
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl import ClientData
+from flowtex.rendering.webgl.marks import Marks
 from flowtex.rendering.webgl.velocity import velocity_part
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet, as_picture
-from flowtex.tiles import TILE_BLOCKS, Pyramid, TileKey
+from flowtex.tiles import TILE_BLOCKS, Pyramid, TileKey, shared_structure
+from flowtex.tiles.structure import DRAWN_EXTENTS
 from flowtex.tiles.triangle_pyramid import TrianglePyramid
 from flowtex.trace import SliceStore
+from flowtex.trace.structure import critical_points, separatrices
 
 FOLDER = Path(__file__).resolve().parents[2] / "client" / "tests"
 
@@ -590,9 +593,11 @@ def test_what_a_formula_gives() -> None:
         results = [float(evaluate(tree, values)) for tree in trees]
     ends: Any = {"x": (-8, 8), "y": (-4, 4), "b": (0.2, 0, 1)}
     field = flowtex.formula("y", "-sin(x) - b*y", **ends)
-    data = ClientData(TextureSet.build(SliceStore(field), Settings()), traces=True)
+    textures = TextureSet.build(SliceStore(field), Settings())
+    data = ClientData(textures, traces=True, marks=Marks(shared_structure(field)))
     header = data.header(Settings())
-    parts = ("geometry", "slices", "formula", "pyramid", "mesh", "speed", "scalars", "settings")
+    parts = ("geometry", "slices", "formula", "pyramid", "mesh", "speed", "scalars")
+    others = ("settings", "structure")
     fine = flowtex.formula("y", "-sin(x) - b*y", resolution=513, **ends)
     pyramid = Pyramid(fine, nodes=(257, 513), depth=1)
     tile = pyramid.textures(TileKey(0, 0, 1))
@@ -603,9 +608,14 @@ def test_what_a_formula_gives() -> None:
         "formula.json",
         {
             "trees": [trees, values, [None if np.isnan(r) else r for r in results]],
-            "header": {**{name: header[name] for name in parts}, "pyramid": whole},
+            "header": {**{name: header[name] for name in (*parts, *others)}, "pyramid": whole},
             "velocity": velocity[::20, ::32].tolist(),
             "tile": own,
+            "critical": [[p.kind, *p.position[:2].tolist()] for p in critical_points(fine)],
+            "separatrices": [
+                [p.forward, *p.points[0, :2].tolist(), *p.points[-1, :2].tolist()]
+                for p in separatrices(fine, length=DRAWN_EXTENTS * fine.surface.extent)
+            ],
             "places": pyramid.places(0)[1, [0, 5]].tolist(),
         },
     )

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from flows import gyre, scattered_gyre, swinging
 from matrix import COLOUR, GROUND, SIZE, TILTED, straight
+from pages import COMPLETE, acted, opened_page
 from scipy.spatial import ConvexHull
 from webgl_page import ClientPage, packed, state
 
@@ -19,6 +21,9 @@ from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.marks import Marks
 from flowtex.scene import Scene
 from flowtex.settings import Settings
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 pytestmark = pytest.mark.browser
 
@@ -63,3 +68,50 @@ def test_marks_are_those_of_vtk(client: ClientPage, name: str) -> None:
     off = np.abs(theirs.astype(int) - ours).max(axis=-1)
     # Outlines of the surface are smoothed in one of them; vertices lie at other shares of a pixel.
     assert (off > 60).sum() < 0.1 * marked.sum()
+
+
+def test_fixed_points_of_a_formula_follow_its_parameters(
+    browser: Browser, tmp_path: Path, quick_export: None
+) -> None:
+    ends: dict[str, Any] = {"x": (-6, 6), "y": (-3, 3), "b": (0.2, 0, 1)}
+    field = flowtex.formula("y", "-sin(x) - b*y", **ends)
+    path = tmp_path / "pendulum.html"
+    flowtex.export(field, path, samples=5, critical_points=True, separatrices=True)
+    with opened_page(browser, 640, 400) as page:
+        page.goto(path.as_uri())
+        page.wait_for_selector(COMPLETE)
+        kinds = page.locator(".kinds span")
+        assert kinds.all_inner_texts() == ["saddle", "spiral sink"]
+        slider = page.locator('[data-setting="formula.b"] input')
+        with acted(page):
+            slider.evaluate("(e) => { e.value = 0; e.dispatchEvent(new Event('input')); }")
+        assert kinds.all_inner_texts() == ["saddle", "centre"]
+        place = page.evaluate("""() => {
+          const { camera, canvas } = document.querySelector("flowtex-view").first;
+          const { left, top, width, height } = canvas.getBoundingClientRect();
+          const [x, y] = camera.project([0, 0, 0]);
+          return [left + (x + 1) / 2 * width, top + (1 - y) / 2 * height];
+        }""")
+        page.mouse.move(place[0] + 40, place[1])
+        page.mouse.move(*place)
+        page.locator(".readout b", has_text="centre").wait_for()
+        page.mouse.click(*place)
+        page.locator(".card dt", has_text="critical point").wait_for()
+        assert "centre" in page.locator(".card dd").all_inner_texts()
+
+
+def test_a_page_has_the_marks_that_it_was_exported_with(
+    browser: Browser, tmp_path: Path, quick_export: None
+) -> None:
+    given: list[dict[str, Any]] = [{}, {"critical_points": 3}]
+    for options in given:
+        flowtex.export(gyre(), path := tmp_path / "page.html", samples=5, **options)
+        with opened_page(browser, 640, 400) as page:
+            page.goto(path.as_uri())
+            page.wait_for_selector(COMPLETE)
+            names = page.locator("[data-setting]").evaluate_all(
+                "(a) => a.map((e) => e.dataset.setting)"
+            )
+            assert ("critical_points" in names) == bool(options)
+            assert "separatrices" not in names
+            assert page.locator(".kinds span").count() == len(options)

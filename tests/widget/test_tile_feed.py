@@ -116,6 +116,20 @@ def test_tiles_come_with_all_that_draws_them(make: Callable[..., Client]) -> Non
     assert "tile/0/0/0/position" not in client.arrays
 
 
+def test_marks_are_made_when_they_are_asked_for(make: Callable[..., Client]) -> None:
+    client = make(swirl(2))
+    assert client.header["structure"]["parts"] == ["critical", "separatrices"]
+    assert not any(name.startswith("critical") for name in client.arrays)
+    message = {"kind": "load", "key": None, "steps": [1], "view": 0, "mark": "critical"}
+    client.views.handle_message({**message, "request": "marks", "mark": "other"})
+    client.views.handle_message({**message, "request": "marks"})
+    client.wait(lambda: "marks" in client.loaded)
+    (row,) = client.arrays["critical/1"]
+    assert client.header["structure"]["kinds"][int(row[3])]["name"] == "centre"
+    assert row[:2] + client.header["geometry"]["center"][:2] == pytest.approx([0, 0.1], abs=1e-3)
+    assert "separatrices/1" not in client.arrays
+
+
 def test_what_is_given_up_is_neither_made_nor_sent(
     make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
 ) -> None:

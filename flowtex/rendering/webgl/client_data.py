@@ -278,7 +278,7 @@ class ClientData:
             "mesh": mesh_limits(),
             "earth": self._earth(),
             "bodies": None if self.bodies is None else self.bodies.header(),
-            "structure": None if self.marks is None or self.formula else self.marks.header(),
+            "structure": None if self.marks is None else self.marks.header(),
             "pyramid": None if self.pyramid is None else _pyramid(self.pyramid, self.finest),
             "limits": {**asdict(CAMERA_LIMITS), "aspect": FIRST_ASPECT},
             "table": _table(),

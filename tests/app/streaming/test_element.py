@@ -79,6 +79,7 @@ def test_a_tile_is_made_when_it_is_asked_for(
     assert {"header", "padded", "unit", "flow/0"} <= {name.split("/", 4)[4] for name in found}
     assert {"mesh", "places", "padded"} <= ask("whole").keys()
     assert ask("whole.0").keys() == {"flow/0", "scalars/0"}
+    assert ask("separatrices.0").keys() == {"separatrices/0"}
     for name in ("", "0,0.0", "0,0,1.7", "0,0,x.0", "whole.7", "part"):
         with pytest.raises(web.HTTPNotFound):
             ask(name)

@@ -1,0 +1,82 @@
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { fixedPoints, separatrices, type Ends, type Rate } from "../src/fixedpoints.ts";
+import { FormulaSource } from "../src/formula.ts";
+import { LINE, type FormulaHeader, type Header } from "../src/protocol.ts";
+
+const BOX: Ends = [[-2, 2], [-1, 1]];
+
+test("linear flows have one point of their kind, wherever it is", () => {
+  const matrices: Record<string, number[]> = {
+    saddle: [1, 0.3, 0.2, -1],
+    source: [1, 0.3, 0.2, 0.5],
+    sink: [-1, 0.3, 0.2, -0.5],
+    centre: [0, 2, -1, 0],
+    "spiral source": [0.2, 2, -1, 0.2],
+    "spiral sink": [-0.2, 2, -1, -0.2],
+  };
+  for (const [kind, [a, b, c, d]] of Object.entries(matrices)) {
+    for (const [x0, y0] of [[0, 0], [0.137, -0.211], [1.999, 1]]) {
+      const found = fixedPoints((x, y) => [a * (x - x0) + b * (y - y0), c * (x - x0) + d * (y - y0)], BOX);
+      assert.deepEqual(found.map((point) => point.kind), [kind]);
+      assert.ok(Math.hypot(found[0].at[0] - x0, found[0].at[1] - y0) < 1e-8);
+    }
+  }
+});
+
+test("lines of rest, jumps and poles are no points", () => {
+  const rates: Rate[] = [
+    (x, y) => [x, x * y],
+    (x, y) => [Math.sign(x - 0.013), Math.sign(y - 0.017)],
+    (x, y) => [1 / (x - 0.013), y],
+    () => [0, 0],
+    () => [NaN, 1],
+  ];
+  for (const rate of rates) assert.deepEqual(fixedPoints(rate, BOX), []);
+});
+
+test("separatrices end at points and borders, and on closed orbits", () => {
+  const straight: Rate = (x, y) => [0.25 - x * x, -y];
+  const points = fixedPoints(straight, BOX);
+  assert.deepEqual(points.map(({ kind }) => kind).sort(), ["saddle", "sink"]);
+  const lines = separatrices(straight, BOX, points, points.filter(({ ways }) => ways));
+  const ends = lines.map(({ path, leaves }) => [leaves, ...path[path.length - 1].map((x) => Math.round(1e6 * x) / 1e6)].join());
+  assert.deepEqual(ends.sort(), ["false,-0.5,-1", "false,-0.5,1", "true,-2,0", "true,0.5,0"]);
+  const orbits: Rate = (x, y) => [y, x - x ** 3 + y * (0.85 - x * x)];
+  const box: Ends = [[-2.2, 2.2], [-1.6, 1.6]];
+  const found = fixedPoints(orbits, box);
+  const closed = separatrices(orbits, box, found, found.filter(({ ways }) => ways)).flatMap(({ orbit, leaves }) => (orbit ? [{ orbit, leaves }] : []));
+  assert.equal(closed.length, 2);
+  for (const { orbit, leaves } of closed) {
+    assert.ok(!leaves);
+    const [first, last] = [orbit[0], orbit[orbit.length - 1]];
+    assert.ok(Math.hypot(first[0] - last[0], first[1] - last[1]) < 0.01);
+  }
+});
+
+test("the points and lines of a formula are those of Python", async () => {
+  const data = JSON.parse(readFileSync(new URL("formula.json", import.meta.url), "utf8"));
+  const header = data.header as Header & { formula: FormulaHeader };
+  const source = new FormulaSource(header, header.formula);
+  const [critical] = await source.load(null, [0], null, null, "critical");
+  assert.equal(critical.name, "critical/0");
+  const kinds = header.structure?.kinds.map(({ name }) => name) ?? [];
+  const { center } = header.geometry;
+  const rowsOf = (values: ArrayLike<number>) =>
+    Array.from({ length: values.length / 4 }, (_, n) => [0, 1, 2, 3].map((k) => values[4 * n + k]));
+  const own = rowsOf(critical.data);
+  assert.equal(own.length, data.critical.length);
+  for (const [kind, x, y] of data.critical as [string, number, number][]) {
+    const isThere = own.some(([a, b, , n]) => kinds[n] === kind && Math.hypot(a + center[0] - x, b + center[1] - y) < 1e-3);
+    assert.ok(isThere, `a ${kind} at ${x}, ${y}`);
+  }
+  const [part] = await source.load(null, [0], null, null, "separatrices");
+  const paths = new Map<number, number[][]>();
+  for (const row of rowsOf(part.data)) paths.set(row[3], [...(paths.get(row[3]) ?? []), row]);
+  for (const [leaves, x0, y0, x1, y1] of data.separatrices as [boolean, number, number, number, number][]) {
+    const isNear = ([a, b]: number[], x: number, y: number) => Math.hypot(a + center[0] - x, b + center[1] - y) < 0.1;
+    const alike = [...paths].filter(([number, path]) => Boolean(number & LINE.leaving) === leaves && isNear(path[0], x0, y0));
+    assert.ok(alike.some(([, path]) => path.some((row) => isNear(row, x1, y1))), `a line from ${[x0, y0]} to ${[x1, y1]}`);
+  }
+});
