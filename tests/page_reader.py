@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
 import html.parser
 import json
 from typing import Any
@@ -45,7 +47,7 @@ class Reader(html.parser.HTMLParser):
 
     def header(self) -> dict[str, Any]:
         (text,) = [text for given, text in self.scripts if given.get("id") == "headers"]
-        return dict(json.loads(text)[0])
+        return dict(json.loads(gzip.decompress(base64.b64decode(text)))[0])
 
     def parts(self) -> dict[str, NDArray[Any]]:
         """Parts of the first view."""

@@ -2,6 +2,7 @@
 
 import { forwardKeys } from "./keyboard.ts";
 import { showPacked, type OpenStore } from "./packed.ts";
+import { unzipped } from "./protocol.ts";
 import type { PackedScene } from "./sources/embedded.ts";
 
 /** Take the parts out of the page. */
@@ -19,7 +20,7 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
   const status = document.getElementById("status") as HTMLElement;
   const loading = document.getElementById("loading") as HTMLElement;
   try {
-    const headers = JSON.parse(document.getElementById("headers")?.textContent ?? "");
+    const headers = await unzipped(document.getElementById("headers")?.textContent ?? "").json();
     const look = () => {
       // The client says why in its own place, which the preview covers.
       status.hidden = !place.querySelector('[data-failed="true"]');

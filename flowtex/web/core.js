@@ -234,15 +234,15 @@ digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let[infos,
 start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,info.differences===
 void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+new DataView(file.buffer,file.
 byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),first]}async function partOfText(info,text){
-let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(
-n);let unpacked=new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));return partOfPlanes(info,new Uint8Array(
-await new Response(unpacked).arrayBuffer()))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){
-let{shape:shape2,differences=[0,0],scale:scale3=null}=info,count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?
-planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(`the part "${info.name}" is not packed as it tells`);let[
-line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](count2);for(let c=0,
-from=0;c<channels;c+=1)for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width;plane+=1)bits|=planes[plane*
-count2+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*channels;for(let order=0;order<differences[0];order+=1)
-for(let n=row2;n<count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<
+return partOfPlanes(info,new Uint8Array(await unzipped(text).arrayBuffer()))}function unzipped(text){let letters=atob(text),
+packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(n);return new Response(
+new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};
+function partOfPlanes(info,planes){let{shape:shape2,differences=[0,0],scale:scale3=null}=info,count2=shape2.reduce((product2,n)=>product2*
+n,1),width=count2?planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(`the part "${info.name}" is not packed \
+as it tells`);let[line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](count2);
+for(let c=0,from=0;c<channels;c+=1)for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width;plane+=
+1)bits|=planes[plane*count2+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*channels;for(let order=0;order<differences[0];order+=
+1)for(let n=row2;n<count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<
 count2;first+=row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=numbers[n-channels];return decoded(info,scale3?
 floats(numbers,scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){let channels=units.length;return numbers instanceof
 Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
@@ -2136,11 +2136,11 @@ settings))for(let viewer of view.viewers)viewer.followSetting(name,value);return
 Number(model.get("height"))||HEIGHT_PX);return()=>{view.dispose(),view.remove()}}}}function partsOfPage(){return Array.from(document.querySelectorAll("script[data-part]"),element=>{element.remove();let{view,
 part=""}=element.dataset;return[Number(view),JSON.parse(part),element.textContent??""]})}async function openPage(openStore){
 let place=document.getElementById("flowtex"),status=document.getElementById("status"),loading=document.getElementById("l\
-oading");try{let headers=JSON.parse(document.getElementById("headers")?.textContent??""),look=()=>{status.hidden=!place.
-querySelector('[data-failed="true"]'),loading.hidden=!status.hidden,status.textContent="This browser cannot draw the flo\
-w, for want of WebGL2; here is a picture of it.",!place.querySelector('.flowtex:not([data-drawn="true"])')&&(watch.disconnect(),
-document.getElementById("preview")?.remove(),loading.remove())},watch=new MutationObserver(look),attributeFilter=["data-\
-drawn","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let scene={headers,parts:partsOfPage()},
+oading");try{let headers=await unzipped(document.getElementById("headers")?.textContent??"").json(),look=()=>{status.hidden=
+!place.querySelector('[data-failed="true"]'),loading.hidden=!status.hidden,status.textContent="This browser cannot draw \
+the flow, for want of WebGL2; here is a picture of it.",!place.querySelector('.flowtex:not([data-drawn="true"])')&&(watch.
+disconnect(),document.getElementById("preview")?.remove(),loading.remove())},watch=new MutationObserver(look),attributeFilter=[
+"data-drawn","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let scene={headers,parts:partsOfPage()},
 {view,filled}=showPacked(place,scene,openStore,(n,part,parts)=>{let which=headers.length>1?` of view ${n+1}`:"";loading.
 lastElementChild.textContent=`${which}, ${part} of ${parts} parts`}),{root}=view.first;document.addEventListener("keydow\
 n",event=>forwardKeys(root,event)),await filled,loading.textContent="Drawing the first picture"}catch(error){loading.remove(),

@@ -1,9 +1,9 @@
 """A flow as one file that draws without a server of its own: an HTML page, or a module for one.
 
-The client, its style, the header and all arrays lie in the file. Arrays are gzipped with the
-bytes of equal significance side by side, which is where slopes resemble one another, and written
-in base64. A page's Content-Security-Policy lets nothing run but the one text whose digest it
-names, and lets nothing be fetched.
+The client, its style, the header and all arrays lie in the file. The header and the arrays are
+gzipped, these with the bytes of equal significance side by side, which is where slopes resemble one
+another, and written in base64. A page's Content-Security-Policy lets nothing run but the one text
+whose digest it names, and lets nothing be fetched.
 
 A page of a pyramid in a store may have the coarsest level and one moment alone, and read the rest
 from the store: its policy names the server of the store.
@@ -31,7 +31,7 @@ from flowtex._util.whole_file import whole_file
 from flowtex._version import __version__
 from flowtex.options import Appearance, FieldOptions, ViewOptions, accepts_options
 from flowtex.rendering.webgl import ClientData
-from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text
+from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
 from flowtex.tiles import Pyramid
 from flowtex.web import preview
 from flowtex.web.assets import asset, client_script
@@ -41,8 +41,8 @@ from flowtex.web.view import WebView, browser_options, checked_axes, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75
-#: Bytes of the client, its shaders, the header and the preview, about.
-CLIENT_BYTES = 320_000
+#: Bytes of the client, the header with its shaders, and the preview, about.
+CLIENT_BYTES = 300_000
 #: Bytes of what reads a store.
 READER_BYTES = 60_000
 #: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
@@ -353,7 +353,7 @@ def _values(
         "style": look,
         # Browsers tell JPEG by itself.
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
-        "headers": _headers_text(headers),
+        "headers": zipped(_headers_text(headers).encode()),
         "script": script,
     }
 

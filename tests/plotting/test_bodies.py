@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import re
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +10,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from flows import gyre
+from page_reader import Reader
 from webgl_page import packed
 
 import flowtex
@@ -130,9 +129,7 @@ def test_a_page_of_a_plotter_has_what_stands_there(plotter: Any, tmp_path: Path)
     plotter.add_mesh(pv.Sphere(), color="red")
     page = flowtex.export(plotter, tmp_path / "page.html", samples=5)
     text = page.path.read_text("utf-8")
-    found = re.search(r'id="headers">(.*?)</script>', text)
-    assert found is not None
-    [header] = json.loads(found[1])
+    header = Reader(text).header()
     assert header["settings"]["samples"] == 5  # what is given comes before what the plotter has
     assert header["camera"]["parallel"]
     assert [run["faces"] for run in header["bodies"]["runs"] if run["faces"][1]] == [[0, 1680]]

@@ -86,8 +86,12 @@ def file_infos(file: bytes) -> tuple[list[dict[str, Any]], int]:
 def part_text(array: AnyArray) -> tuple[dict[str, Any], str]:
     """Return how a part is packed in a page, for its description, and its bytes: gzip in base64."""
     packing, planes = _packed(array)
-    packed = gzip.compress(planes, COMPRESSION_LEVEL, mtime=0)
-    return packing, base64.b64encode(packed).decode()
+    return packing, zipped(planes)
+
+
+def zipped(data: bytes) -> str:
+    """Return bytes as they lie in a page: base64 of gzip."""
+    return base64.b64encode(gzip.compress(data, COMPRESSION_LEVEL, mtime=0)).decode()
 
 
 def _packed(array: AnyArray) -> tuple[dict[str, Any], bytes]:
