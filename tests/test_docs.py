@@ -9,8 +9,8 @@ import os
 import re
 from functools import partial
 from importlib import import_module
-from operator import attrgetter
 from pathlib import Path
+from pydoc import locate
 from typing import Any
 
 import pytest
@@ -116,7 +116,7 @@ def test_the_reference_has_every_public_name_and_each_an_example() -> None:
     text = "\n".join(page.read_text() for page in pages)
     rooms = [import_module(f"flowtex{name}") for name in MODULES]
     names = re.findall(r"^   flowtex\.([\w.]+)$", text, re.MULTILINE)
-    named = {name: attrgetter(name)(rooms[0]) for name in names}
+    named = {name: locate(f"flowtex.{name}") for name in names}
     public = [getattr(room, name) for room in rooms for name in room.__all__]
     known = [id(thing) for thing in named.values()]
     assert [thing for thing in public if callable(thing) and id(thing) not in known] == []
