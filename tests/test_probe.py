@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from flows import gyre, swinging, torus
 from scipy import ndimage
 
 from flowtex import FlowField
@@ -44,35 +45,6 @@ def turn() -> FlowField:
     """Half a radian in a unit of time around the middle, which lies between the nodes."""
     p = grid(80, 120)
     return FlowField.from_arrays(p, 0.5 * np.stack([-p[..., 1], p[..., 0]], axis=-1), periodic="")
-
-
-@cache
-def gyre() -> FlowField:
-    """A double gyre on a stretched and sheared grid."""
-    s, t = np.meshgrid(np.linspace(0, 1, 61), np.linspace(0, 1, 31))
-    x, y = 2 * (s + 0.06 * np.sin(2 * np.pi * s)) + 0.12 * np.sin(np.pi * t), t**1.3
-    a, b = np.pi * x, np.pi * y
-    velocity = np.stack([-np.sin(a) * np.cos(b), np.cos(a) * np.sin(b)], axis=-1)
-    return FlowField.from_arrays(np.stack([x, y], axis=-1), velocity, periodic="")
-
-
-@cache
-def torus() -> FlowField:
-    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, 2 * np.pi, 25))
-    radius = 1 + 0.4 * np.cos(b)
-    points = np.stack([radius * np.cos(a), radius * np.sin(a), 0.4 * np.sin(b)], axis=-1)
-    around = np.stack([-np.sin(a), np.cos(a), 0 * a], axis=-1)
-    over = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
-    return FlowField.from_arrays(points, around + 0.6 * np.cos(2 * a)[..., None] * over)
-
-
-@cache
-def swinging() -> FlowField:
-    """A vortex that wanders, at three times."""
-    p = grid(31, 31)
-    x, y = p[..., 0], p[..., 1]
-    steps = [np.stack([-(y - 0.2 * t), x - 0.1 * t * t], axis=-1) for t in (0.0, 1.0, 2.0)]
-    return FlowField.from_arrays(p, np.stack(steps), times=[0.0, 0.4, 0.8])
 
 
 @cache

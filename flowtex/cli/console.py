@@ -53,10 +53,14 @@ def say(*parts: str | tuple[str, str], stderr: bool = False) -> None:
     terminal(stderr=stderr).print(Text.assemble(*parts), soft_wrap=True)
 
 
-def announcer(description: str, host: str) -> Callable[[str], None]:
-    """Return a function that prints the address of a page."""
+def announcer(
+    description: str, host: str, end_waiting: Callable[[], None] | None = None
+) -> Callable[[str], None]:
+    """Return a function that prints the address of a page, once nothing is waited for."""
 
     def announce(address: str) -> None:
+        if end_waiting is not None:
+            end_waiting()
         say(("flowtex", "bold"), f"  {description}\n")
         # A link that is wrapped or coloured in pieces cannot be clicked.
         say("  ", (address, "cyan"), "\n")

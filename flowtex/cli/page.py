@@ -87,12 +87,7 @@ def serve_library(library: Library, page: ServeFlags | None, options: dict[str, 
         host(app_maker(library, None, options), describe(field))
         return 0
     with waiting(f"Tracing {describe(field)}") as end_waiting:
-        print_address = announcer(describe(field), page.host)
-
-        def announce(address: str) -> None:
-            end_waiting()
-            print_address(address)
-
+        announce = announcer(describe(field), page.host, end_waiting)
         serve(library, **_place(page), announce=announce, **options)
     return 0
 

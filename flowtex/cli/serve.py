@@ -71,19 +71,13 @@ def serve(
         field = open_store(store)
         served = ServedStore(store)
         page = _page(field, title, options, f"store/{served.run}/")
-        print_address = announcer(describe(field), at.host)
-
-        def announce(address: str) -> None:
-            end_waiting()
-            print_address(address)
-
         serving = run_store(
             served,
             page,
             (at.host, at.port),
             token=token or new_secret(),
             hosts=known_hosts(at.host, at.allow_host),
-            announce=announce,
+            announce=announcer(describe(field), at.host, end_waiting),
             open_browser=at.browser and has_display(),
         )
         with suppress(KeyboardInterrupt, asyncio.CancelledError):

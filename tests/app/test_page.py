@@ -343,29 +343,6 @@ def test_keys_move_the_view_and_change_the_page(page: Page) -> None:
     settled(page, before)
 
 
-def test_two_fingers_zoom(page: Page) -> None:
-    page.evaluate("document.activeElement.blur()")
-    before = count(page)
-    page.keyboard.press("0")
-    whole = settled(page, before)
-    touch = page.context.new_cdp_session(page)
-
-    def fingers(kind: str, apart: int) -> None:
-        points = [{"x": 390 - apart, "y": 240, "id": 0}, {"x": 390 + apart, "y": 240, "id": 1}]
-        found = [] if kind == "touchEnd" else points
-        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": found})
-
-    before = count(page)
-    fingers("touchStart", 40)
-    for apart in range(60, 101, 20):
-        fingers("touchMove", apart)
-        painted(page)
-    fingers("touchEnd", 100)
-    assert difference(settled(page, before), whole) > 3
-    assert 1.5 < zoom_of(page) < 3
-    assert not page.locator(".card").is_visible()
-
-
 def test_two_files_stand_beside_each_other(page: Page) -> None:
     if "series" not in page.inner_text(".flowtex-title"):
         before = count(page)

@@ -37,7 +37,7 @@ from flowtex.offscreen.encoders import (
     check_movie,
     default_fps,
 )
-from flowtex.offscreen.movie import FrameTimes, frame_times
+from flowtex.offscreen.movie import frame_times
 from flowtex.settings import Settings, named_values
 from flowtex.textures.images import averaged
 
@@ -325,19 +325,14 @@ class MovieJob(Job):
         check_movie(path, size, fps, quality)
         self._quality = quality
         settings = _moving(viewport.handle.settings, viewport.field)
-        self._times = frame_times(viewport.field, settings, fps=fps, seconds=seconds)
-
-    @property
-    def frames(self) -> FrameTimes:
-        """What its frames show."""
-        return self._times
+        self.frames = frame_times(viewport.field, settings, fps=fps, seconds=seconds)
 
     async def _make(self, viewport: Viewport) -> None:
         if viewport.field.steady:
             motion = _moving(viewport.handle.settings, viewport.field).motion
             for pane in viewport.panes:
-                pane.handle.settings.update(motion=motion, period=self._times.seconds)
-        fps, count = self._times.fps, len(self._times)
+                pane.handle.settings.update(motion=motion, period=self.frames.seconds)
+        fps, count = self.frames.fps, len(self.frames)
         opening = asyncio.ensure_future(
             self._in_thread(MovieWriter, self.path, self._size, fps, self._quality)
         )
@@ -366,9 +361,9 @@ class MovieJob(Job):
 
     async def _show(self, viewport: Viewport, number: int) -> None:
         if viewport.field.steady:
-            viewport.clock = self._times.clocks[number]
+            viewport.clock = self.frames.clocks[number]
             return
-        time = self._times.times[number]
+        time = self.frames.times[number]
         await self._in_thread(viewport.trace, time)
         viewport.set_time(time)
 

@@ -296,11 +296,6 @@ class Viewport:
 
     # --- colours -----------------------------------------------------------------------------
 
-    @property
-    def colours(self) -> tuple[str, ...]:
-        """Names of what the surface can be coloured by."""
-        return tuple(dict.fromkeys(("speed", *self.field.scalars)))
-
     def set_background(self, colour: Any) -> None:
         """Take the colour behind the surface: a theme's, or any that PyVista knows."""
         colour = BACKGROUNDS.get(colour, colour) if isinstance(colour, str) else colour

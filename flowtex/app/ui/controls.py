@@ -34,15 +34,17 @@ def hint(text: str, side: str) -> dict[str, str]:
     return {"data_hint": text, "data_side": side}
 
 
+def _of(name: str, key: str) -> dict[str, Any]:
+    """Return the attributes of every widget of Vuetify's that changes a value."""
+    return {"v_model": (key,), "aria_label": name, "__properties": ARIA, "density": "compact"}
+
+
 def select(name: str, key: str, items: Any, **attributes: Any) -> None:
     """Put a menu of choices into the row that is open."""
     html.Span(name, classes="flowtex-label")
     v3.VSelect(
-        v_model=(key,),
+        **_of(name, key),
         items=items,
-        aria_label=name,
-        __properties=ARIA,
-        density="compact",
         variant="plain",
         hide_details=True,
         menu_props=("{ contentClass: 'flowtex-list' }",),
@@ -55,11 +57,8 @@ def select(name: str, key: str, items: Any, **attributes: Any) -> None:
 def switch(name: str, key: str) -> None:
     """Put a switch into the row that is open."""
     v3.VSwitch(
-        v_model=(key,),
-        aria_label=name,
-        __properties=ARIA,
+        **_of(name, key),
         color="primary",
-        density="compact",
         hide_details=True,
         inset=True,
         classes="flowtex-switch",
@@ -77,14 +76,11 @@ def buttons(name: str, key: str, choices: Sequence[str]) -> None:
 def toggle(name: str, key: str, **attributes: Any) -> Any:
     """Return a group of buttons of which one is pressed, to be filled."""
     return v3.VBtnToggle(
-        v_model=(key,),
+        **_of(name, key),
         mandatory=True,
-        density="compact",
         variant="text",
         color="primary",
         classes="flowtex-toggle",
-        aria_label=name,
-        __properties=ARIA,
         **attributes,
     )
 
@@ -92,14 +88,11 @@ def toggle(name: str, key: str, **attributes: Any) -> Any:
 def slider(name: str, key: str, low: Any, high: Any, step: Any, **attributes: Any) -> None:
     """Put a slider into the widget that is open."""
     v3.VSlider(
-        v_model=(key,),
+        **_of(name, key),
         min=low,
         max=high,
         step=step,
-        aria_label=name,
-        __properties=ARIA,
         color="primary",
-        density="compact",
         hide_details=True,
         thumb_size=14,
         track_size=3,
