@@ -206,6 +206,23 @@ def arrows() -> Picture:
     )
 
 
+def structure() -> Picture:
+    """Mark critical points and separatrices of a pendulum, of currents and of winds."""
+    common: dict[str, Any] = {"size": (395, 300), "supersampling": 2, "show_scalar_bar": False}
+    common |= {"critical_points": True, "separatrices": True, "strength": 0.6}
+    pendulum = flowtex.formula("y", "-sin(x) - b*y", x=(-5, 5), y=(-3.6, 3.6), b=0.2)
+    ocean = flowtex.examples.ocean().isel(time=-1)
+    ocean = ocean.sel(latitude=slice(33, 43), longitude=slice(-70, -57))
+    winds = {"level": 250, "globe": True, "cmap": "turbo"}
+    return _row(
+        [
+            flowtex.render(pendulum, **common),
+            flowtex.render(ocean, **{**common, "separatrices": 12}, coastlines=False),
+            flowtex.render(flowtex.examples.weather(), **winds, **common),
+        ]
+    )
+
+
 def patterns() -> Picture:
     """Draw what the flow makes of spots, of a checkerboard and of a picture with dye."""
     field = flowtex.examples.double_gyre_field()
@@ -362,7 +379,7 @@ def _page_picture(page: Any, name: str) -> None:
 
 STILLS = (
     *(wake, globe, ocean, zooms, critical, vortices, sphere, torus, level_of_detail, grain, levels),
-    *(correction, kernels, arrows, patterns, half_turns, gyre),
+    *(correction, kernels, arrows, structure, patterns, half_turns, gyre),
 )
 PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}
 

@@ -72,6 +72,8 @@ def _setting_flag(row: Setting) -> Any:
     kind: Any = Literal[row.choices] if row.choices else row.kind
     span = f" From {row.low:g} to {row.high:g}." if row.low is not None else ""
     text = f"{row.text}{span} [default: {row.default}]"
+    if row.switch is not None:  # on, off or a number
+        kind, text = str, text.replace("True", "on")
     return Annotated[kind | None, Parameter(group=SETTINGS, help=text)]
 
 
@@ -184,6 +186,7 @@ def arguments(*groups: Any) -> dict[str, Any]:
     options = (f for kind in (FieldOptions, Appearance, ViewOptions) for f in fields(kind))
     forms = {option.name: option.metadata["form"] for option in options}
     forms["time"] = Form(read=number_or_text)
+    forms |= {row.name: Form(read=row.parse) for row in TABLE.values() if row.switch is not None}
     values = {name: value for group in groups if group for name, value in vars(group).items()}
     values = {name: value for name, value in values.items() if value not in (None, ())}
     for name, value in values.items():

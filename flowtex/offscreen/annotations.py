@@ -1,4 +1,4 @@
-"""Legend, time, scale bar and title, written on pictures that are drawn already.
+"""Legends, time, scale bar and title, written on pictures that are drawn already.
 
 Each stands on a plate of its own in a corner. What has no room is left out, the title first and
 the legend last. Text grows with the picture, so that small and large ones look alike.
@@ -22,6 +22,7 @@ from flowtex._util.colours import rgb
 from flowtex.camera import Camera
 from flowtex.field import FlowField
 from flowtex.field.dates import date_text
+from flowtex.rendering.structure_marks import DOT_PX, KIND_MARKS, MIDDLE_COLOR, RIM_COLOR
 from flowtex.scene import Scene
 
 #: Height of the text: a share of the picture's height, or of a width that goes with it.
@@ -44,6 +45,8 @@ UNIT_LENGTH, TIME_WIDTH = 8, 0.4
 #: Decimals of a time, and times, beyond which it is written with an exponent.
 MOST_DECIMALS, LONGEST_TIME = 6, 1e9
 METRES_PER_KM = 1000
+#: Diameter of a dot in a legend, in lines, and how much larger it is drawn to be smooth.
+DOT_SHARE, SMOOTH = 0.6, 4
 
 
 @dataclass(frozen=True)
@@ -105,12 +108,16 @@ def plates(
         ("time", True, False, writer.times(scene)),
         ("scale bar", False, True, writer.scale_bars(scene, camera)),
         ("title", False, False, writer.texts(title)),
+        ("critical points", False, True, writer.kinds(scene) if legend else iter(())),
     )
     gap, placed = writer.gap, list[Plate]()
     for name, right, low, images in parts:
         for image in images:
             left = width - gap - image.width if right else gap
             top = height - gap - image.height if low else gap
+            if name == "critical points":  # above the scale bar
+                bars = [plate.top for plate in placed if plate.name == "scale bar"]
+                top = min(bars, default=height) - gap - image.height
             plate = Plate(name, left, top, image)
             fits = gap <= left <= width - gap - image.width
             fits &= gap <= top <= height - gap - image.height
@@ -188,6 +195,29 @@ class _Writer:
         values = _value_texts(*scene.legend_limits, log_scale=appearance.log_scale)
         for numbers in (values, values[::2]):
             yield self._legend(title, table, numbers)
+
+    def kinds(self, scene: Scene) -> Iterator[Image.Image]:
+        """Yield the kinds of critical points that are marked, each with its dot."""
+        count = scene.settings.critical_points
+        points = scene.structure.points(scene.step)[:count] if count else ()
+        names = [name for name in KIND_MARKS if any(point.kind == name for point in points)]
+        if not names:
+            return
+        width = max(map(self._width, names)) + self._line
+        image, draw = self._blank(width, len(names) * self._line)
+        middle = SMOOTH * self._line / 2
+        sizes = [DOT_SHARE * middle * diameter / DOT_PX[0] for diameter in DOT_PX]
+        for n, name in enumerate(names):
+            self._write(draw, self._line, n * self._line, name)
+            mark = KIND_MARKS[name]
+            colors = [RIM_COLOR, mark.color, MIDDLE_COLOR][: 3 if mark.turns else 2]
+            dot = Image.new("RGBA", (SMOOTH * self._line,) * 2)
+            for size, color in zip(sizes, colors, strict=False):
+                ends = (middle - size, middle - size, middle + size, middle + size)
+                ImageDraw.Draw(dot).ellipse(ends, color)
+            place = (self._pad - self._line // 8, self._pad + n * self._line)
+            image.alpha_composite(dot.resize((self._line,) * 2, Image.Resampling.BOX), place)
+        yield image
 
     def _legend(self, title: str, table: Bytes, numbers: list[str]) -> Image.Image:
         widths, space = [self._width(n) for n in numbers], self._px(GAP)

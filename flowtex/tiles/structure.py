@@ -20,7 +20,7 @@ STRUCTURE = ("critical_points", "separatrices")
 #: Points of a step, and saddles whose lines are drawn, at most.
 MOST_POINTS, MOST_SADDLES = (int(TABLE[name].high or 0) for name in STRUCTURE)
 #: Length of a line that is drawn, as a share of the surface's extent, at most.
-DRAWN_EXTENTS = 1.0
+DRAWN_EXTENTS = 2.0
 #: Steps whose structure is kept.
 KEPT_STEPS = 64
 

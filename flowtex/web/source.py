@@ -34,6 +34,8 @@ BUDGET_BYTES, NODE_BYTES = 400_000_000, 200
 MOST_THREADS = max(os.cpu_count() or 1, 4)
 
 _pool = ThreadPoolExecutor(MOST_THREADS, thread_name_prefix="flowtex-tile")
+#: Marks take seconds, for which no tile has to wait.
+_marks_pool = ThreadPoolExecutor(1, thread_name_prefix="flowtex-marks")
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +106,7 @@ class TileSource:
                 check()
                 return self.parts(key, steps, kind)
 
-        return _pool.submit(make)
+        return (_marks_pool if kind else _pool).submit(make)
 
     def tiles(self) -> Iterator[Parts]:
         """Give the parts of all tiles that are handed over without asking, coarse ones first."""

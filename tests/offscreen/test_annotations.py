@@ -17,7 +17,7 @@ from strategies import property_test
 
 import flowtex
 from flowtex import FlowField
-from flowtex._util.colours import colour_table
+from flowtex._util.colours import colour_table, rgb
 from flowtex.camera import Camera
 from flowtex.cli import main
 from flowtex.offscreen.annotations import (
@@ -31,7 +31,9 @@ from flowtex.offscreen.annotations import (
 )
 from flowtex.offscreen.movie import frames
 from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.rendering.structure_marks import KIND_MARKS
 from flowtex.scene import Scene
+from flowtex.settings import Settings
 
 SIZES = [(300, 200), (640, 400), (1600, 1000), (300, 400), (3840, 2160)]
 
@@ -286,3 +288,20 @@ def test_thousands_of_metres_are_kilometres() -> None:
 )
 def test_a_scale_bar_has_a_round_length(greatest: float, length: float) -> None:
     assert round_length(greatest) == pytest.approx(length)
+
+
+def test_kinds_of_marked_points_are_named(texts: list[str]) -> None:
+    field = flowtex.examples.double_gyre_field(shape=(41, 81))
+    camera = Camera.fit(field.surface, 4 / 3)
+    for count, named in ((0, []), (100, ["saddle", "centre"])):
+        scene = Scene(field, Settings(critical_points=count))
+        found = {plate.name: plate for plate in plates(scene, (800, 600), camera)}
+        assert [text for text in texts if text in KIND_MARKS] == named
+        assert ("critical points" in found) == bool(named)
+    bar, kinds = found["scale bar"], found["critical points"]
+    assert kinds.box[3] < bar.top
+    # Each has a dot of its colour.
+    pixels = np.asarray(kinds.image)[..., :3]
+    for name in named:
+        color = np.rint(255 * np.array(rgb(KIND_MARKS[name].color)))
+        assert (np.abs(pixels - color).max(axis=-1) <= 1).sum() > 10

@@ -3,8 +3,8 @@ Critical points
 ===============
 
 Where a flow stands still it is a saddle, a node, a focus or a centre, told by the eigenvalues of
-its gradient. This field has them at the zeros of a polynomial, between the nodes of the grid. Zoom
-into one: it is sharp a thousand times closer.
+its gradient. This field has them at the zeros of a polynomial, between the nodes of the grid; lines
+leave the saddles and come to them. Zoom into one: it is sharp a thousand times closer.
 """
 
 import numpy as np
@@ -19,4 +19,4 @@ w = w * np.exp(0.9j)
 w = w / np.sqrt(1 + abs(w) ** 2)
 
 field = flowtex.FlowField.from_arrays((x, y), np.stack([w.real, w.imag], axis=-1))
-flowtex.show(field, cmap="viridis_r")
+flowtex.show(field, cmap="viridis_r", critical_points=True, separatrices=True)

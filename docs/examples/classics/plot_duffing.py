@@ -19,4 +19,4 @@ energy = V**2 / 2 - X**2 / 2 + X**4 / 4
 field = flowtex.FlowField.from_arrays(
     (x, v), np.stack([V, force], axis=-1), scalars={"energy": energy}
 )
-flowtex.show(field, scalars="energy", cmap="viridis", clim=(-0.25, 0.8))
+flowtex.show(field, scalars="energy", cmap="viridis", clim=(-0.25, 0.8), separatrices=True)

@@ -6,7 +6,7 @@ A path is read in a thread: with new textures it takes as long as a renderer tak
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -27,6 +27,8 @@ PATH_LENGTH = 4.0
 FEWEST_SAMPLES = 10
 #: Units longer than this are left out.
 UNIT_LENGTH = 12
+#: Pixels around a critical point that are still it.
+MARK_REACH_PX = 9
 #: Distance from a curved surface, and from a flat one, that counts as on it, in cells.
 CURVED_TOLERANCE, FLAT_TOLERANCE = 0.1, 1e-6
 
@@ -68,9 +70,8 @@ class PointReader:
         if index is None:
             return None
         if not asked.get("path"):
-            return {
-                "point": values_of(values_at(shown.handle.field, index, shown.handle.time), index)
-            }
+            point = values_of(values_at(shown.handle.field, index, shown.handle.time), index)
+            return {"point": point | self._mark(shown, point["position"])}
         # Two panes of one flow show its path in both, as the first one draws it.
         first = shown if "field" in self._viewport.differences else panes[0]
         scene, clock = first.handle.scene.copy(), self._viewport.clock
@@ -86,7 +87,23 @@ class PointReader:
         if found is None:
             return None
         alone = "field" in self._viewport.differences
-        return {**path_of(found, index, first.handle.field), "alone": alone}
+        read = path_of(found, index, first.handle.field)
+        read["point"] |= self._mark(first, read["point"]["position"])
+        return {**read, "alone": alone}
+
+    def _mark(self, pane: Pane, position: Sequence[float]) -> dict[str, str]:
+        """Return the kind of the critical point that is marked near a position, if any."""
+        scene = pane.handle.scene
+        if not (count := scene.settings.critical_points):
+            return {}
+        height = 2 * self._viewport.camera.height
+        reach = MARK_REACH_PX * height / max(self._viewport.pane_size[1], 1)
+        near = [
+            (float(np.linalg.norm(point.position - position)), point.kind)
+            for point in scene.structure.points(scene.step)[:count]
+        ]
+        away, kind = min(near, default=(np.inf, ""))
+        return {"mark": kind} if away < reach else {}
 
     def _index(self, number_: int, at: Mapping[str, Any]) -> tuple[float, float] | None:
         """Return the place (j, i) on the surface."""
