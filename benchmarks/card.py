@@ -2,12 +2,12 @@
 
 Draws by OpenGL what the client in the browser draws, by its own shaders and the parts that it is
 sent, in a view that the surface fills. Prints frames a second, as a share of :data:`GOAL` as well,
-and nanoseconds a pixel and sample. On Linux the context is made by EGL, of the device
+nanoseconds a pixel and sample, and the time of the passes that trace the slices of the surface or
+of its tiles, of each and of a million nodes. On Linux the context is made by EGL, of the device
 ``GLCONTEXT_DEVICE_INDEX``, without a window. ``--picture FILE`` writes the last picture.
 
 To draw takes NumPy and moderngl alone; to make the parts takes flowtex, but neither VTK nor a
 browser. ``--write FOLDER`` writes them on one machine, and ``--read FOLDER`` draws them on another.
-Slices are made by NumPy before: the client's trace pass is not measured.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ import struct
 import sys
 import time
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,8 +35,12 @@ SAMPLES, SIZE = (25, 49), (1920, 1080)
 GOAL, ZOOM = 1000, 1.5
 #: Seconds of a series of frames, at least; the fastest of three counts.
 SERIES_S = 0.5
-#: Processor time is that of the driver as well; the last are nanoseconds a pixel and sample.
-HEADINGS = "nodes | samples | layers | triangles | ms | processor ms | frames/s | of goal | ns"
+#: Processor time is that of the driver as well; nanoseconds are those a pixel and sample. The last
+#: are milliseconds in which a layer is traced, the surface or a tile, and a million nodes are.
+HEADINGS = (
+    "nodes | samples | layers | triangles | ms | processor ms | frames/s | of goal | ns | "
+    "ms a trace | ms a million"
+)
 
 #: What client/src/programs.ts has before a shader's text, and texture units of the samplers.
 PREAMBLE = "#version 300 es\nprecision highp float;\nprecision highp int;\n"
@@ -43,6 +48,12 @@ UNITS = {"u_slices": 0, "u_cmap": 4, "u_shares": 5}
 #: Attributes of the nodes with the count of their numbers, and what stands for no value there.
 ATTRIBUTES = {"flowtexPosition": 3, "flowtexCoordinate": 2}
 NO_VALUE = -1e9
+
+#: What client/src/tracer.ts has: the lag up to which paths are followed, units of the textures of a
+#: pass, what stands in the fourth channel of a layer, and the length of paths that do not end.
+DIRECT_LAG, ENDLESS = 4, 1e30
+PASS_UNITS = {"flow": 0, "cells": 1, "padded": 2, "speed": 3, "before": 4, "earlier": 5, "last": 5}
+NOTHING, SPEED, REACH = range(3)
 
 
 class Drawing(NamedTuple):
@@ -74,16 +85,17 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
     from flowtex.rendering.uniforms import ViewState, uniforms
     from flowtex.tiles import TILE_BLOCKS
 
-    whole, settings = replace(view.data(), traces=False), view.scene.settings
+    whole, settings = replace(view.data(), traces=True), view.scene.settings
     header, pyramid = whole.header(settings), whole.pyramid
     geometry, half = whole.textures.geometry, camera.parallel_scale
+    ground = header["background"] or (1.0, 1.0, 1.0)  # that of a page
     focus, pixel = np.asarray(camera.focal_point), 2 * half / size[1]
     state = ViewState(focus=focus, eye=camera.eye, pixel=pixel)
     matrix = camera.matrix(size[0] / size[1], geometry.center)
     matrix[:, :3] = matrix[:, :3] @ geometry.frame.T
     matrix[2] *= np.array([1, 1, 1, 0]) / (0.51 * geometry.extent)  # depth from the middle on
     look = {f"u_{name}": header[name] for name in ("colour", "opacity")}
-    look |= {"u_lit": header["lighting"], "u_ground": header["background"]}
+    look |= {"u_lit": header["lighting"], "u_ground": ground}
     look |= {"u_mapped": True, "u_matrix": matrix.T.ravel().tolist()}
     look["u_toEye"] = (geometry.frame @ -camera.axes[2]).tolist()
     drawn, regions = [], []
@@ -95,8 +107,8 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
         step, *place = key or (pyramid.depth if pyramid else 0, 0, 0)
         regions.append(Region(step, *(TILE_BLOCKS * at << step for at in place), levels))
         above, before = data.textures.geometry.padding
-        values = {**uniforms(data.textures, settings, state), **look, "extra": data.packing.extra}
-        values["u_padding"] = before, above
+        values = {**uniforms(data.textures, settings, state), **look, "u_padding": (before, above)}
+        values["header"] = data.tile_header
         drawn.append((mesh, levels, values, _arrays(data, parts)))
     joins = join(regions, pyramid.blocks if pyramid else levels.shape, geometry.periodic)
     layers, arrays = [], {"cmap": whole.surface()["cmap"]}
@@ -109,9 +121,10 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
     near = any(values["near"] for _, _, values, _ in drawn[1:] or drawn)
     variant = {"FLOWTEX_MOVING": layers[0]["moving"], "FLOWTEX_CELLS": near}
     defines = "".join(f"#define {define}\n" for define, is_on in variant.items() if is_on)
-    shaders = [defines + header["shaders"][kind] for kind in ("vertex", "fragment")]
+    shaders = {k: header["shaders"][k] for k in ("fullVertex", "trace", "layers")}
+    shaders |= {k: defines + header["shaders"][k] for k in ("vertex", "fragment")}
     about = {"name": name, "size": size, "samples": settings.samples, "layers": layers}
-    about |= {"shaders": shaders, "background": header["background"]}
+    about |= {"shaders": shaders, "background": ground}
     return Drawing(about, arrays)
 
 
@@ -138,17 +151,21 @@ def _shown(whole: Any, settings: Any, camera: Any, size: tuple[int, int]) -> Ite
 
 
 def _arrays(data: Any, parts: Any) -> dict[str, NDArray[Any]]:
-    """Return the nodes and slices of what the client is sent."""
-    nodes, colours = parts["position"].reshape(-1, 3), data.colours
+    """Return the nodes of what the client is sent, and what slices are traced from."""
+    colours, trace = data.colours, data.tile_header["slices"]["trace"]
+    coordinate, (top, left) = data.textures.geometry.coordinate, trace["drawn"]
+    rows, columns = coordinate.shape[:2]
+    drawn = parts["padded"][1 + top : 1 + top + rows, 1 + left : 1 + left + columns]
     (values,) = (part for name, part in parts.items() if name.startswith("scalars/"))
     share = (values - colours.low) / ((colours.high - colours.low) or 1.0)
     share = np.where(np.isfinite(share), share, NO_VALUE).astype(np.float32)
     return {
-        "flowtexPosition": nodes,
-        "flowtexCoordinate": data.textures.geometry.coordinate.reshape(-1, 2),
+        "flowtexPosition": (drawn + np.float32(trace["middle"])).reshape(-1, 3),
+        "flowtexCoordinate": coordinate.reshape(-1, 2),
         "shares": np.stack([share] * 2, axis=-1),
-        "slices": parts["slices/0"],
-        "extra": parts["extra/0"],
+        "flow": parts["flow/0"],
+        "unit": parts["unit"],
+        "padded": parts["padded"],
     }
 
 
@@ -180,30 +197,134 @@ def opened_card() -> Any:
     return context
 
 
+class Tracing:
+    """The passes that trace a layer's slices of a steady flow, as client/src/tracer.ts has them.
+
+    Surfaces with poles or blanked nodes are left out.
+    """
+
+    def __init__(
+        self, context: Any, shaders: dict[str, str], header: dict[str, Any], arrays: dict[str, Any]
+    ) -> None:
+        self._context, (geometry, slices) = context, (header["geometry"], header["slices"])
+        self._lags, self._sides, self.count = (slices[k] for k in ("lags", "sides", "count"))
+        trace, flow = slices["trace"], arrays["flow"].astype(np.float32)
+        self.nodes = rows, columns = trace["nodes"]
+        self.size = width, height = geometry["columns"]["size"], geometry["rows"]["size"]
+        unit = (arrays["unit"].astype(np.float32) * trace["unit"]).reshape(rows, columns)
+        speed = flow[..., 2]
+        pace = speed / unit
+        texels = [
+            np.stack([flow[..., 0] * pace, flow[..., 1] * pace, speed, unit], axis=-1),
+            np.broadcast_to(np.float32([1, 0, 0, 0]), (rows, columns, 4)),
+            np.pad(arrays["padded"], ((0, 0), (0, 0), (0, 1))),
+            np.pad(flow[..., -1:], ((0, 0), (0, 0), (0, 3))),
+        ]
+        self._constant = [self._texture(t.shape[1::-1], "f4", t.tobytes()) for t in texels]
+        # Paths at the first lag, at the last two, and where they are put next.
+        self._pool = [self._texture((columns, rows), "u4") for _ in range(4)]
+        self.layer = self._texture(self.size, "f2")
+        targets = [*self._pool, self.layer]
+        self._frames = {texture: context.framebuffer([texture]) for texture in targets}
+        self._values: dict[str, Any] = {
+            **{f"u_{name}": number for name, number in PASS_UNITS.items()},
+            "u_longest": trace.get("longest", ENDLESS),
+            "u_nodes": (columns, rows),
+            "u_closed": trace["closed"][::-1],
+            "u_first": trace["first"][::-1],
+            "u_texels": (width, height),
+            "u_offsetJ": np.ravel(trace["offset"])[:3],
+            "u_offsetI": np.ravel(trace["offset"])[3:],
+            "u_timed": 0.0,
+            "u_unit": slices["unit"],
+            "u_cell": slices["cell"] / slices["unit"],
+            "u_planar": float(geometry["planar"]),
+            "u_mostReach": 2 * self._lags[-1],
+            **{f"u_{name}": trace[name] for name in ("rest", "pace")},
+        }
+        self._follow = self._pass(shaders, "trace")
+        self._compose = self._pass(shaders, "trace", "COMPOSED")
+        self._slopes = self._pass(shaders, "layers", "FLOATS", "SLOPES")
+        self._tangents = self._pass(shaders, "layers", "FLOATS")
+
+    def _texture(self, size: Any, dtype: str, data: bytes | None = None) -> Any:
+        texture = self._context.texture(tuple(size), 4, data, dtype=dtype)
+        texture.filter = self._context.NEAREST, self._context.NEAREST
+        return texture
+
+    def _pass(self, shaders: dict[str, str], kind: str, *defines: str) -> Any:
+        text = "".join(f"#define FLOWTEX_{define}\n" for define in defines) + shaders[kind]
+        vertex, fragment = PREAMBLE + shaders["fullVertex"], PREAMBLE + text
+        program = self._context.program(vertex_shader=vertex, fragment_shader=fragment)
+        return self._context.vertex_array(program, [])
+
+    def _draw(self, target: Any, triangle: Any, textures: Any = (), **values: Any) -> None:
+        self._frames[target].use()
+        for n, texture in enumerate((*self._constant, *textures)):
+            texture.use(n)
+        values = self._values | {f"u_{name}": value for name, value in values.items()}
+        for name in values.keys() & set(triangle.program):
+            uniform, value = triangle.program[name], values[name]
+            uniform.value = value if np.ndim(value) == 0 else tuple(map(float, value))
+        triangle.render(vertices=3)
+
+    def layers(self) -> Iterator[int]:
+        """Trace, and give the numbers of layers; each is in ``layer`` until the next one."""
+        self._context.disable(self._context.DEPTH_TEST)
+        lags, layer = self._lags, partial(self._draw, self.layer)
+        layer(self._tangents, inCells=0.0)
+        yield 0
+        if self.count > 1 + self._sides * len(lags):
+            layer(self._tangents, inCells=1.0)
+            yield self.count - 1
+        for side in range(self._sides):
+            sign, start = 2 * side - 1, 1 + side * len(lags)
+            first = before = now = self._pool[0]
+            for m, lag in enumerate(lags):
+                begin, earlier = (lags[k] if k >= 0 else 0.0 for k in (m - 1, m - 2))
+                composes = lag > DIRECT_LAG and earlier > 0
+                then = next(t for t in self._pool if t not in (first, before, now))
+                times = {"lagEarlier": earlier, "from": begin, "to": lag, "side": float(sign)}
+                self._draw(
+                    then, self._compose if composes else self._follow, (now, before), **times
+                )
+                before, now = now, then
+                first = first if m else now
+                if m:
+                    fourth = SPEED if m == 1 and not side else NOTHING
+                    layer(self._slopes, (now, now), fourth=float(fourth), lag=sign * lag)
+                    yield start + m
+            layer(self._slopes, (first, now), fourth=float(REACH), lag=sign * lags[0])
+            yield start
+        self._context.enable(self._context.DEPTH_TEST)
+
+
 class Picture:
     """A picture whose arrays are on the card."""
 
     def __init__(self, context: Any, drawing: Drawing) -> None:
         self._context, (self._about, self._arrays) = context, drawing
-        vertex, fragment = (PREAMBLE + text for text in self._about["shaders"])
+        shaders = self._about["shaders"]
+        vertex, fragment = (PREAMBLE + shaders[kind] for kind in ("vertex", "fragment"))
         self._program = context.program(vertex_shader=vertex, fragment_shader=fragment)
         self._target = context.simple_framebuffer(tuple(self._about["size"]))
         self._cmap = context.texture((256, 1), 4, self._arrays["cmap"].tobytes())
+        self._tracings: list[Tracing] = []
         self._layers = [self._layer(n, own) for n, own in enumerate(self._about["layers"])]
         self._written: dict[str, bytes] = {}
 
     def _layer(self, n: int, uniforms: dict[str, Any]) -> tuple[Any, ...]:
         """Return the triangles, the slices, the shares and the uniforms of a layer."""
         context, program = self._context, self._program
-        names = (*ATTRIBUTES, "index", "slices", "extra", "shares")
+        names = (*ATTRIBUTES, "index", "flow", "unit", "padded", "shares")
         own = {k: self._arrays[f"{n}/{k}"] for k in names}
         nodes = [(context.buffer(own[k].tobytes()), f"{m}f4", k) for k, m in ATTRIBUTES.items()]
         triangles = context.vertex_array(program, nodes, context.buffer(own["index"].tobytes()))
-        count, height, width, channels = own["slices"].shape
-        texels = np.zeros((count, height, width, 4), np.float16)
-        texels[..., :channels] = own["slices"]
-        texels[uniforms["extra"], ..., 3] = own["extra"]
-        slices = context.texture_array((width, height, count), 4, texels.tobytes(), dtype="f2")
+        tracing = Tracing(context, self._about["shaders"], uniforms["header"], own)
+        self._tracings.append(tracing)
+        slices = context.texture_array((*tracing.size, tracing.count), 4, dtype="f2")
+        for layer in tracing.layers():
+            slices.write(tracing.layer.read(), (0, 0, layer, *tracing.size, 1))
         slices.repeat_x = slices.repeat_y = False
         slices.build_mipmaps(0, int(uniforms["u_deepest"]))
         rows, columns, _ = own["shares"].shape
@@ -240,11 +361,16 @@ class Picture:
     def row(self) -> tuple[Any, ...]:
         """Measure frames, and return a row of the table."""
 
-        def series(count: int) -> NDArray[Any]:
+        def trace() -> None:
+            for tracing in self._tracings:
+                for _ in tracing.layers():
+                    pass
+
+        def series(count: int, work: Callable[[], None] = self.draw) -> NDArray[Any]:
             self._context.finish()
             start = time.perf_counter(), time.process_time()
             for _ in range(count):
-                self.draw()
+                work()
             self._context.finish()
             return np.subtract((time.perf_counter(), time.process_time()), start)
 
@@ -258,7 +384,10 @@ class Picture:
         each = 1e9 * seconds / (math.prod(about["size"]) * about["samples"])
         times = f"{1e3 * seconds:.2f}", f"{1e3 * work:.2f}", f"{rate:.3g}", f"{rate / GOAL:.2g}"
         whole = about["name"], about["samples"], len(about["layers"]), triangles
-        return *whole, *times, f"{each:.3g}"
+        traced = 1e3 * min(series(1, trace)[0] for _ in range(2))
+        nodes = sum(math.prod(tracing.nodes) for tracing in self._tracings)
+        a_layer, a_million = traced / len(self._tracings), 1e6 * traced / nodes
+        return *whole, *times, f"{each:.3g}", f"{a_layer:.3g}", f"{a_million:.3g}"
 
 
 def png(picture: NDArray[Any]) -> bytes:

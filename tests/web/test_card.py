@@ -42,7 +42,7 @@ def test_the_picture_is_that_of_the_client(
 ) -> None:
     monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 2000)
     view = web_views(gyre(*nodes), Options.split(background=GROUND, samples=11))[0]
-    camera, whole = straight(zoom), replace(view.data(), traces=False)
+    camera, whole = straight(zoom), replace(view.data(), traces=True)
     if whole.pyramid is not None:
         client.tile = tile_maker(whole)
     header = whole.header(view.scene.settings, camera=state(camera))
