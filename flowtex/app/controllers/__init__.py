@@ -78,12 +78,7 @@ class Controllers:
         self.beside = FileBeside(context, self.data)
         self.appearance = Appearance(context, self.beside)
         self.viewpoint = Viewpoint(context)
-        self.sharing = Sharing(
-            context,
-            source=lambda: self.data.python,
-            source_beside=lambda: self.beside.python,
-            restore_state=restore_state,
-        )
+        self.sharing = Sharing(context, self.data, self.beside, restore_state)
 
     def cancel_opening(self) -> None:
         """Stop what is being opened, in either pane."""

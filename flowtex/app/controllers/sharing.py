@@ -12,7 +12,9 @@ from typing import Any
 
 from flowtex._util.progress import Stopped
 from flowtex.app.controllers.context import Context, Controller
+from flowtex.app.controllers.data import Data
 from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
+from flowtex.app.controllers.file_beside import FileBeside
 from flowtex.app.controllers.serialization import from_link, to_link, to_python
 from flowtex.app.server.files import Downloads
 from flowtex.app.server.validation import number
@@ -37,24 +39,18 @@ _log = logging.getLogger(__name__)
 
 
 class Sharing(Controller):
-    """What leaves the page.
-
-    ``source`` and ``source_beside`` return the expressions of Python that make the fields of the
-    two panes, if they are not those of files; ``restore_state`` is called with the state that a
-    link holds.
-    """
+    """What leaves the page; ``restore_state`` is called with the state that a link holds."""
 
     def __init__(
         self,
         context: Context,
-        *,
-        source: Callable[[], str | None],
-        source_beside: Callable[[], str | None],
+        data: Data,
+        beside: FileBeside,
         restore_state: Callable[[Mapping[str, Any]], None],
     ) -> None:
         super().__init__(context)
         self.downloads = Downloads(context.routes)
-        self._sources, self._restore_state = (source, source_beside), restore_state
+        self._data, self._beside, self._restore_state = data, beside, restore_state
         self._job: Job | None = None
         self._task: asyncio.Task[None] | None = None
         self.state.set(
@@ -179,8 +175,8 @@ class Sharing(Controller):
             link="#" + to_link(state),
             python=to_python(
                 state,
-                source=self._sources[0](),
-                source_beside=self._sources[1](),
+                source=self._data.python,
+                source_beside=self._beside.python,
                 size=self.viewport.size,
             ),
         )

@@ -35,7 +35,7 @@ def store_application(
     guard(application, hosts=hosts)
 
     def check(request: web.Request) -> None:
-        if not is_same(request.match_info["token"], token):
+        if not is_same(request.match_info.get("token", ""), token):
             raise web.HTTPForbidden(text=WRONG)
 
     async def page_handler(request: web.Request) -> web.Response:
@@ -52,10 +52,6 @@ def store_application(
             raise web.HTTPNotFound(text="There is no such object.") from None
         return web.Response(body=body, headers=_headers(name))
 
-    async def closed(request: web.Request) -> web.Response:
-        del request
-        raise web.HTTPForbidden(text=WRONG)
-
     async def to_page(request: web.Request) -> web.Response:
         check(request)
         address = f"{token}/"  # relative: a proxy may have put something before it
@@ -64,7 +60,7 @@ def store_application(
     router = application.router
     router.add_get(f"/{{token}}/store/{served.run}/{{name:.+}}", store_handler)
     router.add_get("/{token}/", page_handler)
-    router.add_get("/", closed)
+    router.add_get("/", page_handler)  # which is closed without the token
     router.add_get("/{token}", to_page)
     return application
 

@@ -80,7 +80,6 @@ class FrameStream:
         self.painter = ViewPainter(viewport)
         self._viewport = viewport
         self._wake = asyncio.Event()
-        self._drawn = asyncio.Event()
         self._sized = False
         self._closed = False
         self._fault = ""
@@ -138,11 +137,6 @@ class FrameStream:
         self.painter.forget()
         self.moved()
 
-    async def next_picture(self) -> None:
-        """Wait until a picture has been sent."""
-        self._drawn.clear()
-        await self._drawn.wait()
-
     def _tile_ready(self) -> None:
         """Ask for a picture when more of a large surface is there, now and then while it comes."""
         now = time.perf_counter()
@@ -193,7 +187,6 @@ class FrameStream:
                     self.data_failed.emit(error)
                 else:
                     _log.exception("a picture could not be drawn")
-            self._drawn.set()
 
     def _is_watched(self) -> bool:
         return self._sized and self.streamer is not None and not self.paused and self.watched()
@@ -242,7 +235,6 @@ class FrameStream:
         meta |= {"st": time.time_ns() // 1_000_000, "quality": quality, "sharp": sharp}
         await self._uncongested()
         self.streamer.push_content(self.area_name, meta, content)
-        self._drawn.set()
 
     async def _uncongested(self) -> None:
         """Wait while earlier pictures are still on their way."""

@@ -21,6 +21,7 @@ pytest.importorskip("wslink")
 
 from aiohttp import ClientResponse
 from aiohttp.test_utils import TestClient, TestServer
+from page_reader import Reader
 from served import start
 
 from flowtex import FlowField
@@ -146,9 +147,9 @@ def test_the_shell_serves_a_store(store: Path) -> None:
     try:
         assert served.address.endswith("/0123456789-abcde_/")
         with urllib.request.urlopen(served.address) as answer:
-            found = re.search(rb'"url":"(store/[^"]+/)"', answer.read())
-            assert found is not None
-        place = f"{served.address}{found[1].decode()}"
+            address = str(Reader(answer.read().decode()).header())
+            (found,) = re.findall(r"'(store/[^']+/)'", address)
+        place = f"{served.address}{found}"
         with urllib.request.urlopen(f"{place}{TILE}") as answer:
             assert len(answer.read()) > 10_000
     finally:
