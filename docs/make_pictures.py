@@ -120,6 +120,31 @@ def globe() -> Picture:
     return _row([flowtex.render(winds, **common, cmap="turbo", focus=tuple(p)) for p in positions])
 
 
+def cartopy() -> Picture:
+    """Draw winds on four projections of cartopy."""
+    import cartopy.crs as ccrs
+    import matplotlib.pyplot as plt
+
+    winds = flowtex.examples.weather().sel(level=250)
+    maps = (
+        ccrs.Robinson(150),
+        ccrs.Orthographic(10, 50),
+        ccrs.LambertConformal(),
+        ccrs.InterruptedGoodeHomolosine(),
+    )
+    figure = plt.figure(figsize=(12, 7), layout="constrained", dpi=100)
+    for number, projection in enumerate(maps, 1):
+        ax: Any = figure.add_subplot(2, 2, number, projection=projection)
+        image = flowtex.axes(ax, winds, clim=(0, 70), samples=25)
+        ax.gridlines(linewidth=0.3, color="k")
+        ax.set_title(type(projection).__name__)
+    figure.colorbar(image, ax=figure.axes, label=image.colour_label, shrink=0.6)
+    figure.canvas.draw()
+    picture = np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()  # type: ignore[attr-defined]
+    plt.close(figure)
+    return picture
+
+
 def ocean() -> Picture:
     """Draw the Gulf Stream and its rings, with the land and the scale."""
     currents = flowtex.FlowField.from_xarray(flowtex.examples.ocean())
@@ -378,8 +403,8 @@ def _page_picture(page: Any, name: str) -> None:
 
 
 STILLS = (
-    *(wake, globe, ocean, zooms, critical, vortices, sphere, torus, level_of_detail, grain, levels),
-    *(correction, kernels, arrows, structure, patterns, half_turns, gyre),
+    *(wake, globe, cartopy, ocean, zooms, critical, vortices, sphere, torus, level_of_detail),
+    *(grain, levels, correction, kernels, arrows, structure, patterns, half_turns, gyre),
 )
 PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}
 

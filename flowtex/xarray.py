@@ -6,17 +6,26 @@ ds.flowtex.show(level=500)
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
 import xarray as xr
+from xarray.plot import FacetGrid
 
 import flowtex
 from flowtex.field import FlowField
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from flowtex.offscreen.figure import FlowImage
     from flowtex.widget import FlowWidget
 
 __all__ = ["FlowtexAccessor"]
+
+#: Height of a panel in inches, and its width over that.
+PANEL_SIZE, PANEL_ASPECT = 3.0, 1.6
 
 
 @xr.register_dataset_accessor("flowtex")  # type: ignore[no-untyped-call]
@@ -55,6 +64,151 @@ class FlowtexAccessor:
         """Write it as a page, as :func:`flowtex.export` does."""
         return flowtex.export(self._dataset, *file, **options)
 
+    def axes(self, ax: Axes, **options: Any) -> FlowImage:
+        """Draw it into axes of matplotlib's or cartopy's, as :func:`flowtex.axes` does."""
+        return flowtex.axes(ax, self._dataset, **options)
+
+    def plot(
+        self,
+        *,
+        u: str | None = None,
+        v: str | None = None,
+        hue: str | None = None,
+        ax: Axes | None = None,
+        row: str | None = None,
+        col: str | None = None,
+        col_wrap: int | None = None,
+        transform: Any = None,
+        vmin: float | None = None,
+        vmax: float | None = None,
+        robust: bool = False,
+        add_colorbar: bool = True,
+        cbar_kwargs: Mapping[str, Any] | None = None,
+        figsize: tuple[float, float] | None = None,
+        size: float | None = None,
+        aspect: float | None = None,
+        subplot_kws: Mapping[str, Any] | None = None,
+        **options: Any,
+    ) -> FlowImage | FacetGrid[xr.Dataset]:
+        """Draw it with the words of ``ds.plot.quiver`` and ``ds.plot.streamplot``.
+
+        Parameters
+        ----------
+        u, v
+            Names of the components; found by default.
+        hue
+            Variable to colour by; the speed by default.
+        ax
+            Axes of matplotlib's or cartopy's; the present ones by default. Not for facets.
+        row, col, col_wrap
+            Dimensions with a panel for each value, and panels in a row.
+        transform
+            The coordinates' own projection, of cartopy's: longitudes and latitudes are known
+            without it, and no other one is taken.
+        vmin, vmax, robust
+            Range of the colours, the same in all panels.
+        add_colorbar, cbar_kwargs
+            Whether there is a colour bar, and what ``figure.colorbar`` takes.
+        figsize, size, aspect, subplot_kws
+            As xarray has them.
+        **options
+            As for :func:`flowtex.axes`, such as ``cmap="magma"`` or ``samples=25``.
+
+        Returns
+        -------
+        FlowImage or xarray.plot.FacetGrid
+            What is on the axes, or the panels.
+
+        Raises
+        ------
+        FieldError
+            As for :func:`flowtex.axes`; when an argument does not fit, such as ``ax`` for facets.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> import flowtex.xarray
+        >>> winds = flowtex.examples.weather()
+        >>> panels = winds.flowtex.plot(col="level", col_wrap=2, samples=5)
+        >>> len(panels.axs.flat)
+        4
+        """
+        if transform is not None and not _is_geodetic(transform):
+            msg = (
+                f"transform is {transform!r}; expected ccrs.PlateCarree() or none: the data's "
+                "longitudes and latitudes say where they lie"
+            )
+            raise flowtex.FieldError(msg)
+        if (u is None) != (v is None):
+            msg = f"u is {u!r} and v is {v!r}; expected the names of both components, or neither"
+            raise flowtex.FieldError(msg)
+        options |= {} if u is None else {"vectors": f"{u},{v}"}
+        options |= {} if hue is None else {"scalars": hue}
+        options |= {"clim": "robust"} if robust else {}
+        panels: FacetGrid[xr.Dataset] | None = None
+        if row is None and col is None:
+            shown = [(_axes(ax, figsize, size, aspect, subplot_kws), self._dataset)]
+        elif ax is None:
+            panels = FacetGrid(
+                self._dataset,
+                row=row,
+                col=col,
+                col_wrap=col_wrap,
+                figsize=figsize,
+                size=size or PANEL_SIZE,
+                aspect=aspect or PANEL_ASPECT,
+                subplot_kws=dict(subplot_kws or {}),
+            )
+            pairs = zip(panels.axs.flat, panels.name_dicts.flat, strict=True)
+            shown = [(one, self._dataset.loc[place]) for one, place in pairs if place is not None]
+        else:
+            msg = "ax is given, and row and col make axes of their own; leave ax or them out"
+            raise flowtex.FieldError(msg)
+        images = [flowtex.axes(one, data, **options) for one, data in shown]
+        label = images[0].colour_label
+        if label:
+            ends = np.array([image.get_clim() for image in images])
+            for image in images:
+                low, high = ends[:, 0].min(), ends[:, 1].max()
+                image.set_clim(low if vmin is None else vmin, high if vmax is None else vmax)
+        if panels is not None:
+            for one in panels.axs.flat:
+                one.set_title("")
+                one.set_visible(any(one is some for some, _ in shown))
+            panels.set_titles()
+            panels.fig.set_layout_engine("constrained")
+        if label and add_colorbar:
+            beside = shown[0][0] if panels is None else list(panels.axs.flat)
+            figure = images[0].axes.figure
+            figure.colorbar(images[0], ax=beside, **{"label": label, **(cbar_kwargs or {})})
+        return images[0] if panels is None else panels
+
     def widget(self, **options: Any) -> FlowWidget:
         """Return a :class:`flowtex.FlowWidget` of it."""
         return flowtex.FlowWidget(self._dataset, **options)
+
+
+def _axes(
+    ax: Axes | None,
+    figsize: tuple[float, float] | None,
+    size: float | None,
+    aspect: float | None,
+    subplot_kws: Mapping[str, Any] | None,
+) -> Axes:
+    """Return given axes, those of a new figure where its size is given, or the present ones."""
+    import matplotlib.pyplot as plt
+
+    if ax is not None:
+        return ax
+    if figsize is None and size is not None:
+        figsize = (size * (aspect or PANEL_ASPECT), size)
+    if figsize is not None or subplot_kws:
+        return cast("Axes", plt.figure(figsize=figsize).add_subplot(**(subplot_kws or {})))
+    return plt.gca()
+
+
+def _is_geodetic(transform: Any) -> bool:
+    """Whether a projection of cartopy's means longitudes and latitudes."""
+    name = type(transform).__name__
+    turned = getattr(transform, "proj4_params", {}).get("pm", 0)
+    return name == "Geodetic" or (name == "PlateCarree" and not float(turned))

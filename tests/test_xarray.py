@@ -35,3 +35,53 @@ def test_a_dataset_has_the_calls_of_the_package(opengl: Any, tmp_path: Path) -> 
         ds.flowtex.render(plane="k=2")
     with pytest.raises(FieldError, match="globe is for data of the Earth"):
         flowtex.render(flowtex.examples.double_gyre(), globe=True)
+
+
+def test_a_dataset_is_plotted_with_the_words_of_xarray(opengl: Any) -> None:
+    del opengl
+    import matplotlib.pyplot as plt
+
+    ds = flowtex.examples.weather()
+    figure, ax = plt.subplots()
+    image = ds.sel(level=250).flowtex.plot(ax=ax, u="u", v="v", vmax=40.0, samples=3, cmap="magma")
+    assert image.axes is ax and image.get_clim()[1] == 40
+    assert figure.axes[1].get_ylabel() == "speed (m/s)"
+    plain = ds.sel(level=500).flowtex.plot(
+        figsize=(3, 2), hue="vorticity", robust=True, add_colorbar=False
+    )
+    assert len(plain.figure.axes) == 1 and -1e-4 < plain.get_clim()[0] < 0
+    plt.close("all")
+
+
+def test_facets_have_one_range_of_colours(opengl: Any) -> None:
+    del opengl
+    import matplotlib.pyplot as plt
+
+    crs = pytest.importorskip("cartopy.crs")
+    ds = flowtex.examples.weather()
+    panels = ds.flowtex.plot(
+        col="level",
+        col_wrap=2,
+        samples=3,
+        transform=crs.PlateCarree(),
+        subplot_kws={"projection": crs.Robinson()},
+    )
+    assert [ax.get_visible() for ax in panels.axs.flat] == [True, True, True, False]
+    assert panels.axs.flat[2].get_title() == "level = 250.0"
+    limits = {ax.images[0].get_clim() for ax in panels.axs.flat[:3]}
+    assert len(limits) == 1 and limits.pop()[1] > 70, "the fastest winds are at 250 hPa"
+    panels.fig.canvas.draw()
+    plt.close("all")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"u": "u"}, "u is 'u' and v is None; expected the names of both"),
+        ({"transform": 3}, r"transform is 3; expected ccrs.PlateCarree\(\) or none"),
+        ({"col": "level", "ax": 1}, "ax is given, and row and col make axes of their own"),
+    ],
+)
+def test_words_of_a_plot_that_do_not_fit_are_refused(options: Any, words: str) -> None:
+    with pytest.raises(FieldError, match=words):
+        flowtex.examples.weather().flowtex.plot(**options)

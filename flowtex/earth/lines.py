@@ -24,6 +24,8 @@ LONGEST_PIECE = 1.0
 MOST_BENT = 0.2
 #: Where a map is stretched more than that there are no lines: they go to infinity, as at a pole.
 MOST_STRETCHED = 20.0
+#: Spacings that a thinned line has at least: islands of that length are some pixels wide.
+FEWEST_SPACINGS = 4
 #: Halvings by which the place is found where a map is torn: some 10 m on the Earth.
 HALVINGS = 14
 
@@ -63,7 +65,10 @@ class MapLines:
         return _assembled(self.points[first], self.points[first + 1], first, first + 1)
 
     def thinned(self, spacing: float) -> MapLines:
-        """Return the lines with a point about every ``spacing`` metres, without shorter ones."""
+        """Return the lines with a point about every ``spacing`` metres, without short ones.
+
+        Small islands would be blobs.
+        """
         lines = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
         steps = np.linalg.norm(np.diff(self.points, axis=0, prepend=self.points[:1]), axis=1)
         first = np.zeros(len(self.points), dtype=bool)
@@ -74,7 +79,7 @@ class MapLines:
         places = np.floor(along / spacing)
         keep = first | (np.diff(places, prepend=0.0) > 0)
         keep[self.starts[1:] - 1] = True
-        keep &= lengths[lines] >= spacing
+        keep &= lengths[lines] >= FEWEST_SPACINGS * spacing
         counts = np.bincount(lines[keep], minlength=len(lengths))
         return MapLines(self.points[keep], np.append(0, np.cumsum(counts[counts > 0])))
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -31,10 +31,24 @@ NAMES = {
     "robinson": "+proj=robin",
     "equalearth": "+proj=eqearth",
 }
-#: Steps in degrees by which derivatives are taken, and how near to a pole.
-STEP, NEAREST_POLE = 1e-4, 0.5
+#: Names of the same maps by PROJ's methods.
+METHODS = {
+    "Equidistant Cylindrical": "platecarree",
+    "Equidistant Cylindrical (Spherical)": "platecarree",
+    "Mercator (variant A)": "mercator",
+    "Mercator (variant B)": "mercator",
+    "Mercator (Spherical)": "mercator",
+    "Popular Visualisation Pseudo Mercator": "mercator",
+    "Robinson": "robinson",
+    "Equal Earth": "equalearth",
+}
+#: Steps in degrees by which derivatives are taken, and how near to a pole. The pieces of PROJ's
+#: Robinson differ by a metre where they meet: shorter steps turned directions by up to 3 degrees.
+STEP, NEAREST_POLE = 0.02, 0.5
 #: A step to one side that is longer by this factor than that to the other leads across a tear.
 TORN = 100.0
+#: By this share a position is moved to the middle of the map where it has no place on the Earth.
+INSIDE = 1 - 1e-7
 
 
 def place_text(lon: float, lat: float, decimals: int = 2) -> str:
@@ -94,7 +108,7 @@ class Projection:
     def __post_init__(self) -> None:
         """Check the name."""
         if not self.is_globe:
-            _ = self._transforms
+            _ = self._crs
 
     @classmethod
     def of(cls, written: Any) -> Projection | None:
@@ -115,12 +129,30 @@ class Projection:
         return self.name == GLOBE
 
     @property
+    def family(self) -> str:
+        """The name of a map of the same kind, as that of ``"EPSG:3857"`` is ``"mercator"``."""
+        if self.is_globe or self.name in NAMES:
+            return self.name
+        return METHODS.get(self._operation.method_name, self.name)
+
+    @property
+    def origin(self) -> float | None:
+        """Longitude in degrees in the middle of the map, where what PROJ takes has one."""
+        if self.is_globe or self.name in NAMES:
+            return None
+        named = (p for p in self._operation.params if p.name.startswith(("Longitude of", "lon_0")))
+        return next((float(p.value) for p in named), None)
+
+    @property
+    def _operation(self) -> Any:
+        return self._crs.coordinate_operation
+
+    @property
     def _origin(self) -> float:
         return self.center[0] if self.name in NAMES else 0.0
 
     @cached_property
-    def _transforms(self) -> tuple[Any, Any]:
-        """Transforms that turn longitudes around, and that go on beyond the edge of a map."""
+    def _crs(self) -> Any:
         pyproj = import_extra("pyproj", "xarray")
         text = self.name
         if text in NAMES:
@@ -143,13 +175,7 @@ class Projection:
                     f"{', '.join((GLOBE, *NAMES))}, or another that PROJ knows"
                 )
                 raise ProjectionError(msg)
-            both = (
-                pyproj.Transformer.from_crs(
-                    crs.geodetic_crs, crs, always_xy=True, force_over=over and text != self.name
-                )
-                for over in (False, True)
-            )
-            return tuple(both)
+            return crs
         except pyproj.exceptions.ProjError as error:
             msg = (
                 f"the projection {self.name!r} is not known; expected one of "
@@ -157,6 +183,16 @@ class Projection:
                 "'+proj=laea +lat_0=52 +lon_0=10'"
             )
             raise ProjectionError(msg) from error
+
+    @cached_property
+    def _transforms(self) -> tuple[Any, Any]:
+        """Transforms that turn longitudes around, and that go on beyond the edge of a map."""
+        make = import_extra("pyproj", "xarray").Transformer.from_crs
+        both = (
+            make(self._crs.geodetic_crs, self._crs, always_xy=True, force_over=over)
+            for over in (False, True)
+        )
+        return tuple(both)
 
     def positions(self, lon: Floats, lat: Floats, *, beyond: bool = False) -> Floats:
         """Return positions in metres, (..., 3), of longitudes and latitudes in degrees.
@@ -221,8 +257,15 @@ class Projection:
         x, y, z = np.moveaxis(np.asarray(positions, dtype=float), -1, 0)
         if self.is_globe:
             return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
-        lon, lat = self._transforms[0].transform(x, y, direction="INVERSE", errcheck=False)
+        inverse = partial(self._transforms[0].transform, direction="INVERSE", errcheck=False)
+        lon, lat = inverse(x, y)
         known = np.isfinite(lon) & np.isfinite(lat)
+        if not known.all():  # some lie on the outline, and by rounding beside it
+            inner = inverse(INSIDE * x, INSIDE * y)
+            lon, lat = (
+                np.where(known, one, two) for one, two in zip((lon, lat), inner, strict=True)
+            )
+            known = np.isfinite(lon) & np.isfinite(lat)
         lon, lat = np.where(known, lon, np.nan), np.where(known, lat, np.nan)
         return (lon + self._origin + 180.0) % 360.0 - 180.0, lat
 
@@ -240,6 +283,6 @@ def _mean(one: Floats, other: Floats) -> Floats:
     """Return the mean of two vectors, (..., 3), or one where the other leads across a tear."""
     a, b = (np.linalg.norm(v, axis=-1)[..., None] for v in (one, other))
     with np.errstate(invalid="ignore"):
-        alone = np.where(a > TORN * b, other, one)
-        torn = (a > TORN * b) | (b > TORN * a)
+        alone = np.where((a > TORN * b) | ~np.isfinite(a), other, one)
+        torn = (a > TORN * b) | (b > TORN * a) | (np.isfinite(a) != np.isfinite(b))
     return np.where(torn, alone, (one + other) / 2)

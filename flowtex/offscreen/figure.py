@@ -16,7 +16,15 @@ from flowtex._util.arguments import checked_size
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.errors import FieldError
-from flowtex.field import Surface
+from flowtex.field import FlowField, Surface
+from flowtex.offscreen.annotations import time_text
+from flowtex.offscreen.earth_axes import (
+    AxesUnit,
+    is_geo,
+    label_degrees,
+    projection_of_axes,
+    unit_of,
+)
 from flowtex.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
 from flowtex.options import (
     Appearance,
@@ -116,8 +124,11 @@ def axes(
     Parameters
     ----------
     ax
-        The axes: rectilinear ones, with linear scales. Their limits become those of the surface
-        and their aspect ``"equal"``.
+        Rectilinear axes with linear scales, or the axes of a map that cartopy makes
+        (``projection=ccrs.Robinson()``). Their limits become those of the surface, unless they
+        have been set; the aspect of rectilinear ones becomes equal. Data on longitudes and
+        latitudes are drawn in degrees, or in the projection that ``projection`` names, whose
+        meridians and parallels are the ticks; cartopy's axes have a projection of their own.
     mesh
         What ``plotter.flowtex.add`` takes; its surface is flat.
     time, clock, supersampling
@@ -137,6 +148,7 @@ def axes(
         As for :func:`flowtex.render`.
         When ``ax`` are no such axes.
         When the surface is curved.
+        When the axes are of a map, and the data are not of the Earth.
 
     Examples
     --------
@@ -148,19 +160,22 @@ def axes(
     >>> figure.savefig("gyre.png", dpi=50)
     >>> plt.close(figure)
     """
-    if getattr(ax, "name", "") != "rectilinear":
-        msg = f"ax is {ax!r}; expected rectilinear axes of matplotlib's, as plt.subplots() makes"
-        raise FieldError(msg)
-    if (scales := (ax.get_xscale(), ax.get_yscale())) != ("linear", "linear"):
-        msg = f"ax has scales {scales}; expected linear ones, as ax.set_xscale('linear') makes"
-        raise FieldError(msg)
+    if not is_geo(ax):
+        if getattr(ax, "name", "") != "rectilinear":
+            msg = (
+                f"ax is {ax!r}; expected rectilinear axes of matplotlib's, as plt.subplots() "
+                "makes, or axes of cartopy's"
+            )
+            raise FieldError(msg)
+        if (scales := (ax.get_xscale(), ax.get_yscale())) != ("linear", "linear"):
+            msg = f"ax has scales {scales}; expected linear ones, as ax.set_xscale('linear') makes"
+            raise FieldError(msg)
     chosen = Options.split("field", "appearance", **options)
     image = FlowImage(ax, mesh, chosen, supersampling)
     image.time, image.clock = image.time if time is None else time, clock
     image.set_clip_path(ax.patch)
     ax.add_image(image)
-    left, right, bottom, top = image.get_extent()
-    ax.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    image.frame_axes()
     return image
 
 
@@ -180,7 +195,20 @@ class FlowImage(AxesImage):
     """
 
     def __init__(self, ax: Axes, mesh: Any, options: Options, supersampling: int) -> None:
+        self._unit = AxesUnit()
+        if is_geo(ax):
+            name, self._unit = projection_of_axes(ax)
+            options = _in_projection(mesh, options, name)
         self._scene = scene = Scene.from_options(mesh, options)
+        self._projection = projection = scene.field.projection
+        if projection is None and is_geo(ax):
+            msg = (
+                f"ax is a map, and {scene.field!r} is not of the Earth; give a dataset on "
+                "longitudes and latitudes, or axes without a projection"
+            )
+            raise FieldError(msg)
+        if not is_geo(ax):
+            self._unit = unit_of(projection)
         surface = scene.whole.surface
         self._frame = _frame(surface)
         # The scene keeps alive what each drawing shares with it.
@@ -190,7 +218,9 @@ class FlowImage(AxesImage):
         self._picture = np.zeros((1, 1, 4), np.uint8)
         x, y = self._frame @ surface.center
         width, height = surface.plane_size / 2
-        super().__init__(ax, extent=(x - width, x + width, y - height, y + height))
+        corners = np.array([[x - width, y - height], [x + width, y + height]])
+        (left, bottom), (right, top) = self._unit.on_axes(corners).tolist()
+        super().__init__(ax, extent=(left, right, bottom, top))
         # Pixels have no values, but a colour bar asks for some.
         self.set_data([[scene.scalar_limits[0] if scene.scalar_name else 0.0]])
         self.mouseover = False
@@ -198,6 +228,14 @@ class FlowImage(AxesImage):
         if scene.scalar_name is not None:
             self.set_cmap(ListedColormap(scene.legend_colours[:, :3] / 255))
             self.set_norm((LogNorm if look.log_scale else Normalize)(*scene.legend_limits))
+        self._first_clim = self.get_clim()
+        self._title = ""
+
+    @property
+    def colour_label(self) -> str:
+        """Words and unit of the colours, for a colour bar; empty where the flow has one colour."""
+        name = self._scene.scalar_name
+        return "" if name is None else self._scene.title_of(name)
 
     @property
     def time(self) -> float:
@@ -207,6 +245,7 @@ class FlowImage(AxesImage):
     @time.setter
     def time(self, value: float | str) -> None:
         self._scene.time = value
+        self._tell()
         self.stale = True
 
     @property
@@ -218,6 +257,40 @@ class FlowImage(AxesImage):
     def clock(self, value: float) -> None:
         self._clock = float(value)
         self.stale = True
+
+    def frame_axes(self) -> None:
+        """Set limits, aspect and ticks of the axes, but for limits that have been set."""
+        ax: Any = self.axes
+        left, right, bottom, top = self.get_extent()
+        if is_geo(ax):
+            limits = ax.projection
+            (left, right), (bottom, top) = (
+                np.clip((low, high), *sorted(most)).tolist()
+                for low, high, most in (
+                    (left, right, limits.x_limits),
+                    (bottom, top, limits.y_limits),
+                )
+            )
+        if ax.get_autoscalex_on():
+            ax.set_xlim(left, right)
+        if ax.get_autoscaley_on():
+            ax.set_ylim(bottom, top)
+        self._tell()
+        if is_geo(ax):
+            return
+        across, up = self._unit.scale
+        ax.set_aspect(up / across)
+        if self._projection is not None:
+            label_degrees(ax, self._projection, self._unit)
+
+    def _tell(self) -> None:
+        """Tell level and time of data of the Earth in the title, unless there is another."""
+        field = self._scene.field
+        if self._projection is not None and self.axes.get_title() == self._title:
+            dated = len(field.times) > 1 or field.start is not None
+            time = [time_text(field, self.time)] if dated else []
+            self._title = ", ".join([*filter(None, [field.name]), *time])
+            self.axes.set_title(self._title)
 
     def make_image(
         self,
@@ -231,13 +304,13 @@ class FlowImage(AxesImage):
         # Whole pixels, of which matplotlib cuts those at the border.
         low = np.floor(np.multiply(box.min, magnification))
         high = np.ceil(np.multiply(box.max, magnification))
-        corners: Floats = self.axes.transData.inverted().transform(
-            np.stack([low, high]) / magnification
+        corners = self._unit.on_map(
+            self.axes.transData.inverted().transform(np.stack([low, high]) / magnification)
         )
         width, height = (int(n) for n in np.maximum(high - low, 1))
         density = self.axes.figure.dpi * magnification / USUAL_DPI
         shown = (*corners.ravel(), width, height, density, self.time, self.clock)
-        shown += (self.axes.get_facecolor(),)
+        shown += (self.axes.get_facecolor(), *self.get_clim())
         if shown != self._shown:
             self._picture = self._draw(corners, (width, height), density)
             self._shown = shown
@@ -249,6 +322,9 @@ class FlowImage(AxesImage):
         spans = np.abs(corners[1] - corners[0])
         scale = min(float(np.max(size / spans)), LONGEST_SIDE_PX / float(spans.max()))
         width, height = (max(round(float(n)), 1) for n in spans * scale)
+        look = self._options.appearance
+        if self.get_clim() != self._first_clim:  # by matplotlib's own means
+            look = replace(look, clim=self.get_clim())
         view = ViewOptions(
             camera=self._camera(corners.mean(axis=0), float(spans[1])),
             background=self.axes.get_facecolor(),
@@ -256,7 +332,7 @@ class FlowImage(AxesImage):
         with (
             OffscreenPlotter(
                 self._scene.field,
-                replace(self._options, view=view),
+                replace(self._options, appearance=look, view=view),
                 size=(width, height),
                 supersampling=self._supersampling,
                 density=density,
@@ -278,6 +354,21 @@ class FlowImage(AxesImage):
         return Camera(
             tuple(position), tuple(center), tuple(up), parallel=True, parallel_scale=height / 2
         )
+
+
+def _in_projection(mesh: Any, options: Options, name: str) -> Options:
+    """Return options with which data are drawn in a projection, and lines where asked for."""
+    if options.field.projection is not None or options.field.globe is not None:
+        msg = (
+            "projection and globe are those of the axes, which are of a map; leave them out, or "
+            "give axes without a projection"
+        )
+        raise FieldError(msg)
+    look = options.appearance
+    look = replace(look, coastlines=bool(look.coastlines), graticule=bool(look.graticule))
+    if isinstance(mesh, FlowField):
+        return replace(options, appearance=look)
+    return replace(options, field=replace(options.field, projection=name), appearance=look)
 
 
 def _frame(surface: Surface) -> Floats:

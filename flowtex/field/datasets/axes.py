@@ -145,7 +145,17 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
     choice.check(names)
     if times is None:
         times = _time_beside(arrays[0])
+    level = level or _level_beside(arrays[0])
     return [Section(array, times, tuple(notes), level, numbers) for array in done]
+
+
+def _level_beside(array: xr.DataArray) -> str:
+    """Return words for a level that has been chosen before, whose coordinate is one number."""
+    for name, coordinate in array.coords.items():
+        is_number = not coordinate.dims and coordinate.dtype.kind in "fiu"
+        if is_number and axis_kind(array, str(name)) == LEVEL:
+            return _words(coordinate.values[()], array, str(name))
+    return ""
 
 
 def wet_at(

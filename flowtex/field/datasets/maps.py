@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -106,7 +106,7 @@ class MapLines:
 def on_map(places: Places, name: str | None) -> MapNodes:
     """Put nodes on a map, by its name; by default a flat one that suits the region."""
     projection, around = projection_of(places, name)
-    name, lon, lat = projection.name, places.a, places.b
+    name, lon, lat = projection.family, places.a, places.b
     columns, periodic = np.arange(lon.shape[1]), None if projection.is_globe else ""
     if places.is_line:
         lines = lines_on_map(places, projection, around=around)
@@ -145,7 +145,7 @@ def lines_on_map(places: Places, projection: Projection, *, around: bool) -> Map
         return MapLines(lon, lon, lat, columns, "")
     shown = np.append(lon, lon[0] + 360.0)
     lon, columns = np.append(lon, lon[0]), np.append(columns, columns[0])
-    name = projection.name
+    name = projection.family
     periodic = "i" if name in CYLINDERS else None if name in ("north", "south") else ""
     return MapLines(lon, shown, lat, columns, periodic)
 
@@ -175,17 +175,20 @@ def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
         polar = not around or not places.is_line
         polar = polar and abs(low + high) / 2 > POLAR
         name = FLAT if not polar else "north" if low + high > 0 else "south"
-    return Projection(name, center, max((high - low) / 2, 1.0)), around
+    projection = Projection(name, center, max((high - low) / 2, 1.0))
+    if (origin := projection.origin) is not None:
+        projection = replace(projection, center=(origin, center[1]))
+    return projection, around
 
 
 def shown_positions(projection: Projection, lon: Floats, lat: Floats) -> Floats:
     """Return positions (..., 3) on a flat map, NaN where it has ended."""
     # The last column of the whole Earth is the first one, a turn further.
     points = projection.positions(lon, lat, beyond=True)
-    least, most = LATITUDES.get(projection.name, (-90.0, 90.0))
+    least, most = LATITUDES.get(projection.family, (-90.0, 90.0))
     with np.errstate(invalid="ignore"):
         points[(lat < least) | (lat > most)] = np.nan
-    if projection.name not in ("robinson", "equalearth", *CYLINDERS):
+    if projection.family not in ("robinson", "equalearth", *CYLINDERS):
         scale = projection.scales(lon, lat)
         known = scale[np.isfinite(scale)]
         with np.errstate(invalid="ignore"):

@@ -161,7 +161,7 @@ def region_lines(places: Places, name: str | None) -> RegionLines | None:
             return None
         return RegionLines(a, b, a, np.arange(len(b)), np.arange(len(a)), None, closed=False)
     projection, around = projection_of(places, name)
-    if not (projection.is_globe or projection.name in CYLINDERS):
+    if not (projection.is_globe or projection.family in CYLINDERS):
         return None
     lines = lines_on_map(places, projection, around=around)
     rows = np.arange(len(b))

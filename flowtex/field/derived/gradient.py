@@ -7,7 +7,7 @@ sphere as on a crooked grid, and no term for the curvature of coordinates is nee
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,8 +15,9 @@ import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.vectors import norm
 from flowtex.earth import GLOBE, Projection
-from flowtex.field.poles import Pole
+from flowtex.field.poles import SAME_POINT_SHARE
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.surface import TriangleSurface
 
@@ -64,13 +65,15 @@ class NodeGradient:
 
     directions: Floats
     derivative: Callable[[Floats], Floats]
-    poles: tuple[Pole, ...] = ()
+    poles: tuple[tuple[int, int], ...] = ()
 
     def with_poles(self, nodal: Floats) -> Floats:
         """Give nodes of poles, whose directions differ, the mean beside them, in place."""
-        for pole in self.poles:
-            lines = pole.lines(nodal)
-            lines[pole.line] = lines[pole.line + pole.inward, :-1].mean()
+        for axis, line in self.poles:
+            lines = np.moveaxis(nodal, axis, 0)
+            beside = lines[_beside(line), :-1]
+            known = np.isfinite(beside)
+            lines[line] = beside[known].mean() if known.any() else np.nan
         return nodal
 
     def of_vectors(self, vectors: Floats) -> Floats:
@@ -90,7 +93,7 @@ class _GridGradient:
         self._valid, self._periodic = surface.valid, surface.periodic
         # On the sphere a turn further is the same place.
         self._offset = surface.offset if points is surface.points else np.zeros((2, 3))
-        self._poles = () if surface.poles is None else tuple(surface.poles)
+        self._poles = tuple(_poles(points, surface.valid))
         self._points = np.ascontiguousarray(np.moveaxis(points, -1, 0))
         self._gaps = [self._gap(axis) for axis in (0, 1)]
 
@@ -98,6 +101,9 @@ class _GridGradient:
     def node_gradient(self) -> NodeGradient:
         """The gradient of arrays (C, J, I)."""
         p_i, p_j = (self._difference(self._points, axis, self._offset[axis]) for axis in (1, 0))
+        for axis, line in self._poles:  # it has the directions of the line beside it
+            lines = np.moveaxis((p_i, p_j)[axis], axis + 1, 0)
+            lines[line] = lines[_beside(line)]
         with np.errstate(invalid="ignore", divide="ignore"):
             square = _dot(p_i, p_i)
             length = np.sqrt(square)
@@ -244,6 +250,24 @@ def _near_nodes(surface: TriangleSurface) -> tuple[Indices, Indices]:
     rows, columns = near.row[apart], near.col[apart]
     order = np.argsort(rows, kind="stable")
     return rows[order].astype(np.intp), columns[order].astype(np.intp)
+
+
+def _beside(line: int) -> int:
+    """Return the line next to the first or the last one."""
+    return 1 if line == 0 else line - 1
+
+
+def _poles(points: Floats, valid: Bools) -> Iterator[tuple[int, int]]:
+    """Find the axes, and their first or last lines, where all nodes (J, I, 3) are at one point."""
+    for axis in (0, 1):
+        lines, known = np.moveaxis(points, axis, 0), np.moveaxis(valid, axis, 0)
+        for line in (0, len(lines) - 1):
+            beside = _beside(line)
+            some = known[line] & known[beside]
+            if some.any():
+                apart = norm(lines[line, some] - lines[line, some].mean(axis=0)).max()
+                if apart < SAME_POINT_SHARE * norm(lines[beside, some] - lines[line, some]).min():
+                    yield axis, line
 
 
 def _clockwise(one: Floats, two: Floats, points: Floats, valid: Bools) -> bool:

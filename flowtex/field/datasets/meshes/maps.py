@@ -62,7 +62,7 @@ def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     middle = projection.center[0]
     lon = middle + (lon - middle + 180.0) % 360.0 - 180.0
     lost = 0
-    if projection.name in NAMES and projection.name not in AROUND_A_POLE:
+    if projection.family in NAMES and projection.family not in AROUND_A_POLE:
         wide = _span(lon[triangles], middle) > WIDEST
         triangles, lost = triangles[~wide], int(wide.sum())
         triangles, pairs, shares, at = _cut(lon, triangles, middle)
@@ -72,7 +72,7 @@ def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     points = shown_positions(projection, lon, lat)
     finite = np.asarray(np.isfinite(points).all(axis=1))
     triangles = triangles[finite[triangles].all(axis=1)]
-    if projection.name not in NAMES:
+    if projection.family not in NAMES:
         torn = _torn(points, Projection(GLOBE).positions(lon, lat), triangles)
         triangles, lost = triangles[~torn], lost + int(torn.sum())
     return MeshMap(projection, points, triangles, nodes, share, lon, lat, lost)
