@@ -78,8 +78,8 @@ LIBRARIES = (
     VTK,
     Library(
         ("matplotlib",),
-        on_load=("offscreen.figure",),
-        in_functions=("_util.colours", "offscreen.annotations"),
+        on_load=("offscreen.figure", "offscreen.earth_axes"),
+        in_functions=("_util.colours", "offscreen.annotations", "xarray"),
     ),
     Library(
         (
