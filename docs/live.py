@@ -31,6 +31,7 @@ from typing import Any, ClassVar
 import numpy as np
 from docutils import nodes
 from docutils.parsers.rst import directives
+from embed import write_scene
 from PIL import Image
 from sphinx.util.docutils import SphinxDirective
 
@@ -39,7 +40,6 @@ from flowtex.field import FlowField
 from flowtex.offscreen.plotter import add_scenes, new_plotter, point_camera
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.web.assets import asset
-from flowtex.web.embed import write_scene
 from flowtex.web.export import estimate, page_data
 from flowtex.web.view import WebView, web_views
 

@@ -18,7 +18,6 @@ from PIL import Image
 import flowtex
 from flowtex._util.whole_file import WholeFile, whole_file
 from flowtex.offscreen.encoders import write_movie
-from flowtex.web.embed import write_scene
 from flowtex.web.view import web_views
 
 posix = pytest.mark.skipif(os.name != "posix", reason="modes, links and limits of POSIX")
@@ -54,6 +53,8 @@ def export_page(path: Path) -> None:
 
 
 def embed_scene(path: Path) -> None:
+    from embed import write_scene  # of docs/, which a child does not know
+
     # With parts beside it.
     views = web_views(flowtex.examples.delta_wing_field(), flowtex.options.Options.split())
     write_scene(path.parent, path.stem, views)

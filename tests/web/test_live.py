@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from embed import write_scene
 from flows import gyre
 
 from flowtex.options import Options
 from flowtex.web.assets import asset
-from flowtex.web.embed import write_scene
 from flowtex.web.view import web_views
 
 if TYPE_CHECKING:

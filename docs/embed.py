@@ -30,18 +30,15 @@ def write_scene(
     views: Sequence[WebView],
     *,
     camera: dict[str, Any] | None = None,
-    time: float | None = None,
-    clock: float = 0.0,
 ) -> None:
     """Write the script of a view, or of two beside each other, as ``name.js`` into a folder.
 
-    Its large parts become scripts beside it, called by their digests. Camera, time and clock are
-    those of :meth:`ClientData.header`.
+    Its large parts become scripts beside it, called by their digests. The camera is that of
+    :meth:`ClientData.header`.
     """
-    shown = {"camera": camera, "time": time, "clock": clock}
     with ExitStack() as undo:
         with whole_file(folder / f"{name}.js") as file:
-            file.writelines(text.encode() for text in _script(folder, name, views, shown, undo))
+            file.writelines(text.encode() for text in _script(folder, name, views, camera, undo))
         undo.pop_all()
 
 
@@ -49,13 +46,13 @@ def _script(
     folder: Path,
     name: str,
     views: Sequence[WebView],
-    shown: dict[str, Any],
+    camera: dict[str, Any] | None,
     undo: ExitStack,
 ) -> Iterator[str]:
     """Give the text of a scene; ``undo`` removes the parts that were written beside it."""
     scenes = page_data(views)
     headers = [
-        scene.header(view.scene.settings, **shown)
+        scene.header(view.scene.settings, camera=camera)
         for view, scene in zip(views, scenes, strict=True)
     ]
     if len(views) > 1:
