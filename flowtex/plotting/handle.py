@@ -144,6 +144,7 @@ class FlowHandle(AppearanceAttributes):
         those that it needs.
         """
         self._surface.load_in_background(notify)
+        self._structure.load_in_background(notify)
 
     @property
     def meshes(self) -> list[Any]:
@@ -156,8 +157,8 @@ class FlowHandle(AppearanceAttributes):
 
     @property
     def busy(self) -> bool:
-        """Whether tiles of the last picture are on their way."""
-        return self._surface.busy
+        """Whether tiles of the last picture, or its structure, are on their way."""
+        return self._surface.busy or self._structure.busy
 
     def set_surface(self, mesh: Any, **options: Any) -> None:
         """Draw the flow on another surface from now on, such as a cutting plane that has moved.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,9 @@ from flowtex.rendering.vtk import FlowSurface
 from flowtex.scene import Scene
 from flowtex.trace.structure import CriticalPoints, Separatrices
 
+#: Structures are found one after the other, beside what else goes on.
+_pool = ThreadPoolExecutor(1, thread_name_prefix="flowtex-structure")
+
 
 class StructureOverlay(Overlay):
     """What the settings ask for of the structure of one flow."""
@@ -30,16 +34,50 @@ class StructureOverlay(Overlay):
     def __init__(self, actor: pv.Actor, renderer: Any, scene: Scene, surface: FlowSurface) -> None:
         super().__init__(actor, renderer, surface)
         self._shown: tuple[int, ...] = ()
+        self._notify: Callable[[], None] | None = None
+        self._asked: tuple[Any, ...] = ()
+        self._found: Future[None] | None = None
+        self._scene = scene
         self.show(scene)
+
+    def load_in_background(self, notify: Callable[[], None]) -> None:
+        """Show what is found when it is there, and tell from a thread; else a change waits."""
+        self._notify = notify
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is still to be found."""
+        return self._found is not None and not self._found.done()
+
+    @property
+    def _wanted(self) -> tuple[int, ...]:
+        scene, settings = self._scene, self._scene.settings
+        return id(scene.field), scene.step, settings.critical_points, settings.separatrices
 
     def show(self, scene: Scene) -> None:
         """Follow the settings and the time of a scene."""
-        settings = scene.settings
-        shown = (id(scene.field), scene.step, settings.critical_points, settings.separatrices)
-        if shown == self._shown:
+        self._scene = scene
+        if self._shown != self._wanted:
+            self._clear()
+            self._shown = ()
+            self._show()
+
+    def _before_frame(self) -> None:
+        if self._shown != self._wanted:
+            self._show()
+        super()._before_frame()
+
+    def _show(self) -> None:
+        """Draw what is wanted; in the background once it is found."""
+        scene, settings = self._scene, self._scene.settings
+        asked = (scene.step, settings.critical_points, settings.separatrices)
+        if any(asked[1:]) and self._notify is not None and not scene.structure.has(*asked):
+            if self._asked != (scene.structure, asked):
+                self._asked, notify = (scene.structure, asked), self._notify
+                self._found = _pool.submit(scene.structure.find, *asked)
+                self._found.add_done_callback(lambda _: notify())
             return
-        self._clear()
-        self._shown = shown
+        self._shown = self._wanted
         if settings.separatrices:
             self._add_separatrices(scene.structure.lines(scene.step, settings.separatrices))
         if settings.critical_points:

@@ -55,6 +55,18 @@ class Structure:
             kept = {id(saddle) for saddle in _saddles(lines)[:saddles]}
             return Separatrices(line for line in lines if id(line.saddle) in kept)
 
+    def find(self, step: int, points: int, saddles: int) -> None:
+        """Have what shows so many points, and the lines of so many saddles, of a step."""
+        if points:
+            self.points(step)
+        if saddles:
+            self.lines(step, saddles)
+
+    def has(self, step: int, points: int, saddles: int) -> bool:
+        """Tell whether all that shows these has been found."""
+        found = self._lines.get(step, (0, None))[0]
+        return (not points or step in self._points) and saddles <= found
+
 
 def _saddles(lines: Separatrices) -> CriticalPoints:
     """Return the saddles of lines, each once, the strongest first."""

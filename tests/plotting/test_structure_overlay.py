@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
+from waiting import PATIENCE_S
 
 import flowtex
 from flowtex import FlowField
@@ -77,8 +80,6 @@ def test_without_them_a_picture_is_as_before() -> None:
 
 
 def test_settings_and_time_are_followed() -> None:
-    import pyvista as pv
-
     x, y = np.meshgrid(np.linspace(-2, 2, 81), np.linspace(-1, 1, 41))
     velocity = [np.stack([x - at, -y], axis=-1) for at in (-1.0, 0.0, 1.0)]
     field = FlowField.from_arrays(np.stack([x, y], axis=-1), velocity, times=[0.0, 1.0, 2.0])
@@ -94,6 +95,24 @@ def test_settings_and_time_are_followed() -> None:
     handle.settings.critical_points = False
     with pytest.raises(AssertionError, match="there are 0 pixels"):
         seen(np.asarray(plotter.screenshot(return_img=True)), color)
+    plotter.close()
+
+
+def test_they_are_found_in_the_background_where_that_is_asked_for() -> None:
+    plotter = pv.Plotter(off_screen=True, window_size=[4 * UNIT, 2 * UNIT])
+    handle = plotter.flowtex.add(grid(saddle_and_sink), samples=3, scalars=False)
+    told = threading.Event()
+    handle.load_in_background(told.set)
+    structure_of = handle.scene.structure
+    with structure_of._lock:  # nothing can be found yet
+        handle.settings.critical_points = True
+        assert handle.busy
+        with pytest.raises(AssertionError, match="there are 0 pixels"):
+            seen(np.asarray(plotter.screenshot(return_img=True)), KIND_MARKS["saddle"].color)
+    assert told.wait(PATIENCE_S)
+    assert not handle.busy
+    plotter.render()
+    seen(np.asarray(plotter.screenshot(return_img=True)), KIND_MARKS["saddle"].color)
     plotter.close()
 
 

@@ -12,6 +12,7 @@ import scipy
 from flowtex._util.arguments import check_field, checked_count
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.extras import import_extra
+from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.poles import Pole
@@ -211,7 +212,7 @@ def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> 
         raise FieldError(msg)
     numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
     points: list[CriticalPoint] = []
-    for number in numbers:
+    for number in track(numbers, len(numbers), "Finding critical points"):
         part = field.at_step(number)
         search = _on_grid if part.triangles is None else _on_triangles
         points += _with_strength(search(part), part)

@@ -13,6 +13,7 @@ import scipy
 from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
+from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locator
@@ -184,7 +185,7 @@ def separatrices(
         checked_count("strongest", strongest, expected="a number of saddles, 1 or more")
     numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
     lines = Separatrices()
-    for number in numbers:
+    for number in track(numbers, len(numbers), "Following separatrices"):
         part = field.at_step(number)
         points = critical_points(part)
         saddles = points.of_kind("saddle")
