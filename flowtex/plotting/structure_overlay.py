@@ -86,7 +86,7 @@ class StructureOverlay(Overlay):
     def _add_separatrices(self, lines: Separatrices) -> None:
         by_color: dict[str, list[Floats]] = {name: [] for name in LINE_COLORS}
         for line in lines:
-            by_color["leaving" if line.forward else "coming"].append(line.unwound())
+            by_color["leaving" if line.forward else "coming"].append(line.unwound)
             if line.orbit is not None:
                 by_color["closed orbit"].append(line.orbit)
         outer, inner = LINE_PX

@@ -83,7 +83,7 @@ class Marks:
             number = SADDLE * rank + LEAVING * line.forward
             count[number] = count.get(number, -1) + 1
             number += SIDE * (count[number] % 2)
-            for path, is_orbit in ((line.unwound(), 0), (line.orbit, 1)):
+            for path, is_orbit in ((line.unwound, 0), (line.orbit, 1)):
                 if path is not None:
                     codes = np.full((len(path), 1), number + ORBIT * is_orbit)
                     rows.append(np.concatenate([path, codes], axis=1))

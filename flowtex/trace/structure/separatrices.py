@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -61,8 +61,9 @@ class Separatrix:
         """Points of the closed orbit on which the line ends, (N, 3), or ``None``."""
         return None if self.turn is None else self.points[self.turn :]
 
+    @cached_property
     def unwound(self) -> Floats:
-        """Return the points up to the second turn that lies close beside the one before, (N, 3).
+        """The points up to the second turn that lies close beside the one before, (N, 3).
 
         That is what a picture has room for of a line that winds up.
         """
