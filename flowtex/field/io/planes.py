@@ -27,6 +27,8 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
+from flowtex._util.notices import notify
+from flowtex.errors import FieldError
 
 _PLANE = re.compile(r"\s*([ijk])\s*=\s*([+-]?\d+)\s*", re.IGNORECASE)
 
@@ -59,7 +61,7 @@ def count_nodes(dimensions: tuple[int, int, int]) -> str:
 
 
 def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
-    """Return faults in a choice of plane; ``None`` is right where the mesh is one itself."""
+    """Return faults in a choice of plane; ``None`` is the mesh, or the middle of a volume."""
     size = count_nodes(dimensions)
     if min(dimensions) < 1:
         return ["the mesh is empty: check that the file or the filter that made it gave any nodes"]
@@ -69,7 +71,7 @@ def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
             "the axes"
         ]
     if plane is None:
-        return [_choose(dimensions)] if min(dimensions) > 1 else []
+        return []
     match = _PLANE.fullmatch(plane) if isinstance(plane, str) else None
     if match is None:
         return [
@@ -94,24 +96,25 @@ def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
 
 def choose_plane(dimensions: tuple[int, int, int], plane: str | None) -> Plane:
     """Return the plane that is meant; :func:`plane_faults` returned none before."""
-    match = _PLANE.fullmatch(plane or "")
-    if match is None:
+    if plane is None and min(dimensions) == 1:
         return Plane(dimensions, dimensions.index(1), 0)
+    if plane is None:
+        plane = _example(dimensions)
+        ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
+        notify(
+            f'the plane is "{plane}", the middle of {count_nodes(dimensions)}; choose another, as '
+            f'in plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere, as in slice="z"'
+        )
+    match = _PLANE.fullmatch(plane)
+    if match is None:
+        msg = f'plane is {plane!r}; expected "i=N", "j=N" or "k=N"'
+        raise FieldError(msg)
     axis = "ijk".index(match[1].lower())
     return Plane(dimensions, axis, int(match[2]) % dimensions[axis])
 
 
 def _example(dimensions: tuple[int, int, int]) -> str:
     return f"k={dimensions[2] // 2}"
-
-
-def _choose(dimensions: tuple[int, int, int]) -> str:
-    ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
-    return (
-        f"the mesh has {count_nodes(dimensions)}, and a flow is drawn on one surface: choose a "
-        f'plane, as in plane="{_example(dimensions)}"; there are {ranges}, and -1 is the last one; '
-        'or cut it anywhere, as in slice="z"'
-    )
 
 
 def spread(values: Floats, visible: Bools, wrap: tuple[bool, bool]) -> Floats:

@@ -8,16 +8,23 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
+from flowtex._util.notices import notify
 from flowtex.field.io.components import NO_VELOCITY, find_vectors
 
 #: Arrays that say what is hidden and nothing about the flow.
 BLANKING = ("vtkGhostType", "IBlank", "vtkValidPointMask")
+#: Names of velocities among several vectors.
+VELOCITY = re.compile(
+    r"((mean|avg|average)[ _.-]?)?(vel|velocity|velocities|u|flow|wind|current)([ _.-]?mean)?",
+    re.IGNORECASE,
+)
 _PLACES: tuple[Literal["points"], Literal["cells"]] = ("points", "cells")
 
 
@@ -78,7 +85,10 @@ def candidates(mesh: Any) -> list[MeshArray]:
         and array.name not in named
         and not NO_VELOCITY.fullmatch(array.name)
     ]
-    return arrays or _found(mesh)
+    # An array that stands on cells as well was computed from one of the two: those of points
+    # come first.
+    by_name = {array.name: array for array in reversed(arrays)}
+    return [array for array in arrays if by_name[array.name] is array] or _found(mesh)
 
 
 def _found(mesh: Any) -> list[MeshArray]:
@@ -103,7 +113,15 @@ def missing_arrays(mesh: Any, vectors: MeshArray) -> list[str]:
 def choose_vectors(mesh: Any, vectors: str | None) -> MeshArray:
     """Return the vectors that are meant; :func:`vector_faults` returned none before."""
     if vectors is None:
-        return _preferred(mesh)[0]
+        chosen = _preferred(mesh)[0]
+        others = [array for array in candidates(mesh) if array != chosen]
+        if others and mesh.active_vectors_name != chosen.name:
+            listed = ", ".join(map(str, others))
+            notify(
+                f'the velocity is "{chosen.name}", by its name; there are {listed} as well: choose '
+                f'another, as in vectors="{others[0].name}"'
+            )
+        return chosen
     return next(a for a in _meant(mesh, vectors) if _is_vector(a))
 
 
@@ -179,13 +197,15 @@ def _hint(name: Any, arrays: list[MeshArray]) -> str:
 
 
 def _preferred(mesh: Any) -> list[MeshArray]:
-    """Candidates, or the single one that the mesh itself marks as its vectors."""
+    """Candidates, or the single one that the mesh marks as its vectors, or that a name tells."""
     arrays = candidates(mesh)
     active = mesh.active_vectors_name
     # VTK's PLOT3D reader marks the momentum by itself: that is no one's choice.
     if active == "Momentum" and any(a.name == "Velocity" for a in arrays):
         active = None
-    return [a for a in arrays if a.name == active][:1] or arrays
+    marked = [a for a in arrays if a.name == active][:1]
+    named = [a for a in arrays if VELOCITY.fullmatch(a.name)]
+    return marked or (named if len(named) == 1 else arrays)
 
 
 def _search_faults(mesh: Any, listed: str) -> list[str]:

@@ -11,6 +11,7 @@ import pytest
 import pyvista as pv
 
 from flowtex import FlowField
+from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.io.components import find_vectors
 from flowtex.field.io.summary import describe
@@ -140,13 +141,20 @@ def test_an_array_whose_own_name_has_commas_wins() -> None:
     assert np.all(FlowField.from_pyvista(grid, vectors="u,v,w").velocity == 7)
 
 
+def test_of_several_triples_the_one_that_is_named_so_is_the_velocity() -> None:
+    told = r'the velocity is "Velocity", by its name; .*: choose another, as in vectors="u,v,w"'
+    with pytest.warns(Notice, match=told):
+        field = FlowField.from_pyvista(mesh((*NAMES, "u", "v", "w")))
+    assert np.all(field.velocity == FlowField.from_pyvista(mesh()).velocity)
+
+
 def test_several_triples_are_asked_about() -> None:
     with says(
-        "the mesh has 2 arrays that could be the velocity: Velocity (points, 3 from X Velocity, "
-        "Y Velocity, Z Velocity), u,v,w (points, 3 from u, v, w); choose one, as in "
-        'vectors="u,v,w"'
+        "the mesh has 2 arrays that could be the velocity: B_x,B_y,B_z (points, 3 from "
+        "B_x, B_y, B_z), u,v,w "
+        '(points, 3 from u, v, w); choose one, as in vectors="u,v,w"'
     ):
-        FlowField.from_pyvista(mesh((*NAMES, "u", "v", "w")))
+        FlowField.from_pyvista(mesh(("B_x", "B_y", "B_z", "u", "v", "w")))
 
 
 LISTED = (

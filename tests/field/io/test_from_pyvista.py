@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from flowtex import FlowField
+from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.io.planes import nodes_to_keep, spread
 
@@ -508,13 +509,6 @@ def moved() -> Any:
 @pytest.mark.parametrize(
     ("mesh", "given", "text"),
     [
-        (
-            flowing(5, 4, 3),
-            {},
-            "the mesh has 5 x 4 x 3 nodes (I x J x K), and a flow is drawn on one surface: choose "
-            'a plane, as in plane="k=1"; there are i=0 to 4, j=0 to 3, k=0 to 2, and -1 is the '
-            'last one; or cut it anywhere, as in slice="z"',
-        ),
         *(
             (flowing(5, 4, 3), {"plane": plane}, f"plane is {plane!r}; expected {expected}")
             for plane, expected in [
@@ -552,12 +546,6 @@ def moved() -> Any:
             "2 things are wrong:\n"
             f"  1. plane is 'k=9'; expected k between -3 and 2, {SOLID}\n"
             f"  2. vectors is 'w', and the mesh has no such array. {KNOWN} v (points, 3)",
-        ),
-        (
-            marked(),
-            {},
-            "the mesh has 2 arrays that could be the velocity: Momentum (points, 3), Velocity "
-            '(points, 3); choose one, as in vectors="Velocity"',
         ),
         (
             carrying(v=np.ones((12, 3)), cells_w=np.ones((6, 2))),
@@ -676,3 +664,23 @@ def test_the_mesh_is_not_changed() -> None:
     assert grid == before
     assert grid.active_vectors_name is None
     assert not np.shares_memory(field.points, np.asarray(grid.points))
+
+
+def test_of_a_volume_the_middle_is_drawn_with_a_notice() -> None:
+    told = r'the plane is "k=1", the middle of 5 x 4 x 3 nodes .* in plane="j=2" \(i=0 to 4,'
+    with pytest.warns(Notice, match=told):
+        field = FlowField.from_pyvista(flowing(5, 4, 3))
+    np.testing.assert_array_equal(
+        field.velocity, FlowField.from_pyvista(flowing(5, 4, 3), plane="k=1").velocity
+    )
+
+
+def test_of_several_vectors_the_one_that_is_named_so_is_the_velocity() -> None:
+    told = r'the velocity is "Velocity", by its name; there are Momentum \(points, 3\) as well'
+    with pytest.warns(Notice, match=told):
+        FlowField.from_pyvista(marked())
+
+
+def test_an_array_on_points_and_on_cells_is_one() -> None:
+    grid = carrying(w=np.full((12, 3), 2.0), cells_w=np.ones((6, 3)))
+    assert np.all(FlowField.from_pyvista(grid).velocity[..., :2] == 2)

@@ -64,7 +64,7 @@ def test_cgns_tells_what_it_holds(tmp_path: Path) -> None:
         ("Velocity", "cells"),
         ("Pressure", "cells"),
     ]
-    assert summary.problem.startswith("the mesh has 4 x 3 x 2 nodes")
+    assert summary.problem == ""
 
 
 def test_steady_cgns_has_no_times(tmp_path: Path) -> None:
