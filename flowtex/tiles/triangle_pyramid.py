@@ -38,6 +38,8 @@ FIRST_CELLS, MOST_LAGS = 0.25, 24
 BIN_SHARE = 1 / 4
 #: Share of the triangles of a block whose size counts as that of all.
 MOST_SHARE = 0.95
+#: Nodes that a window has for one of its tile, at most, for paths to be composed: that follows all.
+MOST_AROUND = 2.0
 #: Greatest width of what paths are traced in around a tile, in lengths of even paths.
 MOST_WIDE = 4.0
 
@@ -138,7 +140,7 @@ class TrianglePyramid(Pyramid):
             window,
             parameter=self.parameter,
             lines=self.lines,
-            compose=False,
+            compose=window.shape[1] <= MOST_AROUND * followed.sum(),
             longest=longest,
             nodes=followed,
         )

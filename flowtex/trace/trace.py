@@ -84,12 +84,12 @@ def trace(
         instead of being integrated. By default they are when the lags are chosen automatically.
         In a field that varies this takes equal time steps, of which all are traced; otherwise
         all lags are integrated, as they are in a field without a sign. On triangles it takes a
-        steady field, lags that double, one unit for all nodes, and no choice of ``nodes``.
+        steady field, lags that double, and one unit for all nodes.
     nodes
         Nodes whose paths are wanted, (J, I), all by default. Where paths are integrated only these
         are followed, and the others are treated as blanked ones. To compose takes those around
         them too, and theirs end where no path of a wanted one needs them. On triangles the others
-        have displacements and reach zero, as blanked ones have.
+        have displacements and reach zero, as blanked ones have, where paths are integrated.
     longest
         Length in the mesh's units that a path by arc length has to have. Where cells are large the
         last lags lead farther; paths that are composed end, and stay, with the first lag that is as
@@ -148,7 +148,7 @@ def trace(
                 chosen,
                 two_sided=two_sided,
                 tolerance=tolerance,
-                compose=composed and nodes is None,
+                compose=composed,
                 run=run,
                 progress=progress,
             )

@@ -45,14 +45,15 @@ def triangle_slices(
 ) -> TraceSlices:
     """Follow the paths through some nodes, ``chosen`` (1, N); others have reach and path 0.
 
-    Lags (M,) are in multiples of ``unit`` (1, N), and ``run`` maps a function over blocks.
+    Paths that are composed are so of those around them: all are followed. Lags (M,) are in
+    multiples of ``unit`` (1, N), and ``run`` maps a function over blocks.
     """
-    mesh, points = _mesh(field), field.points[0]
-    at = np.flatnonzero(chosen[0] & (np.diff(mesh.first) > 0))
-    sides = (-1.0, 1.0) if two_sided else (-1.0,)
-    known = len(lags)
+    mesh, points, known = _mesh(field), field.points[0], len(lags)
     if compose and len(steps) == 1:
         known = _known(field, parameter, lags, unit)
+    followed = chosen if known == len(lags) else field.valid
+    at = np.flatnonzero(followed[0] & (np.diff(mesh.first) > 0))
+    sides = (-1.0, 1.0) if two_sided else (-1.0,)
     displacement = np.zeros((len(sides), len(steps), len(lags), *field.points.shape), np.float32)
     reach = np.zeros((len(sides), len(steps), *field.shape), np.float32)
     motions = [_motions(field, steps, parameter, side) for side in sides]
