@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -266,22 +267,23 @@ def test_lags_that_do_not_increase_are_refused(lags: list[float]) -> None:
         paths(field, [[1.0, 1.0]], lags)
 
 
-def test_other_arguments_are_checked() -> None:
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"parameter": "length"}, 'parameter is \'length\'; expected "arclength" or "time"'),
+        ({"unit": -1.0}, "unit has values from -1 to -1; expected positive numbers"),
+        ({"tolerance": 0}, "tolerance is 0; expected a positive number of cells, such as 1e-3"),
+        (
+            {"nodes": np.ones((2, 3), bool), "compose": False},
+            "nodes has shape (2, 3); expected (6, 11) as the field has",
+        ),
+        ({"steps": [1]}, "time step 1 does not exist: expected 0 to 0"),
+    ],
+)
+def test_other_arguments_are_checked(options: dict[str, Any], message: str) -> None:
     field = double_gyre_field(shape=(6, 11))
-    message = 'parameter is \'length\'; expected "arclength" or "time"'
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        trace(field, parameter="length")
-    message = "unit has values from -1 to -1; expected positive numbers"
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        trace(field, unit=-1.0)
-    message = "tolerance is 0; expected a positive number of cells, such as 1e-3"
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        trace(field, tolerance=0)
-    message = "nodes has shape (2, 3); expected (6, 11) as the field has"
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        trace(field, nodes=np.ones((2, 3), bool), compose=False)
-    with pytest.raises(FieldError, match=r"^time step 1 does not exist: expected 0 to 0$"):
-        trace(field, steps=[1])
+    with pytest.raises(FieldError, match=f"^{re.escape(message)}$"):
+        trace(field, **options)
 
 
 def test_a_time_varying_field_is_followed_by_time() -> None:
@@ -307,7 +309,12 @@ def test_automatic_lags_of_a_time_varying_field_reach_its_steps() -> None:
 # --- progress, and the store ----------------------------------------------------------------
 
 
-def bars_drawn(monkeypatch: pytest.MonkeyPatch, seconds: float, *, show: bool = True) -> int:
+@pytest.mark.parametrize(
+    ("seconds", "show", "has_bar"), [(0.3, True, True), (0.001, True, False), (0.3, False, False)]
+)
+def test_a_progress_bar_appears_after_a_second_where_it_is_wanted(
+    monkeypatch: pytest.MonkeyPatch, seconds: float, show: bool, has_bar: bool
+) -> None:
     drawn: list[str] = []
 
     class Bar:
@@ -328,20 +335,7 @@ def bars_drawn(monkeypatch: pytest.MonkeyPatch, seconds: float, *, show: bool = 
     monkeypatch.setattr("flowtex._util.progress.time.monotonic", lambda: float(next(clock)))
     monkeypatch.setattr(progress, "_bar", Bar)
     trace(double_gyre_field(True, shape=(6, 11)), progress=show)
-    assert drawn in ([], ["Tracing", "closed"])
-    return len(drawn)
-
-
-def test_a_progress_bar_appears_after_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert bars_drawn(monkeypatch, 0.3)
-
-
-def test_no_progress_bar_for_short_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert not bars_drawn(monkeypatch, 0.001)
-
-
-def test_no_progress_bar_when_it_is_not_wanted(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert not bars_drawn(monkeypatch, 0.3, show=False)
+    assert drawn == (["Tracing", "closed"] if has_bar else [])
 
 
 def test_store_gives_each_step_once() -> None:

@@ -100,16 +100,12 @@ def test_blanking_survives_a_file(tmp_path: Path) -> None:
     assert np.argwhere(~FlowField.from_file(tmp_path / "flow.vts").valid).tolist() == [[1, 1]]
 
 
-def test_a_series(tmp_path: Path) -> None:
+def test_a_series_and_one_time_of_it(tmp_path: Path) -> None:
     field = FlowField.from_file(series(tmp_path))
     assert field.times.tolist() == [0.5, 1, 2]
     assert field.velocity[:, 0, 1, 0].tolist() == [1.5, 2, 3]
-
-
-def test_one_time_of_a_series(tmp_path: Path) -> None:
-    field = FlowField.from_file(series(tmp_path), time=1)
-    assert field.steady
-    assert field.velocity[:, 0, 1, 0].tolist() == [2]
+    one = FlowField.from_file(series(tmp_path), time=1)
+    assert one.steady and one.velocity[:, 0, 1, 0].tolist() == [2]
 
 
 def test_a_time_that_is_not_there(tmp_path: Path) -> None:
@@ -378,9 +374,6 @@ def test_a_file_that_is_missing(tmp_path: Path) -> None:
         "flow.vtk"
     ):
         FlowField.from_file(tmp_path / "flow.vts")
-
-
-def test_a_folder(tmp_path: Path) -> None:
     with says(f"{tmp_path}: a folder, where a file was expected; name the mesh inside it"):
         FlowField.from_file(tmp_path)
 
@@ -484,21 +477,15 @@ def test_logging_is_left_as_it_was(tmp_path: Path) -> None:
 
     (tmp_path / "a.vts").write_text("<VTKFile/>", encoding="ascii")
     root = logging.getLogger()
-    before = (
-        list(root.handlers),
-        list(root.filters),
-        vtkLogger.GetCurrentVerbosityCutoff(),
-        vtkOutputWindow.GetInstance(),
-    )
+
+    def state() -> tuple[Any, ...]:
+        cutoff, window = vtkLogger.GetCurrentVerbosityCutoff(), vtkOutputWindow.GetInstance()
+        return list(root.handlers), list(root.filters), cutoff, window
+
+    before = state()
     with pytest.raises(FieldError):
         FlowField.from_file(tmp_path / "a.vts")
-    after = (
-        list(root.handlers),
-        list(root.filters),
-        vtkLogger.GetCurrentVerbosityCutoff(),
-        vtkOutputWindow.GetInstance(),
-    )
-    assert before == after
+    assert before == state()
 
 
 MANY_THREADS = """
@@ -599,17 +586,12 @@ def test_what_makes_no_field_names_its_file(tmp_path: Path) -> None:
             FlowField.from_file(path, vectors="v")
 
 
-def test_a_file_that_can_be_drawn_has_no_problem(tmp_path: Path) -> None:
+def test_what_can_be_drawn_has_no_problem_and_tells_its_times(tmp_path: Path) -> None:
     flowing().save(tmp_path / "flow.vts")
-    summary = describe(tmp_path / "flow.vts")
-    assert summary.problem == ""
+    one, several = describe(tmp_path / "flow.vts"), describe(series(tmp_path))
+    assert one.problem == several.problem == ""
+    assert one.times == () and several.times == (0.5, 1.0, 2.0)
     FlowField.from_file(tmp_path / "flow.vts")
-
-
-def test_a_series_tells_its_times(tmp_path: Path) -> None:
-    summary = describe(series(tmp_path))
-    assert summary.times == (0.5, 1.0, 2.0)
-    assert summary.problem == ""
 
 
 def test_blocks_are_listed(tmp_path: Path) -> None:
