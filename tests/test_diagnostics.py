@@ -77,24 +77,28 @@ def test_vtk_without_its_library_really_crashes(monkeypatch: pytest.MonkeyPatch)
     assert found.remedy.endswith("or unset VTK_DEFAULT_OPENGL_WINDOW")
 
 
-def test_a_trial_that_hangs_is_given_up() -> None:
-    found = diagnostics.run_trial(
-        (sys.executable, "-c", "import time; time.sleep(60)"), timeout=0.2
-    )
-    assert found.failure == "the trial did not end within 0.2 s"
-    assert found.remedy
-
-
-def test_a_trial_that_cannot_start_is_reported() -> None:
-    found = diagnostics.run_trial(("/nowhere/python",))
-    assert found.failure.startswith("the trial could not be started: ")
-
-
-def test_what_the_trial_printed_is_passed_on() -> None:
-    found = diagnostics.run_trial(
-        (sys.executable, "-c", "raise SystemExit('\\033[31mbad server\\033[0m')")
-    )
-    assert found.failure == "the process that tried it ended with code 1; it said: bad server"
+@pytest.mark.parametrize(
+    ("command", "limits", "failure"),
+    [
+        (
+            (sys.executable, "-c", "import time; time.sleep(60)"),
+            {"timeout": 0.2},
+            "the trial did not end within 0.2 s",
+        ),
+        (("/nowhere/python",), {}, "the trial could not be started: "),
+        (
+            (sys.executable, "-c", "raise SystemExit('\\033[31mbad server\\033[0m')"),
+            {},
+            "the process that tried it ended with code 1; it said: bad server",
+        ),
+    ],
+    ids=["hangs", "cannot start", "prints"],
+)
+def test_a_trial_that_fails_is_reported(
+    command: tuple[str, ...], limits: dict[str, float], failure: str
+) -> None:
+    found = diagnostics.run_trial(command, **limits)
+    assert found.failure.startswith(failure) and found.remedy
 
 
 @pytest.mark.usefixtures("headless")
@@ -114,22 +118,26 @@ def test_with_a_display_x_is_wanted_too(monkeypatch: pytest.MonkeyPatch) -> None
     assert diagnostics.run_trial(CRASHES).remedy.endswith(" libgl1 libegl1 libgl1-mesa-dri")
 
 
-def test_root_needs_no_sudo(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("shutil.which", lambda name: f"/usr/bin/{name}")
+@pytest.mark.usefixtures("apt")
+def test_root_needs_no_sudo_and_other_systems_get_the_names(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: 0, raising=False)
     assert diagnostics.install_command("libegl1") == (
         "apt-get update && apt-get install --no-install-recommends libegl1"
     )
-
-
-def test_other_systems_get_the_names(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("shutil.which", lambda _: None)
     assert diagnostics.install_command("libegl1") == (
         "install Mesa's OpenGL (on Debian and Ubuntu it is libegl1)"
     )
 
 
-def test_require_opengl_names_failure_and_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_require_opengl_returns_the_report_or_names_failure_and_remedy(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    good = diagnostics.OpenGLReport(usable=True)
+    monkeypatch.setattr(diagnostics, "opengl_report", lambda: good)
+    assert diagnostics.require_opengl() is good
     broken = diagnostics.OpenGLReport(usable=False, failure="it crashed", remedy="install it")
     monkeypatch.setattr(diagnostics, "opengl_report", lambda: broken)
     expected = r"^VTK cannot draw here: it crashed\. To mend it:\n  install it$"
@@ -137,20 +145,10 @@ def test_require_opengl_names_failure_and_remedy(monkeypatch: pytest.MonkeyPatch
         diagnostics.require_opengl()
 
 
-def test_require_opengl_returns_the_report(monkeypatch: pytest.MonkeyPatch) -> None:
-    good = diagnostics.OpenGLReport(usable=True)
-    monkeypatch.setattr(diagnostics, "opengl_report", lambda: good)
-    assert diagnostics.require_opengl() is good
-
-
 @pytest.mark.usefixtures("headless")
-def test_headless_prefers_egl() -> None:
+def test_headless_prefers_egl_but_the_users_choice_stands(monkeypatch: pytest.MonkeyPatch) -> None:
     diagnostics.prefer_headless()
     assert os.environ[diagnostics.WINDOW_VARIABLE] == "vtkEGLRenderWindow"
-
-
-@pytest.mark.usefixtures("headless")
-def test_the_users_choice_of_window_stands(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(diagnostics.WINDOW_VARIABLE, "vtkOSOpenGLRenderWindow")
     diagnostics.prefer_headless()
     assert os.environ[diagnostics.WINDOW_VARIABLE] == "vtkOSOpenGLRenderWindow"

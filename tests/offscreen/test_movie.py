@@ -353,27 +353,3 @@ def test_the_command_writes_a_movie(
     said = " ".join(capsys.readouterr().out.split())
     assert "a loop without a seam" in said and "96 × 64, 4 frames in 0.5 s" in said
     assert mp4(out)[1].shape == (4, 64, 96, 3)
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("-o", "a.avi"), "'.avi' is no format that movies are written in"),
-        (("-o", "nowhere/a.gif"), "there is no folder 'nowhere'"),
-        (("-o", "a.gif", "--motion", "off"), "motion is 'off'; expected"),
-        (("-o", "a.mp4", "--size", "95x64"), "MP4 wants even sides"),
-    ],
-)
-def test_the_command_refuses_what_it_cannot_do(
-    file: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    words: tuple[str, ...],
-    said: str,
-    opengl: object,
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert main(["movie", str(file), *words]) == 2
-    assert said in " ".join(capsys.readouterr().err.split())
-    assert not list(tmp_path.iterdir())
