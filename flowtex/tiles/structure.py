@@ -11,7 +11,12 @@ from flowtex.field import FlowField
 from flowtex.settings import TABLE, Settings, SettingsError
 from flowtex.tiles.coarse import coarsened_field
 from flowtex.tiles.shared import has_pyramid, shared_pyramid
-from flowtex.trace.structure import CriticalPoints, Separatrices, critical_points, separatrices
+from flowtex.trace.structure import (
+    CriticalPoints,
+    Separatrices,
+    critical_points,
+    separatrices_between,
+)
 
 #: Nodes of a field up to which all of it is searched; of a larger one a coarser form is.
 SEARCHED_NODES = 1_000_000
@@ -21,6 +26,8 @@ STRUCTURE = ("critical_points", "separatrices")
 MOST_POINTS, MOST_SADDLES = (int(TABLE[name].high or 0) for name in STRUCTURE)
 #: Length of a line that is drawn, as a share of the surface's extent, at most.
 DRAWN_EXTENTS = 2.0
+#: Points of a line that is drawn, two to a cell, at most.
+DRAWN_POINTS = 1500
 #: Steps whose structure is kept.
 KEPT_STEPS = 64
 
@@ -31,6 +38,7 @@ class Structure:
     def __init__(self, field: FlowField) -> None:
         self._whole, self._field = field, _searched(field)
         self._lock = threading.Lock()
+        self._every: tuple[int, CriticalPoints] | None = None
         self._points: OrderedDict[int, CriticalPoints] = OrderedDict()
         self._lines: OrderedDict[int, tuple[int, Separatrices]] = OrderedDict()
 
@@ -38,10 +46,15 @@ class Structure:
         """Return the critical points of a step, the strongest first."""
         with self._lock:
             if step not in self._points:
-                found = critical_points(self._field, steps=[step])
-                self._points[step] = found.strongest(MOST_POINTS)
+                self._points[step] = self._every_point(step).strongest(MOST_POINTS)
                 _trim(self._points)
             return self._points[step]
+
+    def _every_point(self, step: int) -> CriticalPoints:
+        """Return all points of a step, which are kept until those of another one are wanted."""
+        if self._every is None or self._every[0] != step:
+            self._every = step, critical_points(self._field, steps=[step])
+        return self._every[1]
 
     def lines(self, step: int, saddles: int = MOST_SADDLES) -> Separatrices:
         """Return the lines of so many saddles of a step, the strongest."""
@@ -49,7 +62,8 @@ class Structure:
             count, lines = self._lines.get(step, (0, Separatrices()))
             if count < saddles:
                 length = DRAWN_EXTENTS * self._field.surface.extent
-                lines = separatrices(self._field, steps=[step], length=length, strongest=saddles)
+                field, points = self._field.at_step(step), self._every_point(step)
+                lines = separatrices_between(field, points, length, saddles, most=DRAWN_POINTS)
                 self._lines[step] = saddles, lines
                 _trim(self._lines)
             kept = {id(saddle) for saddle in _saddles(lines)[:saddles]}

@@ -8,7 +8,12 @@ from flowtex.trace.structure.critical_points import (
     CriticalPoints,
     critical_points,
 )
-from flowtex.trace.structure.separatrices import Separatrices, Separatrix, separatrices
+from flowtex.trace.structure.separatrices import (
+    Separatrices,
+    Separatrix,
+    separatrices,
+    separatrices_between,
+)
 
 __all__ = [
     "KINDS",
@@ -18,4 +23,5 @@ __all__ = [
     "Separatrix",
     "critical_points",
     "separatrices",
+    "separatrices_between",
 ]

@@ -188,13 +188,29 @@ def separatrices(
     lines = Separatrices()
     for number in track(numbers, len(numbers), "Following separatrices"):
         part = field.at_step(number)
-        points = critical_points(part)
-        saddles = points.of_kind("saddle")
-        if strongest is not None:
-            saddles = saddles.strongest(strongest)
-        if saddles:
-            for forward in (True, False):
-                lines += _lines(part, points, saddles, most, forward=forward)
+        lines += separatrices_between(part, critical_points(part), most, strongest)
+    return lines
+
+
+def separatrices_between(
+    field: FlowField,
+    points: CriticalPoints,
+    length: float,
+    strongest: int | None = None,
+    *,
+    most: int = MOST_POINTS,
+) -> Separatrices:
+    """Follow the lines of a steady field whose critical points are known.
+
+    They have so many points at ``most``; :func:`separatrices` has the other arguments.
+    """
+    saddles = points.of_kind("saddle")
+    if strongest is not None:
+        saddles = saddles.strongest(strongest)
+    lines = Separatrices()
+    if saddles:
+        for forward in (True, False):
+            lines += _lines(field, points, saddles, length, most, forward=forward)
     return lines
 
 
@@ -202,7 +218,8 @@ def _lines(
     field: FlowField,
     points: CriticalPoints,
     saddles: CriticalPoints,
-    most: float,
+    length: float,
+    most: int,
     *,
     forward: bool,
 ) -> list[Separatrix]:
@@ -214,7 +231,7 @@ def _lines(
     begin, _ = locator(field).nearest(np.concatenate([centers + offsets, centers - offsets]))
     begin = np.array(begin[:, ::-1], dtype=float)
     spacing = POINT_CELLS * float(np.median(cells))
-    lags = spacing * np.arange(1.0, min(int(most / spacing), MOST_POINTS) + 1)
+    lags = spacing * np.arange(1.0, min(int(length / spacing), most) + 1)
     positions, reach = _followed(field, points, begin, lags, forward=forward)
     ends = scipy.spatial.KDTree([point.position for point in points])
     result = []
