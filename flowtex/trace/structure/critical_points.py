@@ -56,8 +56,7 @@ class CriticalPoint:
         Longitude and latitude in degrees, for a field of the Earth.
     strength
         Change of the velocity, as a speed, with which it vanishes together with others: little
-        for points of noise. It is known to a few per cent, and for points without a partner the
-        greatest speed.
+        for points of noise. It is known to a few per cent.
     """
 
     position: Floats

@@ -3,7 +3,8 @@
 Two points of opposite index vanish together once the velocity between them is changed by as much
 as the speed there (their robustness: Wang, Rosen, Skraba, Bhatia and Pascucci, 2013). So a point
 is as strong as the least speed below which a region has it and a partner. Points of noise come in
-pairs that little speed parts.
+pairs that little speed parts. Partners of points at a border may lie beyond it: a point without one
+is as strong as the least speed below which a region has it and any other that is left.
 """
 
 from __future__ import annotations
@@ -41,16 +42,19 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
     needed = speed[edges].max(axis=1)
     order = np.argsort(needed)
     edges, needed = edges[order], needed[order]
-    left = np.argsort(-steepness)
+    left, met = np.argsort(-steepness), np.zeros(len(nodes), dtype=bool)
     for level in np.quantile(speed[valid], SHARES):
         some = edges[: int(np.searchsorted(needed, level, side="right"))]
         graph = scipy.sparse.coo_array(
             (np.ones(len(some), bool), some.T), shape=(speed.size, speed.size)
         )
         region = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
-        gone = _paired(region[nodes[left]].astype(np.intp), signs[left])
+        here = region[nodes[left]].astype(np.intp)
+        gone = _paired(here, signs[left])
         result[left[gone]] = level
-        left = left[~gone]
+        left, here = left[~gone], here[~gone]
+        meets = (np.bincount(here, minlength=1)[here] > 1) & ~met[left]
+        result[left[meets]], met[left[meets]] = level, True
     return result
 
 
