@@ -56,6 +56,12 @@ def remove_stale(paths: Iterable[Path], remove: Callable[[Path], object]) -> Non
                 os.close(descriptor)
 
 
+def remove_stale_folders() -> None:
+    """Remove the temporary folders of processes that were killed."""
+    parent = Path(tempfile.gettempdir())
+    remove_stale((p for p in parent.iterdir() if NAME.fullmatch(p.name)), shutil.rmtree)
+
+
 class TemporaryFolder:
     """A folder that its owner alone can read, removed by :meth:`close` or with this object.
 
@@ -63,13 +69,13 @@ class TemporaryFolder:
     """
 
     def __init__(self) -> None:
-        parent = Path(tempfile.gettempdir())
-        remove_stale((p for p in parent.iterdir() if NAME.fullmatch(p.name)), shutil.rmtree)
+        remove_stale_folders()
         descriptor = None
         while descriptor is None:
-            self.path = Path(tempfile.mkdtemp(SUFFIX, PREFIX, parent))
+            self.path = Path(tempfile.mkdtemp(SUFFIX, PREFIX))
             descriptor = _open(self.path)
         self._end = weakref.finalize(self, _remove, self.path, descriptor, os.getpid())
+        _folders.add(self)
 
     def new_folder(self) -> Path:
         """Make a folder in it, under a name of its own."""
@@ -78,6 +84,15 @@ class TemporaryFolder:
     def close(self) -> None:
         """Remove it with all that is in it."""
         self._end()
+
+
+_folders: weakref.WeakSet[TemporaryFolder] = weakref.WeakSet()
+
+
+def remove_folders() -> None:
+    """Remove all temporary folders of this process, which is about to end without a clean-up."""
+    for folder in list(_folders):
+        folder.close()
 
 
 def _open(path: Path) -> int | None:

@@ -267,7 +267,7 @@ def test_info_describes_the_file_and_the_flow(run: Run, gyre: Path) -> None:
         assert words in out
 
 
-def test_info_says_what_is_needed(run: Run, block: Path) -> None:
+def test_info_says_what_is_needed(run: Run, block: Path, tmp_path: Path) -> None:
     import pyvista as pv
 
     code, out, err = run("info", block)
@@ -277,10 +277,10 @@ def test_info_says_what_is_needed(run: Run, block: Path) -> None:
     mesh["heat"] = 2 * mesh["wind"]
     mesh["wave"] = 3 * mesh["wind"]
     del mesh.point_data["wind"]
-    mesh.save(block)
-    code, out, _ = run("info", block)
+    mesh.save(tmp_path / "two.vts")
+    code, out, _ = run("info", tmp_path / "two.vts")
     assert code == 0 and "To draw it:" in out and "What would be drawn" not in out
-    code, out, _ = run("info", block, "--plane", "k=1", "--vectors", "wave")
+    code, out, _ = run("info", tmp_path / "two.vts", "--plane", "k=1", "--vectors", "wave")
     assert code == 0 and "6 × 5 (i × j)" in out
 
 

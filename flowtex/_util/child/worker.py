@@ -17,6 +17,7 @@ from typing import IO, Any
 from flowtex._util.array_types import AnyArray
 from flowtex._util.child.messages import read_message, write_message
 from flowtex._util.progress import stoppable
+from flowtex._util.temporary import remove_folders
 
 #: A value of JSON, and arrays.
 Answer = tuple[Any, Sequence[AnyArray]]
@@ -123,4 +124,5 @@ def _listen(reads: IO[bytes], requests: SimpleQueue[tuple[int, Any]], cancelled:
             else:
                 requests.put((value["number"], value["value"]))
     finally:
+        remove_folders()
         os._exit(0)

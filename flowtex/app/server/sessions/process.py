@@ -27,7 +27,7 @@ from flowtex.app.server.sessions.registry import OpenSession, Session
 from flowtex.errors import FieldError
 
 #: Seconds within which a session opens, and ends once it was asked to.
-OPENING_S, ENDING_S = 600.0, 15.0
+OPENING_S, ENDING_S = 600.0, 30.0
 #: Seconds between two looks whether a session is to end.
 CHECK_S = 0.05
 #: Headers of a request, and of an answer, that are handed on.

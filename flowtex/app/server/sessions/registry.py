@@ -25,6 +25,7 @@ from aiohttp import WSCloseCode, web
 from wslink.protocol import MAX_MSG_SIZE
 
 from flowtex._util.memory import available_bytes, give_back
+from flowtex._util.temporary import remove_stale_folders
 from flowtex.app.server.files import Handler
 from flowtex.app.server.security import new_secret
 
@@ -234,6 +235,9 @@ class Sessions:
 
     async def _begin(self) -> Session:
         session = await self._open()
+        if self._closed:  # meanwhile
+            await session.end()
+            raise ClosedError
         self._by_token[session.token] = session
         session.lost = lambda how: self._forget(session, how)
         return session
@@ -289,3 +293,4 @@ class Sessions:
         await asyncio.gather(*(session.disconnect() for session in self))
         await asyncio.gather(*map(self._end, list(self._by_token)))
         gc.collect()
+        await asyncio.to_thread(remove_stale_folders)  # of sessions that had to be killed
