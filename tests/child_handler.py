@@ -16,6 +16,7 @@ import numpy as np
 from flowtex._util.child.worker import Answer
 from flowtex._util.notices import notify
 from flowtex._util.progress import check
+from flowtex._util.temporary import TemporaryFolder
 from flowtex.field.remote.reader import Reader
 
 
@@ -50,6 +51,12 @@ class Handler:
 
     def exit(self) -> Answer:
         os._exit(3)
+
+    def store(self) -> Answer:
+        """Have a temporary folder until this process ends, and return its path."""
+        self._folder = TemporaryFolder()
+        (self._folder.new_folder() / "file").write_text("x")
+        return str(self._folder.path), []
 
     def hang(self) -> Answer:
         threading.Event().wait()

@@ -152,6 +152,7 @@ sys.path[:0] = sys.argv[1:3]
 from flowtex._util.child import Child
 child = Child("child_handler:Handler", forks=sys.argv[3] == "True")
 print(child.request({"do": "sum", "one": 1, "other": 1}, timeout=100)[0]["pid"], flush=True)
+print(child.request({"do": "store"}, timeout=100)[0], flush=True)
 child.request({"do": "hang"}, timeout=1000)
 """
 
@@ -164,9 +165,11 @@ def test_a_child_ends_with_its_parent_however_that_ends(forks: bool) -> None:
     ) as parent:
         assert parent.stdout is not None
         pid = int(parent.stdout.readline())
-        assert not is_gone(pid)
+        folder = Path(parent.stdout.readline().decode().strip())
+        assert not is_gone(pid) and folder.is_dir()
         parent.send_signal(signal.SIGKILL)
         wait_until(lambda: is_gone(pid))
+    assert not folder.exists(), "its temporary folder goes with it"
 
 
 def test_children_have_loaded_what_is_preloaded() -> None:

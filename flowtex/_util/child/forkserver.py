@@ -1,8 +1,8 @@
 """A process that has loaded libraries, and is forked into children: they start within milliseconds.
 
 It has one thread, unlike the process that asks for children. It holds one end of a pipe for each
-child: it writes the status of one that has ended, and ends one whose pipe was closed. So no child
-outlives the process that asked for it, in whatever way that ends.
+child: it writes the status of one that has ended, and kills one that does not end soon after its
+pipe was closed. So no child outlives the process that asked for it, in whatever way that ends.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import ctypes
 import gc
 import json
+import math
 import os
 import select
 import signal
@@ -17,6 +18,7 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 import weakref
 from contextlib import suppress
 from importlib import import_module
@@ -31,6 +33,8 @@ FORKS = sys.platform == "linux"
 REQUEST_BYTES = 65_536
 #: Length of a status, and of the signal that ends a process with its parent.
 STATUS_BYTES, PR_SET_PDEATHSIG = 4, 1
+#: Seconds that a child has to end by itself.
+ENDING_S = 1.0
 
 _servers: dict[tuple[str, ...], ForkServer] = {}
 _lock = threading.Lock()
@@ -118,9 +122,9 @@ class _Server:
         os.set_blocking(wakes, False)
         signal.set_wakeup_fd(wakes)
         signal.signal(signal.SIGCHLD, lambda *_: None)
-        #: Pipes of the children's status, by their numbers, and children that are ending.
+        #: Pipes of the children's status, by their numbers, and when those that end are killed.
         self._children: dict[int, int] = {}
-        self._killed: set[int] = set()
+        self._ending: dict[int, float] = {}
 
     def run(self, *, once: bool = False) -> None:
         """Wait for something to do, or not at all, and do it."""
@@ -128,16 +132,22 @@ class _Server:
         poll.register(self._control, select.POLLIN)
         poll.register(self._wakes, select.POLLIN)
         for pid, status in self._children.items():
-            if pid not in self._killed:
+            if pid not in self._ending:
                 poll.register(status, 0)  # tells when the other end is closed
-        ready = dict(poll.poll(0 if once else None))
+        soonest = min(self._ending.values(), default=math.inf) - time.monotonic()
+        wait = None if soonest == math.inf else 1000 * max(soonest, 0.0)
+        ready = dict(poll.poll(0 if once else wait))
         if self._wakes in ready:
             os.read(self._wakes, REQUEST_BYTES)
             self._reap()
+        now = time.monotonic()
         for pid, status in self._children.items():
             if status in ready:
+                # Its other pipe is closed as well, so it removes what it has left, and ends.
+                self._ending[pid] = now + ENDING_S
+            elif now >= self._ending.get(pid, math.inf):
                 os.kill(pid, signal.SIGKILL)
-                self._killed.add(pid)
+                self._ending[pid] = math.inf
         if self._control.fileno() in ready:
             self._answer()
 
@@ -146,7 +156,7 @@ class _Server:
             done, status = os.waitpid(pid, os.WNOHANG)
             if done:
                 pipe = self._children.pop(pid)
-                self._killed.discard(pid)
+                self._ending.pop(pid, None)
                 code = os.waitstatus_to_exitcode(status)
                 with suppress(OSError):
                     os.write(pipe, code.to_bytes(STATUS_BYTES, "big", signed=True))
@@ -155,6 +165,10 @@ class _Server:
     def _answer(self) -> None:
         text, pipes, _, _ = socket.recv_fds(self._control, REQUEST_BYTES, 3)
         if not text:
+            end = time.monotonic() + ENDING_S
+            while self._children and time.monotonic() < end:
+                self._reap()
+                time.sleep(ENDING_S / 100)
             for pid in self._children:
                 os.kill(pid, signal.SIGKILL)
             os._exit(0)
