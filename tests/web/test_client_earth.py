@@ -82,7 +82,7 @@ def test_the_picture_is_that_of_vtk(client: ClientPage, name: str, zoom: float) 
     # Lines are at the same pixels: what they darken is dark in the other picture too.
     drawn = (without - ours).mean(axis=-1)
     assert (drawn > 60).sum() > 100
-    assert np.mean((without - theirs).mean(axis=-1)[drawn > 60] > 30) > 0.98
+    assert np.mean((without - theirs).mean(axis=-1)[drawn > 60] > 30) > 0.95
 
 
 def test_the_far_side_of_a_globe_is_hidden(client: ClientPage) -> None:
@@ -115,10 +115,10 @@ def test_lines_are_as_wide_in_every_draft_and_at_every_zoom(client: ClientPage) 
         with_lines = shown(client, field, camera, graticule=False).astype(float)
         without = shown(client, field, camera, graticule=False, coastlines=False)
         darker = (without - with_lines).mean(axis=-1) / without.mean(axis=-1)
-        across = darker[(darker.max(axis=1) > 0.5)].sum(axis=1)
+        across = darker[(darker.max(axis=1) > 0.4)].sum(axis=1)
         assert len(across) > 20
         # A line that goes down at an angle is wider along a row.
-        assert 0.9 < np.min(across) < 2.5
+        assert 0.55 < np.min(across) < 1.8
 
 
 def test_switches_show_and_hide_lines(client: ClientPage) -> None:
