@@ -160,16 +160,20 @@ def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenG
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return _unusable(f"the trial did not end within {timeout:g} s")
+        return _unusable(f"the test did not end within {timeout:g} s")
     except OSError as error:
-        return _unusable(f"the trial could not be started: {error}")
+        return _unusable(f"the test could not be started: {error}")
     lines = process.stdout.strip().splitlines()
     if process.returncode == 0 and lines:
         report = OpenGLReport(**json.loads(lines[-1]))
         return report if report.usable else _unusable(report.failure)
     errors = re.sub(r"\x1b\[[0-9;]*m", "", process.stderr).strip().splitlines()
     # Before a crash VTK prints advice about another library than the one that is missing.
-    detail = f"; it said: {errors[-1].rstrip('.')}" if errors and process.returncode >= 0 else ""
+    detail = (
+        f"; its last message: {errors[-1].rstrip('.')}"
+        if errors and process.returncode >= 0
+        else ""
+    )
     return _unusable(_ending(process.returncode) + detail)
 
 
@@ -189,7 +193,7 @@ def require_opengl() -> OpenGLReport:
     """
     report = opengl_report()
     if not report.usable:
-        msg = f"VTK cannot draw here: {report.failure}. To mend it:\n  {report.remedy}"
+        msg = f"VTK cannot draw here: {report.failure}. To fix it:\n  {report.remedy}"
         raise OpenGLMissingError(msg)
     return report
 
@@ -202,12 +206,12 @@ def _unusable(failure: str) -> OpenGLReport:
 def _ending(code: int) -> str:
     """Return a sentence on how a process ended."""
     if code >= 0:
-        return f"the process that tried it ended with code {code}"
+        return f"the test process ended with code {code}"
     try:
         name = signal.Signals(-code).name
     except ValueError:  # a number that this system has no name for
         name = f"signal {-code}"
-    return f"the process that tried it was ended by {name}, as happens without an OpenGL library"
+    return f"{name} ended the test process, which happens without an OpenGL library"
 
 
 def _remedy() -> str:
@@ -227,7 +231,7 @@ def _remedy() -> str:
 def install_command(*packages: str) -> str:
     """Return the command that installs Debian packages, or their names for other systems."""
     if shutil.which("apt-get") is None:
-        return f"install Mesa's OpenGL (on Debian and Ubuntu it is {' '.join(packages)})"
+        return f"install Mesa's OpenGL (on Debian and Ubuntu: {' '.join(packages)})"
     sudo = "" if os.geteuid() == 0 else "sudo "
     install = f"{sudo}apt-get install --no-install-recommends {' '.join(packages)}"
     return f"{sudo}apt-get update && {install}"
@@ -250,7 +254,7 @@ def _opengl() -> Check:
     report = opengl_report()
     if not report.usable:
         return Check("OpenGL", "fail", report.failure, report.remedy)
-    kind = "drawn by the processor" if report.software else "drawn by a graphics card"
+    kind = "the processor draws" if report.software else "a graphics card draws"
     return Check(
         "OpenGL",
         "ok",
@@ -262,7 +266,7 @@ def _opengl() -> Check:
 def _display() -> Check:
     if has_display():
         return Check("Display", "ok", os.environ.get("DISPLAY") or "the system's")
-    return Check("Display", "ok", "none: pictures and the browser work, windows do not")
+    return Check("Display", "ok", "none: pictures and the browser work, windows do not open open")
 
 
 def _shaders() -> Check:
@@ -287,7 +291,9 @@ def _packages() -> list[Check]:
         except importlib.metadata.PackageNotFoundError:
             remedy = install_extra(extra) if extra else f"python -m pip install {name}"
             status: Literal["warn", "fail"] = "warn" if extra else "fail"
-            use = f"not installed; only the extra {extra!r} needs it" if extra else "not installed"
+            use = (
+                f"not installed; needed only for the extra {extra!r}" if extra else "not installed"
+            )
             checks.append(Check(name, status, use, remedy))
     return checks
 
@@ -307,7 +313,7 @@ def print_checks(checks: Sequence[Check]) -> None:
     console.print(table)
     for check in checks:
         if check.remedy and check.status != "ok":
-            console.print(f"\n{check.name}, to mend it:")
+            console.print(f"\n{check.name}, to fix it:")
             console.print(f"  {check.remedy}", soft_wrap=True)
 
 
@@ -344,7 +350,7 @@ def try_opengl() -> OpenGLReport:
         software=any(word in name.lower() for word in SOFTWARE),
         max_texture_size=gl.vtkTextureObject.GetMaximumTextureSize(window),
         texture_units=window.GetTextureUnitManager().GetNumberOfTextureUnits(),
-        failure="" if rgb == (255, 0, 0) else f"a red picture came back as {rgb}",
+        failure="" if rgb == (255, 0, 0) else f"a red test picture has the colour {rgb}",
     )
 
 

@@ -83,7 +83,7 @@ def _show_widget(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any
     for name in VTK_ARGUMENTS:
         if name in options:
             msg = (
-                f"{name} is for windows, and the browser draws this; leave it out, or draw with "
+                f"{name} applies to windows, but here the browser draws; omit it, or draw with "
                 "flowtex.render, or with plotter.flowtex.add and plotter.show"
             )
             raise FieldError(msg)
@@ -109,7 +109,7 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
 
 def _show_page(mesh: Any, options: dict[str, Any]) -> None:
     if options.pop("beside", None) is not None:
-        msg = "two views need a window and there is no display; flowtex.render draws both"
+        msg = "two views need a window, but there is no display; use flowtex.render to draw both"
         raise FieldError(msg)
     field = Options.split(**options).field.field(mesh)
     from flowtex.app import serve

@@ -69,16 +69,16 @@ def _option(default: Any, text: str, form: Form | None = PLAIN) -> Any:
 def _read_ends(text: str) -> str | tuple[float, ...]:
     if text == ROBUST:
         return ROBUST
-    low, high = numbers(2, expected="two numbers, as 1.5,3")(text)
+    low, high = numbers(2, expected="two numbers, such as 1.5,3")(text)
     if not low < high:
-        msg = "a lower number and a higher one"
+        msg = "two numbers, the lower one first"
         raise UnreadableError(msg)
     return low, high
 
 
 def _read_differences(words: Sequence[str]) -> dict[str, Any]:
     """Read words such as ``lod=false`` as settings, and as what :class:`Appearance` has."""
-    expected = "name=value, as in --beside lod=false"
+    expected = "name=value, such as --beside lod=false"
     texts = named_texts(str, expected)(words)
     values: dict[str, Any] = {}
     for name, text in texts.items():
@@ -96,21 +96,21 @@ class FieldOptions:
 
     vectors: str | None = _option(
         None,
-        "Name of the velocity, or of its two or three components with commas between, such as "
-        "``u,v,w``; found when there is only one candidate.",
+        "Name of the velocity, or of its two or three components separated by commas, such as "
+        "``u,v,w``; not needed if there is only one candidate.",
     )
     plane: str | None = _option(None, 'Plane of a structured 3D mesh, such as ``"k=20"``.')
     slice: Any | None = _option(
         None,
-        'Plane through any volume: ``"x=0.5"``, or a normal and a point, '
-        '``"1,1,0 through 0,0,2"``; the point is the middle by default.',
+        'Plane through any volume: ``"x=0.5"``, or a normal and a point, ``"1,1,0 through '
+        '0,0,2"``; by default the point is the middle.',
     )
     contour: Any | None = _option(
-        None, 'Surface in a volume where an array has a value: ``"pressure=101325"``.'
+        None, 'Isosurface of a volume, on which an array has a value: ``"pressure=101325"``.'
     )
     block: int | str | None = _option(
         None,
-        "Number or path of the block to draw, where there are several.",
+        "Number or path of the block to draw, if there are several.",
         Form(read=lambda text: int(text) if text.isdecimal() else text),
     )
     times: Any | None = _option(
@@ -121,30 +121,30 @@ class FieldOptions:
         'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.',
         Form(read=or_none("")),
     )
-    sign_free: bool | None = _option(
-        None, "Whether the vectors have no sign, so that v and -v mean the same."
-    )
+    sign_free: bool | None = _option(None, "Whether v and -v mean the same, as in a field of axes.")
     projection: str | None = _option(
         None,
         "Map of data of the Earth: ``platecarree``, ``mercator``, ``north``, ``south``, "
-        "``lambert``, ``robinson``, ``equalearth``, ``globe``, or what PROJ takes; by default one "
+        "``lambert``, ``robinson``, ``equalearth``, ``globe``, or a PROJ string; by default one "
         "that suits the region.",
     )
-    globe: bool | None = _option(None, "Whether data of the Earth are put on a sphere.")
+    globe: bool | None = _option(None, "Whether data of the Earth are drawn on a globe.")
     level: float | str | None = _option(
         None,
-        "Level of a data set, such as ``500``; the one nearest to the surface by default.",
+        "Level of a dataset, such as ``500``; by default the one nearest to the surface.",
         Form(read=number_or_text),
     )
     sel: Mapping[str, Any] | None = _option(
         None,
-        'What to draw along other axes of a data set, by value: ``{"number": 3}``.',
-        Form(read=named_texts(number_or_text, "an axis and a value, as number=3"), repeated=True),
+        'Selection along other axes of a dataset, by value: ``{"number": 3}``.',
+        Form(
+            read=named_texts(number_or_text, "an axis and a value, such as number=3"), repeated=True
+        ),
     )
     isel: Mapping[str, Any] | None = _option(
         None,
-        'The same by number from 0: ``{"number": 2}``.',
-        Form(read=named_texts(int, "an axis and a whole number, as number=2"), repeated=True),
+        'The same by index from 0: ``{"number": 2}``.',
+        Form(read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True),
     )
 
     def field(self, mesh: Any, time: float | str | None = None) -> FlowField:
@@ -156,16 +156,16 @@ class FieldOptions:
             return FlowField.from_xarray(mesh, **self._of_dataset(choices))
         if isinstance(mesh, (str, Path)) or _are_paths(mesh):
             if "times" in choices:
-                msg = f"times is given, and {str(mesh)!r} has its own; leave it out"
+                msg = f"times is given, but {str(mesh)!r} already has times; omit it"
                 raise FieldError(msg)
             return FlowField.from_file(mesh, time=time, **choices)
         if not isinstance(mesh, FlowField):
-            self._refuse(choices, OF_EARTH, "data of the Earth, and this is a mesh")
+            self._refuse(choices, OF_EARTH, "data of the Earth, but this is a mesh")
             return FlowField.from_pyvista(mesh, **choices)
         if choices:
             msg = (
-                f"{', '.join(choices)} cannot be chosen any more for {mesh!r}; choose when it "
-                "is made"
+                f"{', '.join(choices)} cannot be set for {mesh!r} after it was made; set it when "
+                "you make the field"
             )
             raise FieldError(msg)
         return mesh
@@ -183,20 +183,20 @@ class FieldOptions:
             return None
         if is_store(place):
             given = choices if time is None else {**choices, "time": time}
-            self._refuse(given, tuple(given), "what a pyramid is built from")
+            self._refuse(given, tuple(given), "the source of a pyramid")
         if time is not None:
             choices = {**choices, "sel": {**choices.get("sel", {}), "time": time}}
         return open_store(place, **self._of_dataset(choices))
 
     def _of_dataset(self, choices: dict[str, Any]) -> dict[str, Any]:
         """Return the arguments of :meth:`FlowField.from_xarray`."""
-        self._refuse(choices, OF_MESHES, "meshes, and this is a data set")
+        self._refuse(choices, OF_MESHES, "meshes, but this is a dataset")
         return {**two_names(choices.pop("vectors", None)), **choices}
 
     @staticmethod
     def _refuse(choices: Mapping[str, Any], names: tuple[str, ...], what: str) -> None:
         if given := [name for name in names if name in choices]:
-            msg = f"{', '.join(given)} is for {what}; leave it out"
+            msg = f"{', '.join(given)} applies to {what}; omit it"
             raise FieldError(msg)
 
 
@@ -211,61 +211,63 @@ class Appearance:
 
     scalars: str | bool | None = _option(
         None,
-        'What to colour by: the name of an array, ``"speed"`` (the default), or ``False`` for a '
-        "plain surface.",
+        'Values for the colours: the name of an array, ``"speed"`` (the default), or ``False`` '
+        "for a plain surface.",
         Form(read=or_none(value=False)),
     )
     cmap: Any | None = _option(
         None,
-        "Colour map: a name, a map of matplotlib's, a table of PyVista's, or an array (N, 3 or "
-        "4), uint8 or from 0 to 1; viridis by default.",
-        Form("Colour map, by matplotlib's name; viridis by default."),
+        "Colour map: a name, a matplotlib map, a PyVista lookup table, or an array (N, 3 or 4), "
+        "uint8 or from 0 to 1; viridis by default.",
+        Form("Colour map, a matplotlib name; viridis by default."),
     )
     clim: tuple[float, float] | str | None = _option(
         None,
-        "Values at the ends of the colour map, low and high; by default the range over all times, "
-        "with zero in the middle where the map diverges, such as coolwarm, and the values have "
-        "both signs. "
-        '``"robust"`` leaves 2 % out at either end.',
+        "Values at the ends of the colour map, low and high; by default the range over all "
+        "times. If the map diverges, such as coolwarm, and the values have both signs, zero is "
+        'in the middle. ``"robust"`` ignores 2 % at either end.',
         Form(read=_read_ends, write=lambda ends: ",".join(repr(float(end)) for end in ends)),
     )
     log_scale: bool = _option(
-        default=False, text="Whether colours go by the logarithm, for values above 0.", form=SWITCH
+        default=False, text="Whether colours follow the logarithm, for values above 0.", form=SWITCH
     )
-    color: Any = _option(PLAIN_COLOR, "Colour of a plain surface, as PyVista takes it.")
-    opacity: float = _option(1.0, "1 is opaque, 0 invisible.", NUMBER)
+    color: Any = _option(
+        PLAIN_COLOR, ("Colour of a plain surface, in any form that PyVista accepts.")
+    )
+    opacity: float = _option(1.0, "Opacity: Opacity: 1 is opaque, 0 invisible.", NUMBER)
     visible: bool = _option(default=True, text="Whether the surface is drawn.", form=SWITCH)
     lighting: bool | None = _option(
         None,
-        "Whether the surface is lit; by default a curved one is and a flat one is not.",
+        "Whether the surface is lit; by default only curved ones are.",
         SWITCH,
     )
     show_scalar_bar: bool | None = _option(
         None,
-        "Whether there is a legend of the colours; by default unless an image covers them.",
+        "Whether a legend of the colours is shown; by default it is, unless an image covers the "
+        "colours.",
         SWITCH,
     )
     image: Any | None = _option(
         None,
-        "A picture that the flow smears, in its own colours: an array (H, W), (H, W, 3) or (H, W, "
-        "4), uint8 or floats from 0 to 1, or the path of a PNG or a JPEG. It is laid over the "
-        "surface once, its left at the first i and its top, row 0, at the last j; ``tiles`` "
-        "repeats it. Where it is transparent the surface's colour shows. It sets "
+        "A picture that the flow smears, in its own colours: an array (H, W), (H, W, 3) or (H, "
+        "W, 4), uint8 or floats from 0 to 1, or the path of a PNG or a JPEG. It covers the "
+        "surface once, with its left at the first i and its top, row 0, at the last j; ``tiles`` "
+        "repeats it. Where it is transparent the surface's colour is visible. It sets "
         '``noise="image"``, and ``strength=1`` unless that is given.',
-        Form("PNG or JPEG that the flow smears, in place of the noise.", Path),
+        Form("PNG or JPEG that the flow smears, instead of the noise.", Path),
     )
     coastlines: bool | None = _option(
-        None, "Whether coasts are drawn; by default where the field has a projection.", SWITCH
+        None, "Whether coasts are drawn; by default if the field has a projection.", SWITCH
     )
     graticule: bool | None = _option(
         None,
-        "Whether meridians and parallels are drawn; by default where the field has a projection.",
+        "Whether meridians and parallels are drawn; by default if the field has a projection.",
         SWITCH,
     )
     land: Any = _option(
         LAND_COLOR,
         "Colour of the Earth where a field with a projection has no data, such as land in an "
-        "ocean, or ``None``.",
+        "ocean model; ``None`` draws nothing there.",
         Form(read=or_none()),
     )
 
@@ -323,30 +325,30 @@ class Appearance:
 class ViewOptions:
     """From where a flow is seen, and what stands beside and behind it."""
 
-    zoom: float = _option(1.0, "How far in: 1 shows the whole surface, 8 an eighth of its width.")
+    zoom: float = _option(1.0, "Zoom: 1 shows the whole surface, 8 an eighth of its width.")
     focus: tuple[float, ...] | None = _option(
         None,
         "Point of the mesh to look at, two or three coordinates; the middle by default.",
-        Form(read=numbers(2, 3, expected="two or three coordinates, as 1.5,0")),
+        Form(read=numbers(2, 3, expected="two or three coordinates, such as 1.5,0")),
     )
     camera: Any | None = _option(
         None,
-        "Another view: a :class:`flowtex.camera.Camera`, its numbers by name, or position, focal "
-        "point and direction upwards, three points.",
+        "Camera: a :class:`flowtex.camera.Camera`, its values by name, or position, focal point "
+        "and up direction as three points.",
         Form(
-            "Position, focal point and direction upwards, nine numbers with commas between; or "
-            "the camera of a page's link.",
+            "Position, focal point and up direction, nine numbers separated by commas; or the "
+            "camera from a page's link.",
             Camera.from_text,
         ),
     )
     background: Any = _option(
         None,
-        "Colour behind the surface; by default white, and in a browser that of the page around.",
-        Form("Colour behind the surface; white, or that of the page around, by default."),
+        "Background colour; by default white, and in a browser that of the surrounding page.",
+        Form("Background colour; by default white, or that of the surrounding page."),
     )
     beside: Mapping[str, Any] | None = _option(
         None,
-        "What is different in a second view to the right of the first one, such as "
+        "Settings of a second view to the right of the first, where they differ, such as "
         '``{"lod": False}``; both views move together.',
         Form(read=_read_differences, repeated=True),
     )
@@ -390,7 +392,7 @@ class Options:
         if self.appearance.image is not None:
             noise = values.setdefault("noise", "image")
             if noise != "image":
-                msg = f"noise is {noise!r} and an image is given; leave out one of them"
+                msg = f"noise is {noise!r}, but an image is given; omit one of them"
                 raise SettingsError(msg)
             values.setdefault("strength", 1.0)
         return Settings(**values)
@@ -410,7 +412,7 @@ class Options:
         known = (*TABLE, *(name for names in accepted.values() for name in names))
         for name in values:
             if name not in TABLE:
-                msg = f"there is no setting or argument {name!r}; {near_names(name, known)}"
+                msg = f"the setting or argument {name!r} does not exist; {near_names(name, known)}"
                 raise SettingsError(msg)
         return cls(**parts, settings=values)
 
@@ -507,7 +509,7 @@ class AppearanceAttributes:
             own = [n for n in dir(type(self)) if not n.startswith("_")]
             msg = f"{type(self).__name__} has no attribute {name!r}"
             if name in TABLE:
-                msg += f" of its own; it is a setting: settings.{name}"
+                msg += f"; it is a setting: use settings.{name}"
             else:
                 msg += f"; {near_names(name, own)}"
             raise AttributeError(msg)

@@ -193,7 +193,7 @@ def probe(
     if not isinstance(pixel, Camera):
         camera, size = camera_facing(surface, place, pixel), (1, 1)
     elif size is None:
-        msg = "size is None; expected width and height of the camera's picture, in pixels"
+        msg = "size is None; expected the width and height of the camera's picture, in pixels"
         raise FieldError(msg)
     else:
         camera = pixel

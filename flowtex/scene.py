@@ -74,9 +74,7 @@ SETTINGS_IN_TEXTURES = {
 #: Share of the larger end of a range below which the other one is told as 0.
 ZERO_SHARE = 1e-5
 
-NO_IMAGE = (
-    "noise is 'image' and there is no image; give one as image=, or later with set_image(image)"
-)
+NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_image(image)"
 
 
 class Scene:
@@ -170,7 +168,10 @@ class Scene:
         """
         of_field = [name for name in FieldOptions.__dataclass_fields__ if name in changes]
         if of_field:
-            msg = f"beside has {', '.join(of_field)}; both views show one field, expected settings"
+            msg = (
+                f"beside has {', '.join(of_field)}, which selects data; both views show the same "
+                "field, so expected settings"
+            )
             raise FieldError(msg)
         values = {**vars(options.appearance), **options.settings, **changes}
         return Scene.from_options(self.field, Options.split("appearance", **values))
@@ -376,8 +377,8 @@ class Scene:
         low, high = self._limits(appearance) if appearance.log_scale else (1.0, 1.0)
         if low <= 0:
             msg = (
-                f"log_scale is for values above 0, and the colours of {name!r} go from {low:g} to "
-                f"{high:g}; give clim=(low, high) with a low above 0, or leave log_scale out"
+                f"log_scale is True, but {name!r} ranges from {low:g} to {high:g}; expected values "
+                "above 0: pass clim=(low, high) with low above 0, or omit log_scale"
             )
             raise FieldError(msg)
 
@@ -508,7 +509,7 @@ def steps_of(field: FlowField, name: str) -> Steps:
     if name == SPEED:
         return field.speed
     names = ", ".join(map(repr, dict.fromkeys((SPEED, *field.scalars, *DERIVED))))
-    msg = f"there is no scalar {name!r} on this field; there are {names}"
+    msg = f"the field has no scalar {name!r}; expected one of {names}"
     raise FieldError(msg)
 
 

@@ -205,7 +205,7 @@ class Settings:
 
     samples: int = _row(
         default=49,
-        text="Noise samples summed along each path (K of the paper).",
+        text="Noise samples summed along each path (K in the paper).",
         span=(1, 200),
     )
     spacing: float = _row(
@@ -215,12 +215,18 @@ class Settings:
     )
     texture: str = _row(
         default="dense",
-        text="Streaks everywhere, or sparse ones with a bright head, which show which way it goes.",
+        text=(
+            "Streaks everywhere, or sparse ones with a bright head, which show which way the "
+            "flow goes."
+        ),
         choices=("dense", "streaklets"),
     )
     kernel: str = _row(
         default="hann",
-        text="Weight of the samples: smooth, even as in the paper, or falling behind the particle.",
+        text=(
+            "Weights of the samples: smooth, equal as in the paper, or decreasing behind the "
+            "particle."
+        ),
         choices=("hann", "box", "ramp"),
     )
     two_sided: bool = _row(
@@ -229,28 +235,37 @@ class Settings:
     )
     lod: bool = _row(
         default=True,
-        text="Fit the grain to each pixel; off, it is blobs from near and flickers from afar.",
+        text=(
+            "Fit the grain to each pixel; without it, grains are blobs in close views and "
+            "flicker in distant ones."
+        ),
     )
     noise: str = _row(
         default="procedural",
         affects="shader",
-        text="Noise even in space, the paper's texture, or spots, squares or an image in it.",
+        text=(
+            "Noise that is even in space, the paper's noise texture, or spots, squares or an "
+            "image instead."
+        ),
         choices=("procedural", "texture", "spots", "checkerboard", "image"),
     )
     tiles: int = _row(
         default=1,
-        text="Repeats of an image along each side; makes a checkerboard's squares smaller.",
+        text="Repeats of an image along each side; more make a checkerboard's squares smaller.",
         span=(1, 64),
     )
     noise_correction: bool = _row(
         default=True,
         affects="textures",
-        text="Spread the noise texture evenly over the surface, not over its cells (figure 6).",
+        text=(
+            "Spread the noise texture evenly over the surface, not over its cells (figure 6 of "
+            "the paper)."
+        ),
     )
     resolution: int = _row(
         default=1024,
         affects="textures",
-        text="Texels of the noise texture along the surface; the grain where it is fixed on it.",
+        text="Texels of the noise texture along the surface; they set the size of a fixed grain.",
         span=(16, 8192),
     )
     grain: float = _row(default=1.5, text="Size of a grain of noise, in pixels.", span=(0.25, 32))
@@ -264,69 +279,78 @@ class Settings:
         text="How strongly the texture darkens and lightens the colour.",
         span=(0, 1),
     )
-    seed: int = _row(default=0, text="Number of the noise pattern.", span=(0, 65535))
+    seed: int = _row(default=0, text="Seed of the noise pattern.", span=(0, 65535))
     motion: str = _row(
         default="off",
-        text="Let a steady flow stream: everywhere at one speed, or faster where the flow is.",
+        text=(
+            "Let a steady flow stream: at the same speed everywhere, or faster where the flow is "
+            "faster."
+        ),
         choices=("off", "uniform", "speed"),
     )
     speed: float = _row(
         default=40.0,
-        text="How far the streaming goes in a second; with motion='speed', at the typical speed.",
+        text=(
+            "Distance that the pattern moves in a second; with motion='speed', where the flow "
+            "has its typical speed."
+        ),
         span=(0, 1e12),
     )
     speed_in: str = _row(
         default="pixels",
-        text="What speed counts: pixels, the same at every zoom, or the mesh's units.",
+        text="Unit of speed: pixels, the same at every zoom, or the mesh's units.",
         choices=("pixels", "units"),
     )
     period: float = _row(
         default=4.0,
-        text="Seconds after which the streaming begins again, without a seam.",
+        text="Seconds after which the streaming repeats, without a seam.",
         span=(0.1, 600),
     )
     arrows: float = _row(
         default=0.0,
-        text="Pixels between arrows that follow the flow, 0 for none; True stands for 40.",
+        text="Distance in pixels between arrows along the flow, 0 for none; True means 40.",
         span=(0, 400),
         switch=40.0,
     )
     arrow_length: str = _row(
         default="even",
-        text="Arrows that are all as long, or longer where the flow is faster.",
+        text="Length of the arrows: the same everywhere, or longer where the flow is faster.",
         choices=("even", "speed"),
     )
     arrow_color: str = _row(
         default="contrast",
-        text="Arrows dark with a light edge, or in the colours, over a plain surface.",
+        text=(
+            "Colour of the arrows: dark with a light edge, or from the colour map, over a plain "
+            "surface."
+        ),
         choices=("contrast", "scalars"),
     )
     critical_points: int = _row(
         default=0,
-        text="Critical points that are marked, the strongest first; True stands for 100.",
+        text="Number of critical points to mark, the strongest first; True means 100.",
         span=(0, 500),
         switch=100,
     )
     separatrices: int = _row(
         default=0,
-        text="Saddles whose separatrices are drawn, the strongest first; True stands for 25.",
+        text="Number of saddles whose separatrices are drawn, the strongest first; True means 25.",
         span=(0, 50),
         switch=25,
     )
     show_level: bool = _row(
         default=False,
-        text="Colour by the level of detail: one hue for each doubling of the grain.",
+        text="Colour by the level of detail: one hue per doubling of the grain.",
     )
     lines: str = _row(
         default="auto",
         affects="trace",
-        text="What a flow that varies in time is drawn along; auto chooses from its time steps.",
+        text="Lines along which a time-varying flow is drawn; auto decides from its time steps.",
         choices=("auto", "pathlines", "streamlines"),
     )
     parameter: str = _row(
         default="arclength",
         affects="trace",
-        text="What the lag along a streamline measures: length, or the field's own time.",
+        text="Measure of the lag along a streamline: length, or the field's own time.",
         choices=("arclength", "time"),
     )
 
@@ -370,7 +394,7 @@ def setting(name: str) -> Setting:
     """Return a row of the table; a SettingsError lists the nearest names, or all."""
     if name in TABLE:
         return TABLE[name]
-    msg = f"there is no setting {name!r}; {near_names(name, TABLE)}"
+    msg = f"the setting {name!r} does not exist; {near_names(name, TABLE)}"
     raise SettingsError(msg)
 
 

@@ -54,7 +54,7 @@ def test_a_crash_becomes_a_report() -> None:
     found = diagnostics.run_trial(CRASHES)
     assert not found.usable
     assert found.failure == (
-        "the process that tried it was ended by SIGSEGV, as happens without an OpenGL library"
+        "SIGSEGV ended the test process, which happens without an OpenGL library"
     )
     assert found.remedy == (
         "sudo apt-get update && "
@@ -103,10 +103,10 @@ def test_a_trial_that_fails_is_reported(
 
 @pytest.mark.usefixtures("headless")
 def test_a_wrong_picture_is_no_opengl() -> None:
-    answer = '{"usable": false, "failure": "a red picture came back as (0, 0, 0)"}'
+    answer = '{"usable": false, "failure": "a red test picture has the colour (0, 0, 0)"}'
     found = diagnostics.run_trial((sys.executable, "-c", f"print({answer!r})"))
     assert not found.usable
-    assert found.failure == "a red picture came back as (0, 0, 0)"
+    assert found.failure == "a red test picture has the colour (0, 0, 0)"
     assert "libgl1-mesa-dri" in found.remedy
 
 
@@ -128,7 +128,7 @@ def test_root_needs_no_sudo_and_other_systems_get_the_names(
     )
     monkeypatch.setattr("shutil.which", lambda _: None)
     assert diagnostics.install_command("libegl1") == (
-        "install Mesa's OpenGL (on Debian and Ubuntu it is libegl1)"
+        "install Mesa's OpenGL (on Debian and Ubuntu: libegl1)"
     )
 
 
@@ -140,7 +140,7 @@ def test_require_opengl_returns_the_report_or_names_failure_and_remedy(
     assert diagnostics.require_opengl() is good
     broken = diagnostics.OpenGLReport(usable=False, failure="it crashed", remedy="install it")
     monkeypatch.setattr(diagnostics, "opengl_report", lambda: broken)
-    expected = r"^VTK cannot draw here: it crashed\. To mend it:\n  install it$"
+    expected = r"^VTK cannot draw here: it crashed\. To fix it:\n  install it$"
     with pytest.raises(diagnostics.OpenGLMissingError, match=expected):
         diagnostics.require_opengl()
 

@@ -298,7 +298,9 @@ def test_names_are_sorted_without_hidden_files_and_sources_read_as_utf8() -> Non
 @pytest.mark.usefixtures("folder")
 @pytest.mark.parametrize("name", ["noise.glsl", "", "../secret", "/etc/passwd", ".swap"])
 def test_an_unknown_name_lists_the_known(name: str) -> None:
-    expected = rf"^no shader is called '{name}'; there are: common/noise\.glsl, main\.frag$"
+    expected = (
+        rf"^the shader '{name}' does not exist; expected one of: common/noise\.glsl, main\.frag$"
+    )
     with pytest.raises(FileNotFoundError, match=expected):
         shaders.shader_source(name)
 

@@ -72,7 +72,7 @@ def test_time_outside_is_refused() -> None:
 
 
 def test_an_unknown_scalar_lists_those_that_exist() -> None:
-    with pytest.raises(FieldError, match=r"no scalar 'mach' on this field; there are 'speed'"):
+    with pytest.raises(FieldError, match=r"no scalar 'mach'; expected one of 'speed'"):
         Scene(field()).scalar("mach")
 
 

@@ -59,7 +59,7 @@ def test_a_logarithm_is_refused_for_what_has_none() -> None:
     assert limits(SIGNED + 2, log_scale=True) == (1.0, 5.0)
     assert limits(SIGNED, log_scale=True, clim=(0.1, 3)) == (0.1, 3)
     for clim in (None, (0, 3)):
-        with pytest.raises(ValueError, match=r"^log_scale is for values above 0, and the colours "):
+        with pytest.raises(ValueError, match=r"^log_scale is True, but "):
             limits(SIGNED, log_scale=True, clim=clim)
 
 

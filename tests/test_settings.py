@@ -33,8 +33,8 @@ def test_every_row_is_complete_and_its_default_fits() -> None:
         ("contrast", float("nan"), r"^contrast is nan; expected a number from 0 to 4 \(default "),
         ("contrast", True, r"^contrast is True; expected a number from 0 to 4 \(default "),
         ("kernel", "gauss", r"^kernel is 'gauss'; expected 'hann' or 'box' or 'ramp' \(default"),
-        ("sampels", 3, r"^there is no setting 'sampels'; did you mean 'samples'\?$"),
-        ("xyzzy", 3, r"^there is no setting 'xyzzy'; there are: samples, spacing, "),
+        ("sampels", 3, r"^the setting 'sampels' does not exist; did you mean 'samples'\?$"),
+        ("xyzzy", 3, r"^the setting 'xyzzy' does not exist; expected one of: samples, spacing, "),
     ],
 )
 def test_a_wrong_value_says_what_was_expected(name: str, value: Any, message: str) -> None:

@@ -61,7 +61,7 @@ export class ColourControls {
     lifetime.listen(this.robust, "click", () => viewer.chooseColours({ clim: "robust" }));
     lifetime.listen(this.log, "change", () => viewer.chooseColours({ log_scale: this.log.checked }));
     lifetime.listen(this.opacity, "input", () => viewer.chooseColours({ opacity: this.opacity.valueAsNumber }));
-    this.robust.title = "Leave out the least and the greatest values.";
+    this.robust.title = "Ignore the lowest and the highest values.";
     lifetime.listen(swatches, "click", (event: MouseEvent) => {
       const name = (event.target as HTMLElement).dataset.cmap;
       if (name) viewer.chooseColours({ cmap: name });

@@ -90,7 +90,7 @@ export class Graphics {
   }
 
   get context(): WebGL2RenderingContext {
-    if (!this.gl) throw new Error("there is no WebGL2");
+    if (!this.gl) throw new Error("WebGL2 is not available");
     return this.gl;
   }
 

@@ -50,7 +50,7 @@ export function compiled(tree: Tree): Evaluate {
   if (typeof tree === "string") return (values) => values[tree];
   const [name, ...parts] = tree;
   const call = OPERATIONS.get(String(name));
-  if (!call) throw new Error(`the formula has the operation "${name}", which this client does not know`);
+  if (!call) throw new Error(`the formula has the operation "${name}", which this client does not support`);
   const [first, second, ...rest] = parts.map(compiled);
   if (!second) return (values) => call(first(values));
   if (!rest.length) return (values) => call(first(values), second(values));
@@ -261,7 +261,7 @@ export class FormulaSource {
     const { header, grid } = this;
     const { mesh, pyramid, geometry, slices } = header;
     const { trace } = slices;
-    if (!pyramid || !trace) throw new Error("a formula comes without its levels");
+    if (!pyramid || !trace) throw new Error("the levels of the formula are missing");
     const [level, ...place] = key;
     const cells = pyramid.tileBlocks * mesh.tileCells;
     const count = grid.shape(level);

@@ -18,8 +18,8 @@ export function makeLayers(gl: WebGL2RenderingContext, texture: WebGLTexture, si
   const mostLayers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) as number;
   if (Math.max(width, height) > most || layers > mostLayers) {
     throw new Error(
-      `a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics ` +
-        `card has ${most} x ${most} in ${mostLayers}; show fewer nodes`,
+      `a texture of ${width} x ${height} texels in ${layers} layers is needed, but this graphics ` +
+        `card supports at most ${most} x ${most} in ${mostLayers}; show fewer nodes`,
     );
   }
   const target = gl.TEXTURE_2D_ARRAY;

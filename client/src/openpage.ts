@@ -26,7 +26,7 @@ export async function openPage(openStore?: OpenStore): Promise<void> {
       status.hidden = !place.querySelector('[data-failed="true"]');
       loading.hidden = !status.hidden;
       status.textContent =
-        "This browser cannot draw the flow, for want of WebGL2; here is a picture of it.";
+        "This browser cannot draw the flow because it has no WebGL2; this is a still picture.";
       // A coarse picture that can be moved is better than a sharp one that cannot.
       if (place.querySelector('.flowtex:not([data-drawn="true"])')) return;
       watch.disconnect();

@@ -70,7 +70,7 @@ export class Panel {
     {},
     PACES.map((pace) => dom("option", { value: `${pace}` }, [`${pace}×`])),
   );
-  private readonly paceRow = dom("label", { class: "row", title: "How fast time goes by." }, [
+  private readonly paceRow = dom("label", { class: "row", title: "Speed of the animation." }, [
     dom("span", { class: "name" }, ["Pace"]),
     this.paceMenu,
   ]);
@@ -122,8 +122,8 @@ export class Panel {
     this.handle.classList.add("handle", "glass");
     this.playButton = this.button("play", "Play (space)", () => viewer.togglePlaying());
     this.stepButtons = [
-      this.button("previous", "A step back (,)", () => viewer.step(-1)),
-      this.button("next", "A step on (.)", () => viewer.step(1)),
+      this.button("previous", "Step back (,)", () => viewer.step(-1)),
+      this.button("next", "Step forward (.)", () => viewer.step(1)),
     ];
     viewer.lifetime.listen(this.paceMenu, "change", () => (viewer.player.pace = Number(this.paceMenu.value)));
     viewer.lifetime.listen(this.slider, "input", () => viewer.scrub(Number(this.slider.value)));

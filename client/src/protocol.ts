@@ -482,7 +482,7 @@ function partOfPlanes(info: PartInfo, planes: Uint8Array): NamedPart {
   const { shape, differences = [0, 0], scale = null } = info;
   const count = shape.reduce((product, n) => product * n, 1);
   const width = count ? planes.length / count : 1;
-  if (!(width in UNSIGNED)) throw new Error(`the part "${info.name}" is not packed as it tells`);
+  if (!(width in UNSIGNED)) throw new Error(`the packing of the part "${info.name}" is invalid`);
   const [line, channels] = shape.length > 2 ? shape.slice(-2) : [...shape, 1].slice(-2);
   const numbers = new UNSIGNED[width as 1 | 2 | 4](count);
   for (let c = 0, from = 0; c < channels; c += 1) {

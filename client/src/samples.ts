@@ -73,7 +73,7 @@ export function samplesOf(samples: PathSample[], point: Vector, camera: Camera):
     bar.style.cssText = `height: ${100 * weight}%; background: ${colour}`;
     return bar;
   });
-  const title = "Each bar is a sample: its height the weight, its grey the noise it meets.";
+  const title = "Each bar is a sample: its height is the weight, its grey is the noise.";
   return dom("div", { class: "samples" }, [
     enlarged(samples, point, camera),
     dom("div", { class: "bars", title }, bars),

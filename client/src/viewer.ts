@@ -491,7 +491,7 @@ export class Viewer implements User, View {
   /** Where from and when a moment is seen, with so many pixels along one of the page. */
   view(shown: Moment, density: number): ViewState {
     const { header, camera, scene, player } = this;
-    if (!header || !camera) throw new Error("there is nothing to look at yet");
+    if (!header || !camera) throw new Error("no scene is shown yet");
     const anchor = scene?.anchor ?? [0, 0, 0];
     return viewState({ header, camera, anchor, player, rows: this.stage.clientHeight }, shown, density);
   }

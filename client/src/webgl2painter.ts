@@ -27,7 +27,7 @@ export class WebGL2Painter implements Painter {
     this.renderer = new ProgressiveRenderer(view, this);
     if (view.graphics.gl) return;
     view.panel.fail(
-      "This browser has no WebGL2, which the picture is drawn with.",
+      "This browser has no WebGL2, which is needed to draw the picture.",
       "Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.",
     );
   }

@@ -236,7 +236,7 @@ class WidgetView {
       if (hasParts(message)) this.take(opened(message, buffers));
       if (message?.kind === "loaded") this.sources[message.view ?? 0]?.end(message as Loaded);
       if (message?.kind === "error") {
-        first.panel.fail("The kernel could not go on.", message.text ?? "");
+        first.panel.fail("The kernel could not continue.", message.text ?? "");
       }
     });
     viewers.forEach((_, n) => this.listen(`change:${HEADERS[n]}`, () => this.takeHeader(n)));

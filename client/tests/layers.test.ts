@@ -23,7 +23,7 @@ test("a texture that the graphics card has no room for is refused with what it h
   const wrong = [{ width: 17 }, { height: 17 }, { layers: 17 }];
   for (const more of wrong) {
     const { gl, calls } = recorded();
-    assert.throws(() => makeLayers(gl, {}, { ...SIZE, ...more }), /this graphics card has 16 x 16 in 16;/);
+    assert.throws(() => makeLayers(gl, {}, { ...SIZE, ...more }), /this graphics card supports at most 16 x 16 in 16;/);
     assert.deepEqual(calls, []);
   }
   for (const [channels, format] of [[1, "R16F"], [4, "RGBA16F"]] as const) {

@@ -59,12 +59,12 @@ test("what was wanted and is wanted no more is neither given nor a fault", async
   await settled();
   assert.deepEqual(names(), ["0", "1", "3", "4"]);
   running[2].end(new Error("a fault"));
-  running[3].end(Object.assign(new Error("nobody answers"), { fault: "unreachable" }));
+  running[3].end(Object.assign(new Error("no server answers"), { fault: "unreachable" }));
   await settled();
   assert.deepEqual(given, ["0/0/1 0"]);
   assert.deepEqual(lacking, [
     ["A part of the surface is shown coarse: a fault", "0/0/3", [0]],
-    ["A part of the surface is shown coarse: nobody answers", undefined, [0]],
+    ["A part of the surface is shown coarse: no server answers", undefined, [0]],
   ]);
   requests.wantTiles([[0, 0, 4]], [0]); // too early to be tried again
   assert.equal(running.length, 4);

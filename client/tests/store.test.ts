@@ -201,14 +201,14 @@ test("what is wrong is said in words", async () => {
   const tile = () => streamOf({ name: "speed" }).stream.load([0, 0, 0], [0], signal, nothing);
   const text = (words: string) => new TextEncoder().encode(words);
   const flip = (bytes: Uint8Array<ArrayBuffer>) => bytes.map((byte, n) => (n === bytes.length >> 1 ? byte ^ 64 : byte));
-  const broken = /^Error: what the store has of it is broken/;
+  const broken = /^Error: its data in the store are corrupt/;
   const cases: [string, (bytes: Uint8Array<ArrayBuffer>) => Uint8Array<ArrayBuffer>, RegExp][] = [
     [FLOW, flip, broken],
     [FLOW, () => text("<!doctype html><title>Welcome</title>".repeat(200)), broken],
     ["0/surface/c/0/0/0", flip, broken],
     ["0/values/c/0/0/0/0/0", (bytes) => bytes.slice(0, -9), broken],
     ["zarr.json", () => text("<!doctype html>"), broken],
-    ["zarr.json", () => text('{"zarr_format":3,"node_type":"group","attributes":{}}'), /holds another flow than this page/],
+    ["zarr.json", () => text('{"zarr_format":3,"node_type":"group","attributes":{}}'), /does not match this page/],
   ];
   for (const [path, change, words] of cases) {
     const whole = files.get(path) as Uint8Array<ArrayBuffer>;
@@ -218,10 +218,10 @@ test("what is wrong is said in words", async () => {
   }
   for (const path of [FLOW, "0/flow/zarr.json"]) {
     fault = (asked_) => (asked_ === path ? 404 : null);
-    await assert.rejects(tile(), /^Error: it is not in the store, or the store is not open/, path);
+    await assert.rejects(tile(), /^Error: it is not in the store, or the store is not public/, path);
   }
   fault = (path) => (path === "zarr.json" ? 404 : null);
-  await assert.rejects(tile(), /it is not in the store, or the store is not open to everyone/);
+  await assert.rejects(tile(), /it is not in the store, or the store is not public/);
 });
 
 test("what is not there or not open is missing, and not tried again", async () => {
@@ -274,7 +274,7 @@ test("a store that did not answer is tried again, and a page has to tell where i
     await stream.open();
     const beside = new Stream({ store: { url: "./flow.zarr" } } as unknown as Header, "file:///page.html");
     await assert.rejects(beside.open(), /open it from a web server/);
-    assert.throws(() => new Stream({} as Header, BASE), /does not tell where its store is/);
+    assert.throws(() => new Stream({} as Header, BASE), /does not say where its store is/);
   } finally {
     clearInterval(turn);
     mock.timers.reset();
@@ -303,7 +303,7 @@ test("another store is refused, before anything of it is read", async () => {
   for (const name of Object.keys(ABOUT)) {
     asked = [];
     const { stream } = streamOf({}, { [name]: "other" });
-    await assert.rejects(stream.load([0, 0, 0], [0], signal, nothing), /holds another flow/);
+    await assert.rejects(stream.load([0, 0, 0], [0], signal, nothing), /does not match this page/);
     assert.deepEqual(asked, ["zarr.json"]);
   }
 });

@@ -80,7 +80,7 @@ def checked_path(name: str, path: Any) -> Path:
 def check_field(field: Any, kind: type) -> None:
     """Refuse what is no field, which is of a class."""
     if not isinstance(field, kind):
-        msg = f"field is {field!r}; expected a FlowField, as FlowField.from_pyvista(mesh) makes"
+        msg = f"field is {field!r}; expected a FlowField, such as FlowField.from_pyvista(mesh)"
         raise FieldError(msg)
 
 
@@ -90,4 +90,4 @@ def near_names(name: str, known: Iterable[str]) -> str:
     close = difflib.get_close_matches(name, names, n=2)
     if close:
         return f"did you mean {' or '.join(map(repr, close))}?"
-    return f"there are: {', '.join(names)}"
+    return f"expected one of: {', '.join(names)}"

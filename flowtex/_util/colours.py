@@ -43,7 +43,10 @@ def rgb(colour: Any) -> tuple[float, float, float]:
     try:
         red, green, blue = pv.Color(colour).float_rgb
     except (TypeError, ValueError, OverflowError) as error:
-        msg = f"there is no colour {colour!r}; expected a name such as black, #rrggbb, or (r, g, b)"
+        msg = (
+            f"the colour {colour!r} does not exist; expected a name such as black, #rrggbb, or "
+            "(r, g, b)"
+        )
         raise FieldError(msg) from error
     return red, green, blue
 
@@ -79,7 +82,7 @@ def _named_table(name: Any) -> Bytes:
         return _resampled(np.asarray(pv.LookupTable(name, n_values=ENTRIES).values))
     except (TypeError, ValueError, ModuleNotFoundError) as error:
         hint = near_names(name, sorted(colormaps)) if isinstance(name, str) else "expected a name"
-        msg = f"there is no colour map {name!r}; {hint}"
+        msg = f"the colour map {name!r} does not exist; {hint}"
         raise FieldError(msg) from error
 
 

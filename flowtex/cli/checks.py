@@ -21,8 +21,12 @@ def check_picture_file(output: Path) -> None:
     Image.init()
     suffixes = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
     if output.suffix.lower() not in suffixes:
-        what = f"{output.suffix!r} is no format" if output.suffix else "no suffix is no format"
-        msg = f"{output}: {what} that pictures are written in; use .png, .jpg, .webp or .tiff"
+        what = (
+            f"{output.suffix!r} is not a format"
+            if output.suffix
+            else ("the file name has no suffix")
+        )
+        msg = f"{output}: {what}; expected one for pictures: .png, .jpg, .webp or .tiff"
         raise UsageError(msg)
     _check_folder(output)
 
@@ -30,7 +34,7 @@ def check_picture_file(output: Path) -> None:
 def check_page_file(output: Path) -> None:
     """Refuse a page that could not be written, before anything is traced."""
     if output.suffix.lower() not in (".html", ".htm"):
-        msg = f"{output}: expected a name that ends in .html, as a page has"
+        msg = f"{output}: expected a name that ends in .html"
         raise UsageError(msg)
     _check_folder(output)
 
@@ -48,7 +52,10 @@ def check_movie_file(output: Path, size: tuple[int, int], fps: float | None, qua
 
 def _check_folder(output: Path) -> None:
     if not output.parent.is_dir():
-        msg = f"{output}: there is no folder {str(output.parent)!r}; make it, or write elsewhere"
+        msg = (
+            f"{output}: the folder {str(output.parent)!r} does not exist; create it, or choose "
+            "another"
+        )
         raise UsageError(msg)
 
 
@@ -56,7 +63,7 @@ def drawing(*groups: Any) -> dict[str, Any]:
     """Return how flags have a flow drawn; refuse, before a file is read, what does not fit."""
     values = arguments(*groups)
     if values.get("noise") == "image" and "image" not in values:
-        msg = "--noise is image and there is no picture; name one with --image FILE"
+        msg = "--noise is image but no image is given; add --image FILE"
         raise UsageError(msg)
     options = Options.split("appearance", "view", **values)
     options.make_settings()
@@ -68,7 +75,7 @@ def drawing(*groups: Any) -> dict[str, Any]:
 def check_lines(choice: Mapping[str, Any], values: Mapping[str, Any]) -> None:
     """Refuse pathlines of one time that is read alone."""
     if "time" in choice and values.get("lines") == "pathlines":
-        msg = "--lines is pathlines, which need all times; leave out --time, or use flowtex render"
+        msg = "--lines is pathlines, which need all times; omit --time, or use flowtex render"
         raise UsageError(msg)
 
 
@@ -78,8 +85,8 @@ def require_app() -> None:
     missing = [name for name in packages if importlib.util.find_spec(name) is None]
     if missing:
         msg = (
-            f"the page needs {', '.join(missing)}, not installed here. To mend it:\n"
-            f"  {install_extra('app')}"
+            f"the page needs {', '.join(missing)}, which is not installed. To install it:\n  "
+            f"{install_extra('app')}"
         )
         raise UsageError(msg)
 

@@ -36,13 +36,11 @@ app = App(
     name="flowtex",
     help="Draw the flow on a surface as a texture that stays sharp at every zoom.",
     version=lambda: __import__("flowtex").__version__,
-    help_epilogue="Try `flowtex demo`. Add --debug to see where an error came from.",
+    help_epilogue="Try `flowtex demo`. Add --debug to print the traceback of an error.",
 )
 # These load the examples, so they are imported when they run; their help has to stand here.
 app.command("flowtex.cli.show:demo", help="Show the examples on a page in the browser.")
-app.command(
-    "flowtex.cli.show:show", help="Show files, or a folder of them, in a window or on a page."
-)
+app.command("flowtex.cli.show:show", help="Show files or a folder in a window or on a page.")
 for _command in (render, movie, export, formula, info, pyramid, serve):
     app.command(_command)
 
@@ -108,8 +106,8 @@ def _unknown(error: UnknownOptionError) -> UsageError:
     words = [name.removeprefix(off) for name in names if name.startswith(off)]
     near = get_close_matches(flag.removeprefix(off), words, n=1)
     command = " ".join(["flowtex", *(error.command_chain or ())])
-    hint = f"did you mean {off}{near[0]}?" if near else f"`{command} --help` lists what there is"
-    return UsageError(f"there is no {flag} of {command}; {hint}")
+    hint = f"did you mean {off}{near[0]}?" if near else f"`{command} --help` lists all options"
+    return UsageError(f"{command} has no option {flag}; {hint}")
 
 
 def _warn(message: Warning | str, *_: Any) -> None:

@@ -37,7 +37,7 @@ def in_flags(text: str) -> str:
         quote = match["quote"] if " " in match["value"] else ""
         return f"--{match['name'].replace('_', '-')} {quote}{match['value']}{quote}"
 
-    text = re.sub(rf"(?:^|(?<=: |\. ))(?P<name>{names}) (?P<value>is )", flag, text)
+    text = re.sub(rf"(?:^|(?<=: |\. ))(?P<name>{names}) (?P<value>is |applies )", flag, text)
     text = re.sub(
         rf"\b(?P<name>{names})=True\b", lambda m: f"--{m['name'].replace('_', '-')}", text
     )
@@ -66,11 +66,11 @@ def announcer(
         say("  ", (address, "cyan"), "\n")
         if host not in ("127.0.0.1", "localhost", "::1"):
             warning = (
-                "  Everybody who can reach this machine and has this address can use it,\n"
-                "  and read along: a proxy with TLS keeps it private."
+                "  Everyone who can reach this machine and has this address can use it;\n  the "
+                "connection is not encrypted, so put a proxy with TLS in front of it."
             )
             say((warning, "yellow"))
-        say(("  Ctrl-C ends it.", "dim"))
+        say(("  Press Ctrl-C to stop.", "dim"))
         sys.stdout.flush()
 
     return announce
@@ -85,7 +85,7 @@ def describe(field: FlowField) -> str:
 def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
     """Return the flow of a file, or of several that belong together."""
     if not files:
-        msg = "there is no file; name one"
+        msg = "no file is given; name one"
         raise UsageError(msg)
     options, whole = dict(choice), files[0] if len(files) == 1 else files
     time = options.pop("time", None)

@@ -27,7 +27,7 @@ from flowtex.field import FlowField
 
 #: What errors say in Python, and in a shell.
 _IN_SHELL = (
-    (r"a parameter gets (\w+)=1", r"a parameter gets --set \1=1"),
+    (r"its value, as in (\w+)=1", r"its value, as in --set \1=1"),
     (r"times=, such as times=np\.linspace\(0, 10, 41\)", "--times 0,10,41"),
     (r"^(x|y|u|v|surface|times|resolution) is", r"--\1 is"),
     (r"^(\w+) is (.*value, low)", r"--set \1 is \2"),
@@ -39,7 +39,7 @@ def _flag(text: str) -> Any:
     return Parameter(group=FLOW, help=text, allow_leading_hyphen=True)
 
 
-_RANGE = "Ends of the coordinate, as -7,7."
+_RANGE = "Range of the coordinate, such as -7,7."
 
 
 def formula(
@@ -47,8 +47,11 @@ def formula(
         str,
         Parameter(
             allow_leading_hyphen=True,
-            help="The rates of x and y, such as y and -sin(x); on a surface those of u and v, or "
-            "the velocity along x, y and z. Or the name of a known formula, such as pendulum.",
+            help=(
+                "The rates of x and y, such as y and -sin(x); on a surface the rates of u and v, "
+                "or the velocity along x, y and z. Or the name of a known formula, such as "
+                "pendulum."
+            ),
         ),
     ],
     output: Annotated[
@@ -64,12 +67,15 @@ def formula(
         Parameter(
             group=FLOW,
             negative=(),
-            help="A parameter: b=0.2, or with the ends of its slider b=0.2,0,1.",
+            help="A parameter: b=0.2, or with the range of its slider b=0.2,0,1.",
         ),
     ] = (),
     surface: Annotated[
         str | None,
-        _flag("sphere, torus, cylinder, or x, y and z of u and v with semicolons between."),
+        _flag(
+            "sphere, torus, cylinder, or x, y and z as expressions in u and v, separated by "
+            "semicolons."
+        ),
     ] = None,
     times: Annotated[str | None, _flag("First and last time, and their number: 0,10,41.")] = None,
     resolution: Annotated[
@@ -89,7 +95,7 @@ def formula(
     for text in set:
         name, equals, value = text.partition("=")
         if not equals or not name.isidentifier() or name in ("surface", "times", *given):
-            msg = f"--set is {text!r}; expected a parameter and its value, as b=0.2"
+            msg = f"--set is {text!r}; expected a parameter and its value, such as b=0.2"
             raise UsageError(msg)
         ends = _numbers(f"set {name}", value, 1, 3)
         choice[name] = ends if len(ends) > 1 else ends[0]
@@ -123,7 +129,7 @@ def formula(
 
 
 def _numbers(name: str, text: str, *counts: int) -> tuple[float, ...]:
-    expected = f"{' or '.join(map(str, counts))} numbers with commas between"
+    expected = f"{' or '.join(map(str, counts))} numbers separated by commas"
     try:
         return numbers(*counts, expected=expected)(text)
     except UnreadableError as error:

@@ -45,7 +45,7 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
         console.print(_field_table(load_field(files, options)))
         return 0
     if len(files) != 1:
-        msg = f"there are {len(files)} files; name one, or several of data of the Earth"
+        msg = f"{len(files)} files are given; name one, or several only for data of the Earth"
         raise UsageError(msg)
     file = files[0]
     summary = describe(file, options.get("block"))
@@ -89,7 +89,7 @@ def _store_table(place: Path) -> Table:
     table.add_row("times", str(len(about["times"])))
     table.add_row("lines", f"{about['lines']} by {about['parameter']}")
     table.add_row("scalars", ", ".join(about["scalars"]) or "none")
-    table.add_row("built", "all of it" if about.get("complete") else "not to its end; build again")
+    table.add_row("built", "complete" if about.get("complete") else "incomplete; build it again")
     return table
 
 
@@ -181,7 +181,7 @@ def _field_table(field: FlowField) -> Table:
     from flowtex.tiles import has_pyramid
 
     table = _pairs(
-        "What would be drawn of the whole" if has_pyramid(field) else "What would be drawn"
+        "What would be drawn by default" if has_pyramid(field) else "What would be drawn"
     )
     if field.triangles is None:
         rows, columns = field.shape
@@ -205,8 +205,10 @@ def _field_table(field: FlowField) -> Table:
     sizes = field.surface.cell_size[field.valid]
     sizes = sizes[np.isfinite(sizes) & (sizes > 0)]
     if sizes.size:
-        table.add_row("cells", f"the longest is {sizes.max() / sizes.min():,.3g} × the shortest")
-    table.add_row("lost", f"{field.normal_share:.1%} of the flow points out of the surface")
+        table.add_row(
+            "cells", (f"the longest is {sizes.max() / sizes.min():,.3g} times the shortest")
+        )
+    table.add_row("lost", f"{field.normal_share:.1%} of the flow is normal to the surface")
     table.add_row("memory", f"about {_megabytes(field):,.0f} MB of traces for one time")
     return table
 
@@ -215,7 +217,7 @@ def _lines(field: FlowField) -> str:
     """Tell what it is drawn along, and why."""
     from flowtex.trace import changing_share, chosen_lines
 
-    share = f"{changing_share(field):.0%} of the flow changes while a particle goes along a streak"
+    share = f"{changing_share(field):.0%} of the flow changes while a particle moves along a streak"
     return f"{chosen_lines(field)} ({share})"
 
 

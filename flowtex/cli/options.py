@@ -27,8 +27,10 @@ FLAT = Parameter(name="*")
 FILE = Annotated[
     Path,
     Parameter(
-        help="A mesh: any file that PyVista reads, or PLOT3D; or data of the Earth: "
-        "NetCDF, Zarr, GRIB or the JSON of wind maps, several files where they belong together."
+        help=(
+            "A mesh: any file that PyVista reads, or PLOT3D; or data of the Earth: NetCDF, Zarr, "
+            "GRIB or the JSON of wind maps. Several files are opened as one dataset."
+        )
     ),
 ]
 
@@ -92,7 +94,10 @@ TIME = Annotated[
     str | None,
     Parameter(
         group=FLOW,
-        help="One time of a series, a number or a date, by its streamlines; all by default.",
+        help=(
+            "One time of a series, a number or a date, drawn with its streamlines; all times by "
+            "default."
+        ),
     ),
 ]
 
@@ -109,12 +114,12 @@ if TYPE_CHECKING:
 else:
     FieldFlags = _flags(
         "FieldFlags",
-        "What of a file makes the flow.",
+        "Selects the flow from a file.",
         {**_option_flags(FieldOptions, FLOW), "time": TIME},
     )
     LookFlags = _flags(
         "LookFlags",
-        "Colours, and what of the flow is seen.",
+        "Colours and visibility.",
         {**_option_flags(Appearance, PICTURE), **_option_flags(ViewOptions, PICTURE)},
     )
     SettingFlags = _flags(
@@ -130,11 +135,12 @@ class FrameFlags:
 
     size: SIZE = "1024x768"
     supersampling: Annotated[
-        int, Parameter(group=PICTURE, help="Draw larger by as much along each side, and average.")
+        int,
+        Parameter(group=PICTURE, help=("Draw larger by this factor along each side, and average.")),
     ] = 1
     annotations: Annotated[
         bool,
-        Parameter(group=PICTURE, help="Write legend, scale bar, time and name on it.", negative=""),
+        Parameter(group=PICTURE, help="Add legend, scale bar, time and name.", negative=""),
     ] = False
 
 
@@ -147,14 +153,22 @@ class AddressFlags:
         Parameter(group=PAGE, help="Port; 0 takes a free one.", validator=Number(gte=0, lt=65536)),
     ] = 0
     host: Annotated[
-        str, Parameter(group=PAGE, help="Address to listen on: others may reach another one.")
+        str,
+        Parameter(
+            group=PAGE,
+            help=(
+                "Address to listen on; with any but the default, other machines may reach the page."
+            ),
+        ),
     ] = "127.0.0.1"
     allow_host: Annotated[
         tuple[str, ...],
         Parameter(
             group=PAGE,
-            help="Name under which browsers may ask for the page besides localhost and --host, "
-            "such as that of a proxy before it; several times for several, '*' for any.",
+            help=(
+                "Host name by which browsers may address the page, besides localhost and --host, "
+                "such as that of a proxy. Repeat it for several; '*' allows any."
+            ),
             negative=(),
         ),
     ] = ()
@@ -172,12 +186,15 @@ class ServeFlags(AddressFlags):
         int | None,
         Parameter(
             group=PAGE,
-            help="Pages at one time, each with a state of its own; by default what cores and "
-            "memory have room for.",
+            help=(
+                "Largest number of open pages, each with its own state; by default as many as "
+                "cores and memory allow."
+            ),
         ),
     ] = None
     idle: Annotated[
-        float, Parameter(group=PAGE, help="Minutes for which a page that was closed can come back.")
+        float,
+        Parameter(group=PAGE, help=("Minutes during which a closed page can be opened again.")),
     ] = 15.0
 
 

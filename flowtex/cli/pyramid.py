@@ -21,30 +21,38 @@ def pyramid(
         str,
         Parameter(
             name=["--output", "-o"],
-            help="Store to write: a new or an empty folder, or a URL such as s3://b/a.zarr.",
+            help="Store to write: a new or empty folder, or a URL such as s3://b/a.zarr.",
         ),
     ] = "",
     verify: Annotated[
         bool,
         Parameter(
             negative=(),
-            help="Read all of FILE, a store, and say what is missing or corrupt; then exit with 1.",
+            help=(
+                "Read the whole store FILE and list missing or corrupt objects; exit with 1 if "
+                "there are any."
+            ),
         ),
     ] = False,
     fresh: Annotated[
         bool,
-        Parameter(negative=(), help="Remove the pyramid that is in the store, and build it anew."),
+        Parameter(
+            negative=(), help=("Remove the existing pyramid from the store, and build a new one.")
+        ),
     ] = False,
     lines: Annotated[
         Literal["auto", "pathlines", "streamlines"],
-        Parameter(help="What the texture is drawn along, in a flow that varies."),
+        Parameter(help="Lines along which a time-varying flow is drawn."),
     ] = "auto",
     scheduler: Annotated[
-        str | None, Parameter(help="Dask scheduler, as tcp://host:8786; else threads work here.")
+        str | None,
+        Parameter(
+            help=("Dask scheduler, such as tcp://host:8786; threads of this process by default.")
+        ),
     ] = None,
     memory: Annotated[
         str | None,
-        Parameter(help="What threads may take of the memory, as 4GB; else one for each core."),
+        Parameter(help="Memory limit of the threads, such as 4GB; one thread per core by default."),
     ] = None,
     flow: Annotated[FieldFlags | None, FLAT] = None,
 ) -> int:
@@ -53,12 +61,12 @@ def pyramid(
     from flowtex.pyramid.source import source_of
 
     if not files:
-        msg = "there is no file; name one"
+        msg = "no file is given; name one"
         raise UsageError(msg)
     if verify:
         return _verify(files)
     if not output:
-        msg = "--output is missing; expected the folder or the URL of a store, as -o flow.zarr"
+        msg = "--output is missing; expected the folder or the URL of a store, such as -o flow.zarr"
         raise UsageError(msg)
     start = time.perf_counter()
     with waiting(f"Reading {files[0].name}"), notices():
@@ -66,12 +74,12 @@ def pyramid(
         source = source_of(whole, **arguments(flow))
     with writing(output):
         built = build(source, output, lines=lines, scheduler=scheduler, memory=memory, fresh=fresh)
-    kept = f", {built.kept:,} were there" if built.kept else ""
+    kept = f", {built.kept:,} kept" if built.kept else ""
     rows, columns = source.shape
     say(
         (str(output), "bold"),
         f"  {columns} × {rows} nodes, {built.depth + 1} levels  ",
-        (f"{built.made:,} shards made{kept}, {time.perf_counter() - start:.1f} s", "dim"),
+        (f"{built.made:,} shards built{kept}, {time.perf_counter() - start:.1f} s", "dim"),
     )
     return 0
 
@@ -82,7 +90,7 @@ def _verify(files: Sequence[Path]) -> int:
     from flowtex.pyramid.places import DamageError
 
     if len(files) != 1 or not is_store(files[0]):
-        msg = f"{' '.join(map(str, files))} is no pyramid; --verify expects one store"
+        msg = f"{' '.join(map(str, files))} is not a pyramid; --verify expects one store"
         raise UsageError(msg)
     try:
         faults = verify(files[0])

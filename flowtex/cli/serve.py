@@ -38,8 +38,7 @@ def serve(
         str | None,
         Parameter(
             group=PAGE,
-            help="Word in the address without which nothing is shown; by default one that cannot "
-            "be guessed.",
+            help="Secret word in the address, without which nothing is shown; random by default.",
         ),
     ] = None,
     title: Annotated[
@@ -53,14 +52,14 @@ def serve(
     require_app()
     if token is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,}", token):
         msg = (
-            f"--token is {token!r}; expected 16 or more letters, numbers, '-' and '_' that nobody "
-            "can guess; without --token the address gets one"
+            f"--token is {token!r}; expected 16 or more letters, digits, '-' and '_' that nobody "
+            "can guess; omit --token to get a random one"
         )
         raise UsageError(msg)
     from flowtex.pyramid import is_store, open_store
 
     if not is_store(store):
-        msg = f"{store} is no pyramid; make one of it with `flowtex pyramid {store} -o flow.zarr`"
+        msg = f"{store} is not a pyramid; build one with `flowtex pyramid {store} -o flow.zarr`"
         raise UsageError(msg)
     from flowtex.app.server.security import known_hosts, new_secret
     from flowtex.app.server.served_store import ServedStore

@@ -44,7 +44,10 @@ FIELD_OPTIONS = (
 )
 
 FILE = Annotated[
-    Path, Parameter(help="Meshes, any files that PyVista reads or PLOT3D; or one folder of them.")
+    Path,
+    Parameter(
+        help=("Files that PyVista reads, PLOT3D or data of the Earth; or one folder of them.")
+    ),
 ]
 
 
@@ -56,7 +59,7 @@ def demo(
 ) -> int:
     """Show the examples on a page in the browser."""
     if example not in NAMES:
-        msg = f"there is no example {example!r}; there are {', '.join(NAMES)}"
+        msg = f"the example {example!r} does not exist; expected one of {', '.join(NAMES)}"
         raise UsageError(msg)
     options = drawing(settings)
     from flowtex import diagnostics
@@ -129,11 +132,11 @@ def _show_page(
     options: dict[str, Any],
 ) -> int:
     if not files:
-        msg = "there is no file to show; name one, or a folder, or try `flowtex demo`"
+        msg = "no file is given; name a file or a folder, or try `flowtex demo`"
         raise UsageError(msg)
     for name, group in (("background", "Colours"), ("beside", "View")):
         if name in options:
-            msg = f"--{name} is for pictures and windows; the page has its own, under {group}"
+            msg = f"--{name} is for pictures and windows; on the page it is a control under {group}"
             raise UsageError(msg)
     if serve_processes(page):
         return 0
@@ -148,7 +151,10 @@ def _show_page(
     if one and any(name in choice for name in FIELD_OPTIONS):
         return serve_library(Library.of(load_field(files, choice)), page, options)
     if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
-        msg = f"--{misplaced[0].replace('_', '-')} goes with one file, not with several or a folder"
+        msg = (
+            f"--{misplaced[0].replace('_', '-')} can be used with one file, not with several "
+            "files or a folder"
+        )
         raise UsageError(msg)
     return serve_library(Library.of(*files), page, {**options, **choice})
 

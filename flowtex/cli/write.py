@@ -40,10 +40,11 @@ NOTABLE_LOSS = 0.01
 def render(
     *files: FILE,
     output: Annotated[
-        Path, Parameter(name=["--output", "-o"], help="Picture to write; its suffix is its format.")
+        Path,
+        Parameter(name=["--output", "-o"], help=("Picture to write; the suffix sets the format.")),
     ],
     clock: Annotated[
-        float, Parameter(group=PICTURE, help="Moment of the streaming (--motion), in seconds.")
+        float, Parameter(group=PICTURE, help="Time of the streaming (--motion), in seconds.")
     ] = 0.0,
     flow: Annotated[FieldFlags | None, FLAT] = None,
     look: Annotated[LookFlags | None, FLAT] = None,
@@ -67,7 +68,7 @@ def render(
 
     write_picture(draw(field, **shown, **options), output)
     lost = (
-        f", {field.normal_share:.0%} of the flow leaves the surface"
+        f", {field.normal_share:.0%} of the flow is normal to the surface"
         if field.normal_share > NOTABLE_LOSS
         else ""
     )
@@ -86,14 +87,19 @@ def movie(
     ],
     seconds: Annotated[
         float | None,
-        Parameter(group=PICTURE, help="Length; a steady flow begins again after as many."),
+        Parameter(
+            group=PICTURE, help=("Length of the movie in seconds; a steady flow repeats after it.")
+        ),
     ] = None,
     fps: Annotated[
         float | None,
         Parameter(group=PICTURE, help="Frames in a second. [default: 30, and 20 in a GIF]"),
     ] = None,
     quality: Annotated[
-        int, Parameter(group=PICTURE, help="1 to 100: the more, the truer and the larger.")
+        int,
+        Parameter(
+            group=PICTURE, help=("1 to 100; higher values give better pictures and larger files.")
+        ),
     ] = 80,
     flow: Annotated[FieldFlags | None, FLAT] = None,
     look: Annotated[LookFlags | None, FLAT] = None,
@@ -114,7 +120,7 @@ def movie(
 
     with writing(output):
         result = write_movie(field, output, seconds=seconds, fps=fps, quality=quality, **options)
-    loop = ", a loop without a seam" if result.closed else ""
+    loop = ", a seamless loop" if result.closed else ""
     figures = (
         f"{_size(options)}, {result.frames} frames in {result.seconds:g} s, "
         f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s"
@@ -130,20 +136,18 @@ def export(
     ],
     steps: Annotated[
         int | None,
-        Parameter(group=PICTURE, help="Time steps that the page has; all of them by default."),
+        Parameter(group=PICTURE, help="Number of time steps on the page; all by default."),
     ] = None,
     title: Annotated[
         str | None, Parameter(group=PICTURE, help="Title of the page; the file's name by default.")
     ] = None,
     store: Annotated[
         str | None,
-        Parameter(
-            help="Address of a pyramid for browsers, https://… or ./…: the page reads it there."
-        ),
+        Parameter(help="Address from which browsers read the pyramid, https://… or ./…"),
     ] = None,
     axes: Annotated[
         Literal["ticks", "scale", "none"] | None,
-        Parameter(group=PICTURE, help="What stands at the borders; ticks on flat surfaces."),
+        Parameter(group=PICTURE, help="Axes at the borders; ticks on flat surfaces by default."),
     ] = None,
     flow: Annotated[FieldFlags | None, FLAT] = None,
     look: Annotated[LookFlags | None, FLAT] = None,
@@ -156,7 +160,9 @@ def export(
     check_lines(choice, options)
     field = load_field(files, choice)
     if steps is not None and steps < 1:
-        msg = f"--steps is {steps}; expected 1 to {len(field.times)}, the steps of the file"
+        msg = (
+            f"--steps is {steps}; expected 1 to {len(field.times)}, the number of steps in the file"
+        )
         raise UsageError(msg)
     from flowtex.web.export import export as write_page
 

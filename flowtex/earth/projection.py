@@ -171,15 +171,15 @@ class Projection:
             crs = pyproj.CRS.from_user_input(text)
             if not crs.is_projected:
                 msg = (
-                    f"the projection {self.name!r} is in degrees and not in metres; choose one of "
-                    f"{', '.join((GLOBE, *NAMES))}, or another that PROJ knows"
+                    f"the projection {self.name!r} is in degrees; expected one in metres: "
+                    f"{', '.join((GLOBE, *NAMES))}, or a PROJ string"
                 )
                 raise ProjectionError(msg)
             return crs
         except pyproj.exceptions.ProjError as error:
             msg = (
-                f"the projection {self.name!r} is not known; expected one of "
-                f"{', '.join((GLOBE, *NAMES))}, or what PROJ takes, such as 'EPSG:3413' or "
+                f"the projection {self.name!r} is unknown; expected one of "
+                f"{', '.join((GLOBE, *NAMES))}, or a PROJ string such as 'EPSG:3413' or "
                 "'+proj=laea +lat_0=52 +lon_0=10'"
             )
             raise ProjectionError(msg) from error

@@ -93,8 +93,9 @@ def load(name: str) -> dict[str, AnyArray]:
     path = DATA / name
     if not path.is_file():
         message = (
-            f"the example file {name!r} is not in {path.parent}; it comes with flowtex: reinstall "
-            "it, or compute the file in a checkout: python tools/example_data/build.py"
+            f"the example file {name!r} is missing from {path.parent}, although it comes with "
+            "flowtex: reinstall flowtex, or compute the file in a clone: python "
+            "tools/example_data/build.py"
         )
         raise FileNotFoundError(message)
     with np.load(path, allow_pickle=False) as file:
@@ -119,8 +120,8 @@ def find_post(folder: str | Path | None = None) -> Path:
     missing = [name for name in (POST_GRID, POST_SOLUTION) if not (place / name).is_file()]
     if missing:
         message = (
-            f"{place} has no {' and no '.join(missing)}; give the folder that holds {POST_GRID} "
-            f"and {POST_SOLUTION}, or none to download them with PyVista"
+            f"{place} has no {' and no '.join(missing)}; give the folder that contains "
+            f"{POST_GRID} and {POST_SOLUTION}, or none to download them with PyVista"
         )
         raise FileNotFoundError(message)
     return place / POST_GRID
@@ -135,9 +136,9 @@ def _downloaded() -> Path:
     # What the network raises (requests) derives from OSError.
     except OSError as error:
         message = (
-            f"PyVista could not download {POST_GRID} and {POST_SOLUTION} ({type(error).__name__}); "
-            "check the network, or give the folder that holds them, as in "
-            "liquid_oxygen_post(folder=...)"
+            f"PyVista could not download {POST_GRID} and {POST_SOLUTION} "
+            f"({type(error).__name__}); check the network, or give the folder that contains them, "
+            "as in liquid_oxygen_post(folder=...)"
         )
         raise FileNotFoundError(message) from error
     return paths[0]

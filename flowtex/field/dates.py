@@ -32,14 +32,15 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
         return times, time_unit, None
     if time_unit not in ("", "s"):
         msg = (
-            f"time_unit is {time_unit!r} and the times are dates, which become seconds; leave it "
-            "out and give velocities per second, or give times as numbers"
+            f"time_unit is {time_unit!r}, but the times are dates, which are converted to "
+            "seconds; omit time_unit and give velocities per second, or give times as numbers"
         )
         raise FieldError(msg)
     if np.datetime_data(given.dtype)[0] in ("M", "Y"):
         if given.dtype.kind == "m":
             msg = (
-                f"times holds {given.dtype}, which have no fixed length; expected dates or numbers"
+                f"times has type {given.dtype}, whose units have no fixed length; expected dates "
+                "or numbers"
             )
             raise FieldError(msg)
         given = given.astype("datetime64[D]")
@@ -66,7 +67,7 @@ def seconds_since(start: Any, date: Any) -> float:
     if is_number(date) and not isinstance(date, (np.datetime64, np.timedelta64)):
         return float(date)
     if start is None:
-        msg = f"time is {date!r}; expected a number, for the times of the field are no dates"
+        msg = f"time is {date!r}; expected a number, because the times of the field are not dates"
         raise FieldError(msg)
     try:
         if isinstance(date, np.datetime64):

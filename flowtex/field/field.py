@@ -53,8 +53,8 @@ NOTABLE_SHARE = 0.05
 #: Share of the flow normal to a surface of triangles from which on a notice says so.
 MOST_LOST = 0.5
 ALL_AT_REST = (
-    "The velocity is zero at every node, so the picture is plain noise; check the array that was "
-    "chosen and the region it covers."
+    "The velocity is zero at every node, so the picture shows only noise; check the selected "
+    "array and its region."
 )
 
 
@@ -148,7 +148,7 @@ class FlowField(FieldConstructors):
         field: FlowField = make(**vars(arrays))
         late = isinstance(field.velocity, LazySteps)
         if on_triangles and not late and (lost := field.normal_share) > MOST_LOST:
-            notify(f"{lost:.0%} of the flow points out of the surface and is not drawn")
+            notify(f"{lost:.0%} of the flow is normal to the surface and is not drawn")
         return field
 
     @classmethod
@@ -490,7 +490,7 @@ class FlowField(FieldConstructors):
         (1, 41, 81)
         """
         if self.sign_free:
-            msg = f"{name} needs directions, and the vectors of this field have no sign"
+            msg = f"{name} needs a direction, but this field is sign-free"
             raise FieldError(msg)
         if horizon is not None or name in FOLLOWED:
             return followed_steps(name, self, horizon)
@@ -567,7 +567,10 @@ class FlowField(FieldConstructors):
             When fewer than two lines would be left, or on a surface of triangles, which has none.
         """
         if self.triangles is not None:
-            msg = f"{self!r} has no lines of nodes; make the mesh coarser, as by mesh.decimate(0.5)"
+            msg = (
+                f"{self!r} has no lines of nodes; make the mesh coarser, for example with "
+                "mesh.decimate(0.5)"
+            )
             raise FieldError(msg)
         axes = zip(self.shape, self.periodic, strict=True)
         return self.at_lines(*(every_line(n, factor, closed=closed) for n, closed in axes))

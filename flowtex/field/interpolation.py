@@ -127,8 +127,8 @@ def every_line(count: int, factor: int, *, closed: bool) -> Indices:
     fewest = 4 if closed else 2
     if len(picks) < fewest:
         msg = (
-            f"factor is {factor}, which leaves {len(picks)} of {count} lines; expected a smaller "
-            f"one that leaves at least {fewest}"
+            f"factor is {factor}, which keeps {len(picks)} of {count} lines; expected a smaller "
+            f"factor that keeps at least {fewest}"
         )
         raise FieldError(msg)
     return np.array(picks)

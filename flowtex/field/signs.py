@@ -32,8 +32,8 @@ def sign_free_faults(v: Floats) -> list[str]:
     if v.ndim != 4 or len(v) == 1:
         return []
     return [
-        f"sign_free is True and velocity has {len(v)} time steps; a field without a sign has no "
-        "paths in time: give one step, as in velocity[-1], or make a field of each"
+        f"sign_free is True, but velocity has {len(v)} time steps; a sign-free field has no paths "
+        "in time: give one step, as in velocity[-1], or make one field for each"
     ]
 
 

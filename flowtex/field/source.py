@@ -115,7 +115,7 @@ class Source:
 
     def plane_of(self, level: float | str) -> str:
         """Return the plane of a level, as :attr:`default_plane` has it."""
-        msg = f"level is {level!r}; expected data of the Earth, and this is a mesh"
+        msg = f"level is {level!r}; expected data of the Earth, but this is a mesh"
         raise FieldError(msg)
 
     def field(
@@ -211,7 +211,7 @@ class FlowSource(Source):
             block = self.blocks[int(block)] if block not in self.blocks else block
         block = block or self.blocks[0]
         if block not in self.blocks:
-            msg = f"block is {block!r}; there are {', '.join(self.blocks)}"
+            msg = f"block is {block!r}; expected one of {', '.join(self.blocks)}"
             raise FieldError(msg)
         # Pages share a source, and there is one reader.
         with self._lock:

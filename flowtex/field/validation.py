@@ -47,12 +47,14 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
     try:
         array = np.asarray(np.ma.getdata(values))
     except (TypeError, ValueError) as error:
-        msg = f"{name} is no array ({error}); expected real numbers, as many in every row"
+        msg = (
+            f"{name} is not an array ({error}); expected real numbers, the same number in every row"
+        )
         raise FieldError(msg) from error
     if array.dtype.kind not in "fiub":
         msg = (
-            f"{name} holds {array.dtype}; expected real numbers: convert it with astype(float), "
-            "or take its real part"
+            f"{name} has type {array.dtype}; expected real numbers: convert it with "
+            "astype(float), or take its real part"
         )
         raise FieldError(msg)
     array = np.asarray(array, np.float64)
@@ -84,8 +86,8 @@ def shape_faults(
     """Return faults in the shapes of the arguments of :meth:`FlowField.from_arrays`."""
     if p.ndim != 3 or p.shape[-1] not in (2, 3):
         return [
-            f"points has shape {p.shape}; expected (J, I, 2) or (J, I, 3). Flat lists of points "
-            "need reshape(J, I, 3)"
+            f"points has shape {p.shape}; expected (J, I, 2) or (J, I, 3). Reshape a flat list of "
+            "points with reshape(J, I, 3)"
         ]
     grid = p.shape[:2]
     faults = []
@@ -96,13 +98,13 @@ def shape_faults(
         )
     hint = ""
     if v.ndim in (3, 4) and v.shape[-3:-1] == grid[::-1] and grid[0] != grid[1]:
-        hint = ". The two axes look swapped: arrays are (j, i), try np.swapaxes"
+        hint = ". The two axes seem to be swapped: arrays are (j, i), try np.swapaxes"
     elif v.ndim in (3, 4) and v.shape[-2:] == grid:
-        hint = ". The components look first: try np.moveaxis(velocity, 0, -1)"
+        hint = ". The components seem to come first: try np.moveaxis(velocity, 0, -1)"
     faults += nodal_faults(grid, v, steps, times, valid, scalars, hint)
     if periodic is not None and not (isinstance(periodic, str) and set(periodic) <= {"i", "j"}):
         faults.append(
-            f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to find out'
+            f'periodic is {periodic!r}; expected "", "i", "j" or "ij", or None to detect it'
         )
     return faults
 
@@ -124,12 +126,12 @@ def nodal_faults(
         series = ", ".join(map(str, ("T", *grid, 3)))
         faults.append(
             f"velocity has shape {v.shape}; expected {(*grid, 3)} for a steady field or "
-            f"({series}) for one that varies in time, with points {(*grid, 3)}{hint}"
+            f"({series}) for a time-varying one, because points has shape {(*grid, 3)}{hint}"
         )
     else:
         faults += time_faults(times, steps)
     if valid is not None and np.shape(valid) != grid:
-        faults.append(f"valid has shape {np.shape(valid)}; expected {grid} as points has")
+        faults.append(f"valid has shape {np.shape(valid)}; expected {grid}, as points")
     allowed = [grid, (steps, *grid)]
     for name, array in scalars.items():
         if np.shape(array) not in allowed:
@@ -150,13 +152,13 @@ def time_faults(t: Floats | None, count: int) -> list[str]:
         bad = int(np.flatnonzero(~np.isfinite(t))[0])
         return [f"times[{bad}] is {t[bad]}; expected a finite number"]
     if np.abs(t).max() > MAGNITUDES[1]:
-        return [f"times go up to {np.abs(t).max():.3g}; expected {MAGNITUDES[1]:g} at most"]
+        return [f"times reach {np.abs(t).max():.3g}; expected {MAGNITUDES[1]:g} at most"]
     falls = np.flatnonzero(np.diff(t) < MAGNITUDES[0])
     if len(falls):
         n = int(falls[0])
         return [
-            f"times[{n + 1}] = {t[n + 1]:g} does not come after times[{n}] = {t[n]:g}; expected "
-            "strictly increasing times: sort the steps, and drop those that repeat"
+            f"times[{n + 1}] = {t[n + 1]:g} is not greater than times[{n}] = {t[n]:g}; expected "
+            "strictly increasing times: sort the steps, and drop repeated ones"
         ]
     return []
 
@@ -168,8 +170,8 @@ def range_faults(p: Floats, v: Floats, ok: Bools) -> list[str]:
     for name, most, ends in (("points", of_nodes, LENGTHS), ("velocity", largest(v), MAGNITUDES)):
         if most and not ends[0] <= most <= ends[1]:
             faults.append(
-                f"{name} has values up to {most:.3g}; expected {ends[0]:g} to {ends[1]:g}: take "
-                "another unit, or NaN for what is missing"
+                f"{name} has values up to {most:.3g}; expected {ends[0]:g} to {ends[1]:g}: use "
+                "another unit, or NaN for missing values"
             )
     return faults
 
@@ -178,14 +180,14 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
     """Return faults in the nodes that are valid."""
     if not ok.any():
         return [
-            f"none of the {ok.size} nodes is usable: each is blanked, masked or NaN; check the "
-            "chosen vectors and the blanking"
+            f"none of the {ok.size} nodes is usable: all are blanked, masked or NaN; check the "
+            "selected vectors and the mask"
         ]
     cells = ok[:-1, :-1] & ok[1:, :-1] & ok[:-1, 1:] & ok[1:, 1:]
     if not cells.any():
         return [
-            f"{int(ok.sum())} of {ok.size} nodes are usable, but no four of them make a cell; "
-            "check the blanking"
+            f"{int(ok.sum())} of {ok.size} nodes are usable, but no four of them form a cell; "
+            "check the mask"
         ]
     if _spread(p, ok):
         return []

@@ -102,12 +102,15 @@ def _pyav() -> Any:
         import av
     except ModuleNotFoundError as error:
         msg = (
-            "an MP4 needs PyAV, not installed here; a GIF does without. To mend it:\n"
-            f"  {install_extra('movie')}"
+            "an MP4 needs PyAV, which is not installed; a GIF does not. To install it:\n  "
+            f"{install_extra('movie')}"
         )
         raise ModuleNotFoundError(msg) from error
     if "libx264" not in av.codecs_available:
-        msg = "PyAV was built without libx264 here; install its own wheel, or write a GIF"
+        msg = (
+            "the installed PyAV was built without libx264; install the wheel of PyAV, or write a "
+            "GIF"
+        )
         raise MovieError(msg)
     return av
 
@@ -128,7 +131,7 @@ class PillowEncoder:
         """Keep a picture."""
         if (self._count + 1) * picture.shape[0] * picture.shape[1] > PILLOW_MAX_PIXELS:
             most = f"{PILLOW_MAX_PIXELS:,} pixels in all"
-            msg = f"a {self._format} takes at most {most}; write an MP4, or less"
+            msg = f"a {self._format} can have at most {most}; write an MP4, or a smaller movie"
             raise MovieError(msg)
         self._spool.write(np.ascontiguousarray(picture).tobytes())
         self._count += 1
@@ -211,18 +214,21 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
     width, height = checked_size(size, low=0)
     shown = f"size is {width} x {height}"
     if suffix not in FORMATS:
-        what = f"{path.suffix!r} is no format" if suffix else "no suffix is no format"
-        msg = f"{path}: {what} that movies are written in; use {', '.join(FORMATS)}"
+        what = f"{path.suffix!r} is not a format" if suffix else "the file name has no suffix"
+        msg = f"{path}: {what}; expected one for movies: {', '.join(FORMATS)}"
     elif not (is_number(quality) and 1 <= quality <= 100):
         msg = f"quality is {quality!r}; expected a number from 1 to 100, such as {DEFAULT_QUALITY}"
     elif not (is_number(fps) and fps > 0):
-        msg = f"fps is {fps!r}; expected a positive number of frames a second, such as 30"
+        msg = f"fps is {fps!r}; expected a positive number of frames per second, such as 30"
     elif suffix == ".gif" and fps > GIF_MAX_FPS:
-        msg = f"fps is {fps:g}; a GIF shows at most {GIF_MAX_FPS:g} a second, an MP4 more"
+        msg = (
+            f"fps is {fps:g}; a GIF can show at most {GIF_MAX_FPS:g} frames per second; write an "
+            "MP4 for more"
+        )
     elif suffix == ".mp4" and (width % 2 or height % 2):  # 4:2:0 asks for even sides
-        msg = f"{shown}; MP4 wants even sides, such as {width // 2 * 2} x {height // 2 * 2}"
+        msg = f"{shown}; an MP4 needs even sides, such as {width // 2 * 2} x {height // 2 * 2}"
     elif suffix == ".mp4" and width * height > MP4_MAX_PIXELS:
-        msg = f"{shown}; MP4 has at most {MP4_MAX_PIXELS:,} pixels: choose fewer"
+        msg = f"{shown}; an MP4 can have at most {MP4_MAX_PIXELS:,} pixels: choose a smaller size"
     elif not all(1 <= side <= LONGEST_SIDE_PIXELS for side in size):
         msg = f"{shown}; expected 1 to {LONGEST_SIDE_PIXELS} pixels along each side"
     else:
@@ -334,7 +340,7 @@ def write_movie(
                 writer = MovieWriter(path, (width, height), fps, quality)
             writer.add(picture)
         if writer is None:
-            msg = f"{path}: there are no pictures to make a movie of; expected one or more"
+            msg = f"{path}: the movie has no pictures; expected one or more"
             raise MovieError(msg)
         writer.finish(cancelled)
     finally:

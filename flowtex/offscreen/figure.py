@@ -88,7 +88,7 @@ def extent(
     """
     chosen, size = Options.split(**options), checked_size(size)
     if chosen.view.beside is not None:
-        msg = "beside makes two views, which have no one extent; leave it out"
+        msg = "beside makes two views, which do not have one common extent; omit it"
         raise FieldError(msg)
     surface = Scene.from_options(mesh, chosen).whole.surface
     frame, view, aspect = _frame(surface), chosen.view, size[0] / size[1]
@@ -97,8 +97,8 @@ def extent(
         camera = Camera.fit(surface, aspect, zoom=view.zoom, focus=view.focus, margin=margin)
     if not (camera.parallel and np.allclose(camera.axes[:2], frame, atol=1e-9)):
         msg = (
-            f"camera is {view.camera!r}, which does not look straight on without perspective; "
-            "leave it out, and choose by zoom and focus"
+            f"camera is {view.camera!r}; expected one that looks straight at the surface without "
+            "perspective. Omit it, and use zoom and focus"
         )
         raise FieldError(msg)
     x, y = frame @ camera.focal_point
@@ -163,12 +163,12 @@ def axes(
     if not is_geo(ax):
         if getattr(ax, "name", "") != "rectilinear":
             msg = (
-                f"ax is {ax!r}; expected rectilinear axes of matplotlib's, as plt.subplots() "
-                "makes, or axes of cartopy's"
+                f"ax is {ax!r}; expected rectilinear matplotlib axes, such as those of "
+                "plt.subplots(), or axes of cartopy's"
             )
             raise FieldError(msg)
         if (scales := (ax.get_xscale(), ax.get_yscale())) != ("linear", "linear"):
-            msg = f"ax has scales {scales}; expected linear ones, as ax.set_xscale('linear') makes"
+            msg = f"ax has scales {scales}; expected linear ones, see ax.set_xscale('linear')"
             raise FieldError(msg)
     chosen = Options.split("field", "appearance", **options)
     image = FlowImage(ax, mesh, chosen, supersampling)
@@ -374,8 +374,8 @@ def _in_projection(mesh: Any, options: Options, name: str) -> Options:
 def _frame(surface: Surface) -> Floats:
     if surface.frame is None:
         msg = (
-            "the surface is curved, and a picture of it has no axes in data coordinates; draw it "
-            "with flowtex.render, or give a flat plane of the mesh"
+            "the surface is curved, so its picture has no axes in data coordinates; draw it with "
+            "flowtex.render, or use a flat plane of the mesh"
         )
         raise FieldError(msg)
     return surface.frame

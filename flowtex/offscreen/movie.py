@@ -75,7 +75,7 @@ def frame_times(
     MovieError
         When a number is out of its range, or a steady flow would stand still.
     """
-    expected = f"more than 0 and at most {MAX_FPS:g} frames a second"
+    expected = f"more than 0 and at most {MAX_FPS:g} frames per second"
     checked_number("fps", fps, math.ulp(0.0), MAX_FPS, expected=expected, error=MovieError)
     if field.steady:
         _check_motion(field, settings)
@@ -83,8 +83,8 @@ def frame_times(
     count = max(round(whole * fps), 1)
     if count > MAX_FRAMES:
         msg = (
-            f"{whole:g} seconds of {fps:g} frames are {count:,} frames; expected at most "
-            f"{MAX_FRAMES:,}: choose fewer seconds or fewer frames a second"
+            f"{whole:g} seconds at {fps:g} frames per second are {count:,} frames; expected at "
+            f"most {MAX_FRAMES:,}: choose fewer seconds or fewer frames per second"
         )
         raise MovieError(msg)
     if field.steady:
@@ -113,11 +113,14 @@ def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> flo
 def _check_motion(field: FlowField, settings: Settings) -> None:
     """Refuse a steady flow that would stand still."""
     if field.sign_free:
-        msg = "the field has no sign, so it does not stream; a movie of it needs several times"
+        msg = "the field is sign-free, so it cannot stream; a movie of it needs several times"
     elif settings.noise != "procedural":
-        msg = f"noise is {settings.noise!r}, which stands still; expected 'procedural' for a movie"
+        msg = f"noise is {settings.noise!r}, which cannot move; expected 'procedural' for a movie"
     elif settings.motion == "off":
-        msg = "motion is 'off'; expected 'speed' or 'uniform', as a steady flow has no other motion"
+        msg = (
+            "motion is 'off'; expected 'speed' or 'uniform', because a steady flow has no other "
+            "motion"
+        )
     else:
         return
     raise MovieError(msg)

@@ -30,8 +30,8 @@ MAX_SUPERSAMPLING = 8
 OUTLINE_SAMPLES = 4
 
 NOTHING_SEEN = (
-    "Nothing of the surface is in the picture; check zoom, focus and camera, which are in the "
-    "mesh's own units."
+    "The surface is outside the picture; check zoom, focus and camera, which are in the mesh's "
+    "own units."
 )
 
 

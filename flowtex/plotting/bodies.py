@@ -45,8 +45,8 @@ def read_bodies(plotter: Any, shown: FlowHandle) -> tuple[Bodies, list[str]]:
                 size = sum(len(body.points) for body in bodies)
                 if size > room:
                     msg = (
-                        f"{size:,} vertices, where of {MOST_VERTICES:,} for all {room:,} are left; "
-                        "decimate or extract what is to be seen"
+                        f"{size:,} vertices exceed the {room:,} that are left of "
+                        f"{MOST_VERTICES:,} in all; decimate the mesh, or extract a part"
                     )
                     raise _NotDrawnError(msg)
                 room -= size
@@ -56,7 +56,7 @@ def read_bodies(plotter: Any, shown: FlowHandle) -> tuple[Bodies, list[str]]:
         except _NotDrawnError as reason:
             left_out.append(f"{name!r} ({reason})")
     if len(labels) > MOST_LABELS:
-        left_out.append(f"{len(labels) - MOST_LABELS:,} labels of more than {MOST_LABELS}")
+        left_out.append(f"{len(labels) - MOST_LABELS:,} labels beyond the limit of {MOST_LABELS}")
     lights = tuple(_lights(renderer)) if meshes else ()
     return Bodies(tuple(meshes), tuple(labels[:MOST_LABELS]), lights), left_out
 
@@ -87,10 +87,10 @@ def _bodies(actor: Any) -> Iterator[Body]:
     elif data is not None and data.IsA("vtkDataSet"):
         blocks = [pv.wrap(data)]
     else:
-        msg = f"drawn by {mapper.GetClassName()}, which a browser is not handed"
+        msg = f"drawn by {mapper.GetClassName()}, which cannot be sent to a browser"
         raise _NotDrawnError(msg)
     if actor.GetTexture() is not None:
-        msg = "covered by a picture"
+        msg = "coloured by a texture"
         raise _NotDrawnError(msg)
     matrix = pv.array_from_vtkmatrix(actor.GetMatrix())
     for block in blocks:
@@ -240,7 +240,7 @@ def _labels(actor: Any) -> Iterator[Label]:
     """Give the labels of points."""
     mapper = actor.GetMapper() if actor.IsA("vtkActor2D") else None
     if mapper is None or not mapper.IsA("vtkLabelPlacementMapper"):
-        msg = f"{actor.GetClassName()}, no mesh and no label of a point"
+        msg = f"{actor.GetClassName()}, neither a mesh nor a point label"
         raise _NotDrawnError(msg)
     hierarchy = source = mapper.GetInputAlgorithm()
     name, look = hierarchy.GetLabelArrayName(), hierarchy.GetTextProperty()

@@ -119,17 +119,17 @@ class FlowtexComponent:
         """
         if not self._handles:
             msg = (
-                "there is no flow texture on this plotter; add one with plotter.flowtex.add(mesh), "
-                "or choose another jupyter_backend"
+                "this plotter has no flow texture; add one with plotter.flowtex.add(mesh), or "
+                "choose another jupyter_backend"
             )
             raise FieldError(msg)
         shown = self._handles[0]
         bodies, left_out = read_bodies(self._plotter, shown)
         if not np.allclose(shown.actor.user_matrix, np.eye(4)) or any(shown.actor.position):
-            left_out.append("the flow's own place")
+            left_out.append("the place of the flow")
         if left_out:
             warnings.warn(
-                f"a browser is handed one flow with meshes and labels; left out: "
+                "the browser draws one flow with meshes and labels; it does not show: "
                 f"{', '.join(left_out)}. Another jupyter_backend, such as 'trame', draws them",
                 stacklevel=2,
             )

@@ -128,7 +128,10 @@ class FlowHandle(AppearanceAttributes):
 
     @density.setter
     def density(self, value: float) -> None:
-        least, expected = float(np.finfo(float).tiny), "a positive number, 1 for a plain screen"
+        least, expected = (
+            float(np.finfo(float).tiny),
+            ("a positive number, 1 for a standard screen"),
+        )
         self._surface.view.density = checked_number("density", value, least, expected=expected)
         self._draw()
 

@@ -181,7 +181,7 @@ def build(
     about = about_source(given, parameter, given.chosen_lines(lines))
     wrong = [name for name in about["scalars"] if not is_scalar_name(name)]
     if wrong:
-        msg = f"scalar {wrong[0]!r} cannot be stored; expected a name without '/', so rename it"
+        msg = f"scalar {wrong[0]!r} cannot be stored; expected a name without '/': rename it"
         raise FieldError(msg)
     known, threads = about["source"], Threads(memory)
     workers = threads if scheduler is None else Cluster(scheduler)
@@ -191,7 +191,7 @@ def build(
         if not new:
             # What is corrupt of what is there goes, and what lacks a part of it.
             begun = sorted({unit for name in run.arrays for unit in _begun(run, name)}, key=repr)
-            run.work(workers, mend, begun, "Checking what is there", TILE_BYTES, new=False)
+            run.work(workers, mend, begun, "Checking existing objects", TILE_BYTES, new=False)
         _write_finest(run, given, workers if given.travels else threads)
         for level in range(1, depth + 1):
             parts = _missing_parts(run, level, level_shape(given.shape, level))
@@ -275,8 +275,8 @@ def _prepared(
         other = [name for name in IDENTITY if there.get(name) != about[name]]
         if other:
             msg = (
-                f"{place} holds the pyramid of another field ({', '.join(other)} differ); build "
-                "with fresh=True to replace it, or give another place"
+                f"{place} contains the pyramid of another field ({', '.join(other)} differ); "
+                "build with fresh=True to replace it, or choose another place"
             )
             raise PyramidError(msg)
         about = {**there, "complete": False}
@@ -376,8 +376,8 @@ class _Run:
         if first is not None:
             what = f"{failed} of {len(tasks)}" if in_a_row < MOST_FAILURES else f"{failed} in a row"
             msg = (
-                f"{what} shards could not be made in {self.place}; the first: "
-                f"{type(first).__name__}: {first}. Build again to make what is missing"
+                f"{what} shards could not be built in {self.place}; the first error is "
+                f"{type(first).__name__}: {first}. Build again to build the missing ones"
             )
             raise PyramidError(msg) from first
 
@@ -414,23 +414,23 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
             run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
     if source.identity() != run.source:
         run.tell(source="")
-        msg = f"the source of {run.place} has changed while it was read; build again"
+        msg = f"the source of {run.place} changed while it was read; build again"
         raise ChangedError(msg)
     levels = Levels(run.place)
     if not run.about["ranges"]:
         ranges = ranges_of(levels.whole(SAMPLES), run.about)
         if not ranges:
             msg = (
-                f"none of the {math.prod(source.shape):,} nodes has data; check the variables that "
-                "were chosen"
+                f"none of the {math.prod(source.shape):,} nodes has data; check the selected "
+                "variables"
             )
             raise FieldError(msg)
         run.tell(ranges=ranges)
     fingerprint = digest(levels.whole(f"0/{DIGESTS}"), words=run.about["times"]).hex()
     if run.about["fingerprint"] not in ("", fingerprint):
         msg = (
-            f"{run.place} was built from an earlier state of the field; build with fresh=True to "
-            "replace it"
+            f"{run.place} was built from an earlier version of the field; build with fresh=True "
+            "to replace it"
         )
         raise ChangedError(msg)
     run.tell(fingerprint=fingerprint)

@@ -126,8 +126,8 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
     told = about.get("format") if isinstance(about, dict) else None
     if told != FORMAT:
         msg = (
-            f"{place} has the format {str(told)[:40]!r}; expected {FORMAT!r}. Build it anew, or "
-            "read it with the flowtex that wrote it"
+            f"{place} has format {str(told)[:40]!r}; expected {FORMAT!r}. Build it again, or use "
+            "the version of flowtex that wrote it"
         )
         raise PyramidError(msg)
     wrong = [name for name, check in _ABOUT.items() if not check(about.get(name))]
@@ -135,7 +135,7 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
         wrong = ["depth"]
     if wrong or about.get("seal") != _seal(about):
         what = f" ({', '.join(wrong)})" if wrong else ""
-        msg = f"what {place} tells of itself is damaged{what}; build it anew"
+        msg = f"the metadata of {place} are damaged{what}; build it again"
         raise DamageError(msg)
     result: dict[str, Any] = about
     return result

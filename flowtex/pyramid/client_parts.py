@@ -81,8 +81,8 @@ def _write(array: Any, at: Sequence[int], of: str, parts: Parts) -> None:
     size = -(-len(file) // FILE_CHUNK) * FILE_CHUNK
     if size > FILE_BYTES:
         msg = (
-            f"{array.path} of tile {tuple(at)} takes {size:,} bytes, and a store has room for "
-            f"{FILE_BYTES:,}; build with lines='streamlines', or of fewer nodes"
+            f"{array.path} of tile {tuple(at)} takes {size:,} bytes; expected {FILE_BYTES:,} at "
+            "most. Build with lines='streamlines', or with fewer nodes"
         )
         raise PyramidError(msg)
     array[(*at, slice(0, size))] = np.pad(file, (0, size - len(file)))

@@ -66,7 +66,7 @@ class Lease:
         if not self._holder and self._clock() - self._renewed > STALE_S:
             self.renew()
         if self._holder:
-            msg = f"{self.place} was taken over by {self._holder}, which builds it now"
+            msg = f"{self.place} was taken over by {self._holder}, which is building it now"
             raise PyramidError(msg)
 
     def renew(self) -> None:
@@ -91,8 +91,9 @@ class Lease:
     def _refuse(self, there: dict[str, Any]) -> None:
         age = max(self._clock() - there.get("at", 0.0), 0.0)
         msg = (
-            f"{self.place} is being built by {_words(there)}, seen {age:.0f} s ago; wait for its "
-            f"end. If it does not run any more, build again {STALE_S:.0f} s after it was seen"
+            f"{self.place} is being built by {_words(there)}, last active {age:.0f} s ago; wait "
+            f"until it ends. If it is no longer running, build again {STALE_S:.0f} s after its "
+            "last activity"
         )
         raise PyramidError(msg)
 

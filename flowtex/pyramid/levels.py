@@ -76,7 +76,7 @@ class Levels:
             raise
         except Exception as error:
             msg = (
-                f"{self.place} holds no pyramid that can be read ({_words(error)}); make one with "
+                f"{self.place} contains no readable pyramid ({_words(error)}); build one with "
                 "flowtex.pyramid.build"
             )
             raise PyramidError(msg) from None
@@ -144,7 +144,7 @@ class Levels:
             known["has_position"].astype(bool) if "has_position" in known else None,
         )
         if part_digest(nodes, self.about, step) != told.tobytes():
-            msg = f"velocity {words} of {self.place} is not what was written there"
+            msg = f"velocity {words} of {self.place} differs from what was written"
             raise DamageError(msg)
 
     def check_tile(self, key: TileKey, step: int) -> None:
@@ -175,7 +175,7 @@ class Levels:
         tile = [level, *at[1:3]] if kind != SURFACE else [level, *at]
         prefix = "tile/" + "/".join(map(str, tile)) + "/"
         if of != self.about["fingerprint"] or not all(one.startswith(prefix) for one in names):
-            msg = f"{name} of {self.place} is that of another one; build it again"
+            msg = f"{name} of {self.place} belongs to another tile; build it again"
             raise DamageError(msg)
         for first in range(FILE_CHUNK, size, FILE_CHUNK):
             self._read(_Piece(array, (*at, slice(first, first + FILE_CHUNK)), name))
@@ -268,8 +268,8 @@ class Levels:
         need, free = sum(map(_size, parts, formats)), available_bytes()
         if need > free:
             msg = (
-                f"{parts[0].name} of {self.place} takes {need:,} bytes, and {free:,} bytes of "
-                "memory are available"
+                f"{parts[0].name} of {self.place} takes {need:,} bytes, but only {free:,} bytes "
+                "of memory are available"
             )
             raise PyramidError(msg)
 
@@ -301,7 +301,10 @@ class Levels:
             open_array = import_extra("zarr.api.asynchronous", "store").open_array
             array = await open_array(store=self._objects, path=name, zarr_format=3, mode="r")
             if _format_of(array) != expected:
-                msg = f"{name} of {self.place} is not as it was written; build the store anew"
+                msg = (
+                    f"{name} of {self.place} has changed since it was written; build the store "
+                    "again"
+                )
                 raise DamageError(msg)
             from flowtex.pyramid.objects import bounded
 
@@ -350,7 +353,7 @@ def _in_space(values: Floats, height: float = 0.0) -> Floats:
 def _words(error: Exception) -> str:
     text = str(error)
     if "checksum" in text:
-        return "checksum mismatch, the object is corrupt"
+        return "checksum mismatch: the object is corrupt"
     known = isinstance(error, (ReadFault, PyramidError))
     return text if known else f"{type(error).__name__}: {text}"[:MOST_LETTERS]
 

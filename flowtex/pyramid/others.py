@@ -71,7 +71,7 @@ class OtherLevels:
 
     def _slow(self) -> list[str]:
         """Return what takes long in a store, with what helps."""
-        build = f"`flowtex pyramid {self.place} -o flow.zarr` makes a store without this"
+        build = f"`flowtex pyramid {self.place} -o flow.zarr` builds a faster store"
         component, shape = self._regions[0].components[0], self._regions[-1].lines.shape
         chunks = component.encoding.get("chunks") or component.shape
         nbytes = math.prod(chunks) * component.dtype.itemsize
@@ -79,13 +79,13 @@ class OtherLevels:
         if nbytes > SLOW_BYTES:
             size = " × ".join(map(str, chunks))
             words.append(
-                f"chunks of {size} numbers ({nbytes / 1e6:.0f} MB) are read whole for each tile, "
-                f"which is slow; chunks of one time step and 256 to 512 nodes a side suit; {build}"
+                f"each tile reads complete chunks of {size} values ({nbytes / 1e6:.0f} MB), which "
+                f"is slow; better are chunks of one time step and 256 to 512 nodes a side; {build}"
             )
         if math.prod(shape) > SLOW_NODES:
             words.append(
-                f"the coarsest level has {shape[1]:,} × {shape[0]:,} nodes, which are read for the "
-                f"first picture and that of each time step, so it is slow; {build}"
+                f"the coarsest level has {shape[1]:,} × {shape[0]:,} nodes, which are read for "
+                f"the first picture of each time step, so this is slow; {build}"
             )
         return words
 

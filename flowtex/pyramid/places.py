@@ -83,21 +83,21 @@ def place_text(place: str | Path) -> str:
         parts = urlsplit(url)
         user, _, host = parts.netloc.rpartition("@")
     except ValueError:
-        msg = "the address of a store is no URL; expected one such as s3://bucket/flow.zarr"
+        msg = "the address of the store is not a URL; expected one such as s3://bucket/flow.zarr"
         raise PyramidError(msg) from None
     scheme = parts.scheme.lower()
     if scheme not in _SCHEMES:
         msg = (
-            f"a store is at {scheme}://{host}{parts.path}; expected a folder, or the address of "
-            f"object storage or of the web: {', '.join(f'{name}://' for name in _SCHEMES)}"
+            f"the store is at {scheme}://{host}{parts.path}; expected a folder, or an address "
+            f"that starts with one of {', '.join(f'{name}://' for name in _SCHEMES)}"
         )
         raise PyramidError(msg)
     # In addresses of Azure's the container stands where others have a user.
     secret = user and (scheme not in _AZURE or ":" in user)
     if secret or parts.query or parts.fragment:
         msg = (
-            f"the address of {scheme}://{host}{parts.path} has a user, a password or a query with "
-            "it; expected none: credentials come from the environment, such as AWS_ACCESS_KEY_ID"
+            f"the address {scheme}://{host}{parts.path} contains a user, a password or a query; "
+            "expected none: credentials come from the environment, such as AWS_ACCESS_KEY_ID"
         )
         raise PyramidError(msg)
     return url.rstrip("/")
@@ -134,7 +134,7 @@ def objects_at(place: str | Path, *, patient: bool = False) -> Any:
             return objects.HTTPStore.from_url(text, **options)
         return objects.from_url(text, **options)
     except Exception as error:
-        msg = f"{text} is no address of a store ({_first_line(error)})"
+        msg = f"{text} is not the address of a store ({_first_line(error)})"
         raise PyramidError(msg) from None
 
 
@@ -151,7 +151,7 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Any:
     if read_only:
         return storage.ObjectStore(objects_at(text), read_only=True)
     if text.lower().startswith(_WEB):
-        msg = f"{text} can only be read; build in a folder or in object storage such as s3://"
+        msg = f"{text} is read-only; build in a folder or in object storage such as s3://"
         raise PyramidError(msg)
     return storage.ObjectStore(objects_at(text, patient=True))
 
@@ -214,14 +214,14 @@ def _remote_document(text: str) -> bytes:
 def check_room(place: str, names: Iterable[str]) -> None:
     """Raise a PyramidError where a build would write among other data, whose names these are."""
     if not is_remote(place) and Path(place).is_file():
-        msg = f"{place} is a file; expected a new folder, an empty one, or a store of flowtex"
+        msg = f"{place} is a file; expected a new folder, an empty one, or a flowtex store"
         raise PyramidError(msg)
     others = sorted({*names} - {LEASE})
     if others and not is_store(place):
         some = ", ".join(others[:MOST_NAMES]) + (", …" if len(others) > MOST_NAMES else "")
         msg = (
-            f"{place} holds other data ({some}); expected a new folder, an empty one, or a store "
-            "of flowtex"
+            f"{place} contains other data ({some}); expected a new folder, an empty one, or a "
+            "flowtex store"
         )
         raise PyramidError(msg)
 
@@ -238,28 +238,33 @@ def fault_words(error: Exception) -> str:
     status = re.search(r"status code: (\d{3})", text)
     if is_refused(error):
         code = status[1] if status else "403"
-        return f"is missing or not open to us ({code}); {_CREDENTIALS}"
+        return f"is missing or access is denied ({code}); {_CREDENTIALS}"
     if isinstance(error, FileNotFoundError):
         return "is missing"
     if kind == "NotSupportedError":
-        return "was asked for in part, which this server cannot do; expected one with ranges"
+        return (
+            "cannot be read in part from this server; expected a server that supports range "
+            "requests"
+        )
     if "169.254.169.254" in text:
-        return f"cannot be asked for without credentials; {_CREDENTIALS}"
+        return f"cannot be read without credentials; {_CREDENTIALS}"
     if status:
         again = "try again later" if status[1] in ("429", "500", "502", "503", "504") else ""
-        return f"was answered with status {status[1]}" + (f"; {again}" if again else "")
+        return f"could not be read: the server answered with status {status[1]}" + (
+            f"; {again}" if again else ""
+        )
     if "kind: Timeout" in text or isinstance(error, TimeoutError):
         return (
-            f"did not come: no answer within {SILENCE_S:g} s, asked {MOST_REPEATS + 1} times; "
-            "look whether the server runs"
+            f"could not be read: no answer within {SILENCE_S:g} s in {MOST_REPEATS + 1} attempts; "
+            "check that the server is running"
         )
     if "kind: Connect" in text:
-        return "did not come: nobody answers at this address; look whether it is right"
+        return "could not be read: no server answers at this address; check the address"
     if "kind: Interrupted" in text or "kind: Body" in text:
-        return "was cut off on its way; try again"
+        return "was cut off during transfer; try again"
     if isinstance(error, OSError):
         return f"cannot be read ({error.strerror or kind})"
-    return f"did not come ({kind})"
+    return f"could not be read ({kind})"
 
 
 @contextmanager

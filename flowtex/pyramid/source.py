@@ -101,8 +101,11 @@ class FieldSource(Source):
 
     def __init__(self, field: FlowField) -> None:
         if field.triangles is not None or field.sign_free:
-            what = "on triangles" if field.triangles is not None else "without a sign"
-            msg = f"the field is one {what}; expected one on a structured surface, with a direction"
+            what = "on triangles" if field.triangles is not None else "sign-free"
+            msg = (
+                f"the field is {what}; expected a field on a structured surface that is not "
+                "sign-free"
+            )
             raise FieldError(msg)
         self.field, self.shape = field, field.shape
         self.scalars = {name: len(steps) for name, steps in field.scalars.items()}
@@ -211,11 +214,11 @@ def source_of(given: Any, **options: Any) -> Source:
     """Return what a pyramid is built from: a field, a dataset, or files with such options."""
     if isinstance(given, (FlowField, Source)):
         if options:
-            msg = f"{', '.join(options)} is for what a field is made of; leave it out"
+            msg = f"{', '.join(options)} applies to the data of a field; omit it"
             raise FieldError(msg)
         return given if isinstance(given, Source) else FieldSource(given)
     if is_store(given):
-        msg = f"{given} is a pyramid already; give what one is built from"
+        msg = f"{given} is already a pyramid; give the data from which one is built"
         raise FieldError(msg)
     if is_dataset(given):
         return _source_from(read_datasets(given, regions=True, **options))
@@ -283,9 +286,9 @@ def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
     except Exception as error:
         words = str(error) if isinstance(error, ReadFault) else fault_words(error)
         msg = (
-            f"{place} holds no pyramid that can be read ({words}); make one with "
-            "flowtex.pyramid.build, or name a Zarr group of xarray's, with consolidated metadata "
-            "on the web, as by zarr.consolidate_metadata"
+            f"{place} contains no readable pyramid ({words}); build one with "
+            "flowtex.pyramid.build, or give a Zarr group that xarray can open (on the web with "
+            "consolidated metadata, see zarr.consolidate_metadata)"
         )
         raise PyramidError(msg) from None
     names = [name.strip("/") for name in level_names(attributes)]
@@ -294,9 +297,9 @@ def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
     found = [one for one in chosen if (own and own <= {*one}) or find_pairs([one])]
     if not found:
         msg = (
-            f"{place} holds no pyramid, and no velocity; expected two variables such as u and v in "
-            "each level, or their names, and on the web consolidated metadata, as by "
-            "zarr.consolidate_metadata"
+            f"{place} contains no pyramid, and no velocity; expected two variables such as u and "
+            "v in each level, or their names (on the web with consolidated metadata, see "
+            "zarr.consolidate_metadata)"
         )
         raise PyramidError(msg)
     return sorted(found, key=lambda one: -max(array.size for array in one.values()))

@@ -67,13 +67,13 @@ def open_store(store: str | Path, **options: Any) -> FlowField:
         found = levels_of_others(place_text(store), options)
         return found if isinstance(found, FlowField) else _field_of(found)
     if options:
-        msg = f"{', '.join(options)} is for what a pyramid is built from; leave it out"
+        msg = f"{', '.join(options)} applies to the source of a pyramid; omit it"
         raise FieldError(msg)
     levels = Levels(store)
     if not levels.about.get("levels_done"):
         msg = (
-            f"{levels.place} was not built to its end, and its coarsest level is missing; run "
-            "flowtex.pyramid.build again, which makes what is missing"
+            f"{levels.place} is incomplete, and its coarsest level is missing; run "
+            "flowtex.pyramid.build again to build the missing parts"
         )
         raise PyramidError(msg)
     return _field_of(levels)
@@ -170,8 +170,8 @@ class StoredPyramid(Pyramid):
             pairs.append((mean[coarse.valid][:, : told.shape[-1]], told))
         if not all(_alike(own, told) for own, told in pairs):
             msg = (
-                f"the nodes of tile {tuple(key)} of {stored.place} are not those of the "
-                "level above it; build the store anew"
+                f"the nodes of tile {tuple(key)} of {stored.place} do not match those of the "
+                "level above it; build the store again"
             )
             raise PyramidError(msg)
 

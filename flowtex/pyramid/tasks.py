@@ -60,9 +60,9 @@ def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
     if own != levels.whole(f"0/{DIGESTS}", part[1:]).tobytes():
         rows, columns = (f"{s.start}-{s.stop - 1}" for s in part.lines(source.shape))
         msg = (
-            f"{place} holds the pyramid of another field, or of an earlier state of this one: "
-            f"rows {rows}, columns {columns} differ at step {part.step}. Build with fresh=True to "
-            "replace it, or give another place"
+            f"{place} contains the pyramid of another field, or of an earlier version of this "
+            f"one: rows {rows}, columns {columns} differ at step {part.step}. Build with "
+            "fresh=True to replace it, or choose another place"
         )
         raise ChangedError(msg)
 

@@ -39,13 +39,13 @@ class Threads:
             try:
                 self._memory = int(import_extra("dask.utils", "store").parse_bytes(memory))
             except (ValueError, TypeError, AttributeError) as error:
-                msg = f"memory is {memory!r}; expected bytes, or a text such as '2GB'"
+                msg = f"memory is {memory!r}; expected a number of bytes, or a text such as '2GB'"
                 raise FieldError(msg) from error
             if self._memory < OWN_BYTES + TILE_BYTES:
                 warnings.warn(
-                    f"memory is {_words(self._memory)}, and a task may take "
-                    f"{_words(TILE_BYTES)} beside {_words(OWN_BYTES)} for all; one runs at a time, "
-                    "and may take more than is allowed",
+                    f"memory is {_words(self._memory)}, but a task may need {_words(TILE_BYTES)} "
+                    f"in addition to {_words(OWN_BYTES)} for all tasks; tasks run one at a time, "
+                    "and may exceed the limit",
                     stacklevel=4,
                 )
 
@@ -155,9 +155,9 @@ class Cluster(Threads):
         if few:
             name, (limit, need) = next(iter(few.items()))
             warnings.warn(
-                f"{len(few)} of {len(workers)} workers have little memory: {name} has "
-                f"{_words(limit)}, and its threads may need {_words(need)}; give it more, or fewer "
-                "threads",
+                f"{len(few)} of {len(workers)} workers have too little memory: {name} has "
+                f"{_words(limit)}, but its threads may need {_words(need)}; give it more memory, "
+                "or fewer threads",
                 stacklevel=4,
             )
 

@@ -52,7 +52,7 @@ def shader_folder(package: Path = _PACKAGE) -> Path:
     if (checkout / "pyproject.toml").is_file() and (checkout / "shaders").is_dir():
         return checkout / "shaders"
     msg = (
-        f"flowtex's shaders are missing: there is neither {installed} nor {checkout / 'shaders'}. "
+        f"flowtex's shaders are missing: neither {installed} nor {checkout / 'shaders'} exists. "
         "Install flowtex again: python -m pip install --force-reinstall --no-deps flowtex"
     )
     raise FileNotFoundError(msg)
@@ -79,7 +79,10 @@ def shader_source(name: str) -> str:
     # Listing all names takes longer than reading one, and is left to the error.
     inside = not any(part.startswith((".", "/")) for part in PurePosixPath(name).parts)
     if not inside or not path.is_file():
-        msg = f"no shader is called {name!r}; there are: {', '.join(shader_names()) or 'none'}"
+        msg = (
+            f"the shader {name!r} does not exist; expected one of: "
+            f"{', '.join(shader_names()) or 'none'}"
+        )
         raise FileNotFoundError(msg)
     return path.read_text(encoding="utf-8")
 
@@ -96,7 +99,7 @@ def shader_text(name: str, variants: Iterable[str] = ()) -> str:
     """
     unknown = sorted(set(variants) - set(VARIANTS))
     if unknown:
-        msg = f"unknown variant {', '.join(unknown)}; there are {', '.join(VARIANTS)}"
+        msg = f"unknown variant {', '.join(unknown)}; expected {', '.join(VARIANTS)}"
         raise GLSLError(msg)
     defines = "".join(
         f"#ifndef {variant}\n#define {variant}\n#endif\n" for variant in sorted(set(variants))

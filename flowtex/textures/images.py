@@ -59,7 +59,7 @@ def as_picture(image: Any) -> Floats32:
     try:
         array = np.asarray(image)
     except ValueError as error:
-        msg = f"the image is no array ({error}); expected {SHAPES}"
+        msg = f"the image is not an array ({error}); expected {SHAPES}"
         raise ImageError(msg) from error
     if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[-1] not in (3, 4)):
         msg = f"the image has shape {array.shape}; expected {SHAPES}"
@@ -96,13 +96,13 @@ def _fractions(array: AnyArray) -> Floats32:
         raise ImageError(msg)
     bad = int((~np.isfinite(array)).sum())
     if bad:
-        msg = f"the image has {bad} values that are NaN or infinite; replace them, as by 0"
+        msg = f"the image has {bad} values that are NaN or infinite; replace them, for example by 0"
         raise ImageError(msg)
     low, high = float(array.min()), float(array.max())
     if low < -SLACK or high > 1 + SLACK:
         msg = (
-            f"the image's floats go from {low:g} to {high:g}; expected 0 to 1: divide by the "
-            "greatest, or give uint8"
+            f"the image's floats range from {low:g} to {high:g}; expected 0 to 1: divide by the "
+            "maximum, or pass uint8"
         )
         raise ImageError(msg)
     return np.asarray(np.clip(array, 0, 1), np.float32)
@@ -142,7 +142,7 @@ def load_image(image: Any) -> Any:
         return image
     path = Path(image).expanduser()
     if not path.is_file():
-        what = "is a folder" if path.is_dir() else "there is no such file"
+        what = "is a folder" if path.is_dir() else "the file does not exist"
         msg = f"{image}: {what}; expected a picture, such as a PNG or a JPEG"
         raise ImageError(msg)
     from PIL import Image, ImageOps, UnidentifiedImageError
@@ -157,10 +157,10 @@ def load_image(image: Any) -> Any:
         msg = f"{path}: has more than {Image.MAX_IMAGE_PIXELS:,} pixels; make it smaller"
         raise ImageError(msg) from error
     except UnidentifiedImageError as error:
-        msg = f"{path}: is no picture that can be read; expected a PNG, a JPEG or the like"
+        msg = f"{path}: the picture cannot be read; expected a format such as PNG or JPEG"
         raise ImageError(msg) from error
     except (OSError, SyntaxError) as error:  # Pillow raises either for a file cut short
-        msg = f"{path}: cannot be read ({error}); give another picture, or its array"
+        msg = f"{path}: cannot be read ({error}); pass another picture, or an array"
         raise ImageError(msg) from error
 
 

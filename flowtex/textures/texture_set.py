@@ -90,7 +90,7 @@ class TextureSet:
             )
             raise FieldError(msg)
         if not 2 <= len(store.lags) <= MOST_LAGS:
-            msg = f"{len(store.lags)} lags were traced; expected 2 to {MOST_LAGS} to draw with"
+            msg = f"{len(store.lags)} lags were traced; drawing needs 2 to {MOST_LAGS}"
             raise FieldError(msg)
         if geometry is None:
             kind = SurfaceGeometry if field.triangles is None else TriangleGeometry
@@ -105,7 +105,10 @@ class TextureSet:
         Raises a FieldError when there is no noise texture.
         """
         if self.paper is None:
-            msg = "there is no noise texture, which an image could replace; expected noise='image'"
+            msg = (
+                "an image replaces a noise texture, but this texture set has none; expected "
+                "noise='image'"
+            )
             raise FieldError(msg)
         return replace(self, paper=self.paper.with_image(image))
 
@@ -293,9 +296,9 @@ def check_noise(field: FlowField, noise: str) -> None:
     """Raise a SettingsError where a field cannot be drawn with a kind of noise."""
     if noise != "procedural" and field.triangles is not None:
         msg = (
-            f"noise is {noise!r}, which is laid over the rows and columns of a structured surface, "
-            "and this one is of triangles; expected noise='procedural', or the flow on a "
-            "structured mesh"
+            f"noise is {noise!r}, which needs the rows and columns of a structured surface, but "
+            "this surface consists of triangles; expected noise='procedural', or a structured "
+            "mesh"
         )
         raise SettingsError(msg)
 

@@ -106,7 +106,7 @@ def check_structure(field: FlowField, settings: Settings) -> None:
     """Raise a SettingsError where a structure is to be drawn that a field does not have."""
     for name in STRUCTURE:
         if field.sign_free and (value := getattr(settings, name)):
-            msg = f"{name} is {value}; expected 0, as the vectors of this field have no sign"
+            msg = f"{name} is {value}; expected 0, because the field is sign-free"
             raise SettingsError(msg)
 
 

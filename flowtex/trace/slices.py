@@ -173,7 +173,7 @@ class TraceSlices:
         sign, data, reach = -1.0, self.displacement, self.reach
         if forward:
             if self.forward is None or self.forward_reach is None:
-                msg = "there are no forward slices: trace with two_sided=True"
+                msg = "the slices have no forward side: trace with two_sided=True"
                 raise FieldError(msg)
             sign, data, reach = 1.0, self.forward, self.forward_reach
         held = np.minimum(lag, reach[step].astype(float))
@@ -227,7 +227,9 @@ class TraceSlices:
             When the file is not one of these; nothing in it is ever executed.
         """
         place = checked_path("path", path)
-        expected = f"{path} does not hold trace slices; expected a file that TraceSlices.save wrote"
+        expected = (
+            f"{path} does not contain trace slices; expected a file written by TraceSlices.save"
+        )
         try:
             # Opened here, because NumPy leaves a file open that it cannot read.
             with place.open("rb") as data, np.load(data, allow_pickle=False) as file:

@@ -57,7 +57,7 @@ class SliceStore:
         nodes: Bools | None = None,
     ) -> None:
         if field.sign_free and slices is not None and slices.forward is None:
-            msg = "the slices lead backward only; expected both sides of a field without a sign"
+            msg = "the slices have only the backward side; a sign-free field needs both"
             raise FieldError(msg)
         self.field = field
         #: Whether each destination time is traced as a steady field.

@@ -128,8 +128,8 @@ def trace(
         raise FieldError(msg)
     if not LEAST_LAG <= lag_values[0] <= lag_values[-1] <= MOST_LAG:
         msg = (
-            f"lags go from {lag_values[0]:g} to {lag_values[-1]:g}; expected {LEAST_LAG:g} to "
-            f"{MOST_LAG:g}, for single precision: give a unit of their size"
+            f"lags range from {lag_values[0]:g} to {lag_values[-1]:g}; expected {LEAST_LAG:g} to "
+            f"{MOST_LAG:g}, because of single precision: choose a unit of their size"
         )
         raise FieldError(msg)
     expected = "a positive number of cells, such as 1e-3"
@@ -250,12 +250,12 @@ def paths(
 def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> None:
     """Refuse what has no meaning in a field without a sign."""
     if field.sign_free and not two_sided:
-        msg = "two_sided is False; expected True: a field without a sign has two sides alike"
+        msg = "two_sided is False; expected True, because a sign-free field has two equal sides"
         raise FieldError(msg)
     if field.sign_free and compose:
         msg = (
-            "compose is True; expected False or None: between nodes that point either way paths "
-            "of a field without a sign cannot be looked up"
+            "compose is True; expected False or None, because paths of a sign-free field cannot "
+            "be composed between nodes of opposite sign"
         )
         raise FieldError(msg)
 

@@ -17,9 +17,9 @@ from flowtex.web.view import WebView
 #: What a name of a server may have, of which nothing means anything in a policy of a page.
 HOST = re.compile(r"[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\]")
 EXPECTED = (
-    "expected the address at which a browser finds the store, such as "
-    "'https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr', or from the page on, such as "
-    "'./flow.zarr'"
+    "expected the address from which a browser reads the store, such as "
+    "'https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr', or one relative to the page, such "
+    "as './flow.zarr'"
 )
 
 
@@ -53,9 +53,9 @@ class StoreLink:
         parts = urlsplit(text)
         if parts.query or parts.fragment or "@" in parts.netloc:
             msg = (
-                "the address of the store has a name, a password, a signature or another query, "
-                "which everybody could read in the page; give the address alone, and let everybody "
-                "read the bucket, or those who may see the page"
+                "the address of the store contains a name, a password, a signature or another "
+                "query, which everyone could read in the page; give the address alone, and grant "
+                "read access to everyone who may see the page"
             )
             raise FieldError(msg)
         if not parts.scheme and not parts.netloc and re.match(r"[^/\\~\s]", text):
@@ -65,7 +65,9 @@ class StoreLink:
         except ValueError:
             host, port = "", None
         if parts.scheme not in ("http", "https") or not HOST.fullmatch(host):
-            what = "; s3:// and other object storage has one too" if "://" in text else ""
+            what = (
+                "; s3:// and other object storage have such an address too" if "://" in text else ""
+            )
             msg = f"store is {text!r}; {EXPECTED}{what}"
             raise FieldError(msg)
         return cls(text, f"{parts.scheme}://{host}" + (f":{port}" if port else ""))
@@ -81,9 +83,7 @@ def linked_data(view: WebView) -> ClientData:
     """
     stored, data = _stored(view), view.page_data()
     if not stored.about.get("complete"):
-        warnings.warn(
-            "the store has not been built to its end; what is missing is shown coarse", stacklevel=2
-        )
+        warnings.warn("the store is incomplete; missing tiles are shown coarse", stacklevel=2)
     return replace(
         data, pyramid=stored if stored.depth else None, traces=data.textures.store.streamlines
     )
@@ -117,24 +117,25 @@ def _stored(view: WebView) -> StoredPyramid:
     pyramid = scene.pyramid
     if scene.settings.noise != "procedural":
         msg = (
-            f"store is given and noise is {scene.settings.noise!r}, which tiles are not drawn "
-            "with; leave one of them out"
+            f"store is given, but tiles cannot be drawn with noise {scene.settings.noise!r}; omit "
+            "one of them"
         )
         raise FieldError(msg)
     pyramid = pyramid or shared_pyramid(scene.field, scene.settings.parameter, scene.lines)
     if not isinstance(pyramid, StoredPyramid) or "fingerprint" not in pyramid.about:
         place = pyramid.about["place"] if isinstance(pyramid, StoredPyramid) else "FILE"
         msg = (
-            "store is given, and the flow is not read from one of flowtex, which alone has tiles "
-            f"for browsers. `flowtex pyramid {place} -o flow.zarr` builds it: export that, or "
-            "leave store out for a page with as many levels as it has room for"
+            "store is given, but the flow is not read from a flowtex store, and only such a "
+            f"store has tiles for browsers. Build it with `flowtex pyramid {place} -o flow.zarr` "
+            "and export that, or omit store for a page with as many levels as fit"
         )
         raise FieldError(msg)
     own = pyramid.about
     if (pyramid.parameter, pyramid.lines) != (own["parameter"], own["lines"]):
         msg = (
-            f"the store has paths by parameter={own['parameter']!r} along {own['lines']}; expected "
-            f"{pyramid.parameter!r} along {pyramid.lines}. Export it with its own, or build another"
+            f"the store has paths with parameter={own['parameter']!r} along {own['lines']}; "
+            f"expected {pyramid.parameter!r} along {pyramid.lines}. Export with the settings of "
+            "the store, or build another"
         )
         raise FieldError(msg)
     return pyramid

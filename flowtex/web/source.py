@@ -130,7 +130,7 @@ class TileSource:
 def _made(scene: ClientData, key: TileKey, steps: Sequence[int]) -> _Tile:
     """Make a tile, where its slices are handed over with a halo that does for these steps."""
     if scene.pyramid is None:
-        msg = f"there is no tile {tuple(key)}: the surface is handed over as a whole"
+        msg = f"tile {tuple(key)} does not exist: the surface is sent as a whole"
         raise LookupError(msg)
     if scene.traced:
         return _Tile(scene.pyramid.textures(key), None)

@@ -22,8 +22,8 @@ except ModuleNotFoundError as error:
     if name not in ("anywidget", "ipywidgets", "traitlets", "IPython"):
         raise
     missing = (
-        f"the notebook widget needs {name}, not installed here. To mend it:\n"
-        f"  {install_extra('notebook')}"
+        f"the notebook widget needs {name}, which is not installed. To install it:\n  "
+        f"{install_extra('notebook')}"
     )
     raise ModuleNotFoundError(missing, name=name) from error
 

@@ -240,7 +240,7 @@ def test_the_panel_of_a_narrow_page_lies_in_it(page: Page) -> None:
     assert panel is not None and panel["x"] >= 0
     assert panel["x"] + panel["width"] <= 390 and panel["y"] + panel["height"] <= 500
     page.locator("[data-setting=size] .flowtex-label").hover()
-    page.get_by_text("it may be larger than the window").wait_for()
+    page.get_by_text("may exceed the window").wait_for()
     fold(page)
     bar = page.locator(".bar").bounding_box()
     assert bar is not None and bar["x"] >= 0 and bar["x"] + bar["width"] <= 390

@@ -68,7 +68,7 @@ def test_dates_are_seconds_since_the_first(unit: str) -> None:
         field = FlowField.from_arrays(points, velocity, times=times)
         assert field.times.tolist() == [0.0, 21600.0]
         assert field.time_unit == "s"
-    with pytest.raises(FieldError, match=r"^time_unit is 'd' and the times are dates"):
+    with pytest.raises(FieldError, match=r"^time_unit is 'd', but the times are dates"):
         FlowField.from_arrays(points, velocity, times=dates, time_unit="d")
     months = np.array(["2002-01", "2002-02"], dtype="datetime64[M]")
     field = FlowField.from_arrays(points, velocity, times=months)
@@ -174,8 +174,10 @@ def test_hidden_scalars_are_nan() -> None:
 def test_velocity_of_zero_everywhere_warns() -> None:
     with pytest.warns(
         UserWarning,
-        match="^The velocity is zero at every node, so the picture is plain noise; check the array "
-        "that was chosen and the region it covers.$",
+        match=(
+            "^The velocity is zero at every node, so the picture shows only noise; check the "
+            "selected array and its region.$"
+        ),
     ):
         FlowField.from_arrays(flat(), 0 * ones(flat()))
 
@@ -328,12 +330,12 @@ def test_a_collapsed_row_is_a_field() -> None:
 # --- faults ---------------------------------------------------------------------------------
 
 
-PERIODIC = 'expected "", "i", "j" or "ij", or None to find out'
+PERIODIC = 'expected "", "i", "j" or "ij", or None to detect it'
 UNUSABLE = (
-    "none of the 35 nodes is usable: each is blanked, masked or NaN; check the chosen vectors and "
-    "the blanking"
+    "none of the 35 nodes is usable: all are blanked, masked or NaN; check the selected vectors "
+    "and the mask"
 )
-ORDER = "expected strictly increasing times: sort the steps, and drop those that repeat"
+ORDER = "expected strictly increasing times: sort the steps, and drop repeated ones"
 
 
 @pytest.mark.parametrize(
@@ -341,8 +343,8 @@ ORDER = "expected strictly increasing times: sort the steps, and drop those that
     [
         (
             {"points": flat().reshape(-1, 3)},
-            "points has shape (35, 3); expected (J, I, 2) or (J, I, 3). Flat lists of points need "
-            "reshape(J, I, 3)",
+            "points has shape (35, 3); expected (J, I, 2) or (J, I, 3). Reshape a flat list of "
+            "points with reshape(J, I, 3)",
         ),
         (
             {"points": flat()[:1], "velocity": ones(flat()[:1])},
@@ -368,11 +370,17 @@ ORDER = "expected strictly increasing times: sort the steps, and drop those that
             (
                 {"velocity": np.ones(shape)},
                 f"velocity has shape {shape}; expected (5, 7, 3) for a steady field or "
-                f"(T, 5, 7, 3) for one that varies in time, with points (5, 7, 3){hint}",
+                f"(T, 5, 7, 3) for a time-varying one, because points has shape (5, 7, 3){hint}",
             )
             for shape, hint in [
-                ((7, 5, 3), ". The two axes look swapped: arrays are (j, i), try np.swapaxes"),
-                ((3, 5, 7), ". The components look first: try np.moveaxis(velocity, 0, -1)"),
+                (
+                    (7, 5, 3),
+                    ". The two axes seem to be swapped: arrays are (j, i), try np.swapaxes",
+                ),
+                (
+                    (3, 5, 7),
+                    ". The components seem to come first: try np.moveaxis(velocity, 0, -1)",
+                ),
                 ((5, 7), ""),
                 ((5, 7, 4), ""),
                 ((0, 5, 7, 3), ""),
@@ -380,7 +388,7 @@ ORDER = "expected strictly increasing times: sort the steps, and drop those that
         ),
         (
             {"velocity": ones(flat()) * 1j},
-            "velocity holds complex128; expected real numbers: convert it with astype(float), or "
+            "velocity has type complex128; expected real numbers: convert it with astype(float), or "
             "take its real part",
         ),
         ({"velocity": np.full((5, 7, 3), np.nan)}, UNUSABLE),
@@ -389,14 +397,14 @@ ORDER = "expected strictly increasing times: sort the steps, and drop those that
             for times, text in [
                 ([0, 1], "times has shape (2,); expected (3,), one for each step of velocity"),
                 ([0, np.nan, 2], "times[1] is nan; expected a finite number"),
-                ([0, 2, 1], f"times[2] = 1 does not come after times[1] = 2; {ORDER}"),
-                ([0, 0, 1], f"times[1] = 0 does not come after times[0] = 0; {ORDER}"),
+                ([0, 2, 1], f"times[2] = 1 is not greater than times[1] = 2; {ORDER}"),
+                ([0, 0, 1], f"times[1] = 0 is not greater than times[0] = 0; {ORDER}"),
             ]
         ),
-        ({"valid": np.ones((7, 5), bool)}, "valid has shape (7, 5); expected (5, 7) as points has"),
+        ({"valid": np.ones((7, 5), bool)}, "valid has shape (7, 5); expected (5, 7), as points"),
         (
             {"valid": np.indices((5, 7)).sum(axis=0) % 2 == 0},
-            "18 of 35 nodes are usable, but no four of them make a cell; check the blanking",
+            "18 of 35 nodes are usable, but no four of them form a cell; check the mask",
         ),
         (
             {"velocity": ones(flat(), 3), "scalars": {"p": np.ones((2, 5, 7))}},
@@ -419,7 +427,7 @@ ORDER = "expected strictly increasing times: sort the steps, and drop those that
             },
             "4 things are wrong:\n"
             "  1. times has shape (2,); expected (3,), one for each step of velocity\n"
-            "  2. valid has shape (5,); expected (5, 7) as points has\n"
+            "  2. valid has shape (5,); expected (5, 7), as points\n"
             "  3. scalars['p'] has shape (1,); expected (5, 7) or (3, 5, 7), as points and "
             "velocity have\n"
             f"  4. periodic is 'k'; {PERIODIC}",
@@ -466,12 +474,12 @@ def test_downsampling_keeps_the_closing_line() -> None:
         (
             flat(),
             5,
-            "factor is 5, which leaves 1 of 5 lines; expected a smaller one that leaves at least 2",
+            "factor is 5, which keeps 1 of 5 lines; expected a smaller factor that keeps at least 2",
         ),
         (
             ring(9, last=True),
             6,
-            "factor is 6, which leaves 3 of 9 lines; expected a smaller one that leaves at least 4",
+            "factor is 6, which keeps 3 of 9 lines; expected a smaller factor that keeps at least 4",
         ),
     ],
 )

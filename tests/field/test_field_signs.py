@@ -137,6 +137,6 @@ def test_it_is_said() -> None:
 def test_time_steps_are_refused() -> None:
     velocity = np.stack([half(grid())] * 3)
     with pytest.raises(
-        FieldError, match=r"sign_free is True and velocity has 3 time steps.*velocity\[-1\]"
+        FieldError, match=r"sign_free is True, but velocity has 3 time steps.*velocity\[-1\]"
     ):
         FlowField.from_arrays(grid(), velocity, sign_free=True)

@@ -49,7 +49,7 @@ def test_grids_that_differ_are_blocks_to_choose_from() -> None:
     source = FlowSource(pv.MultiBlock({"near": block(), "far": examples.double_gyre()}))
     assert source.blocks == ("near", "far")
     assert source.field(block="far").shape == examples.double_gyre_field().shape
-    with pytest.raises(FieldError, match="block is 'nowhere'; there are near, far"):
+    with pytest.raises(FieldError, match="block is 'nowhere'; expected one of near, far"):
         source.field(block="nowhere")
 
 
@@ -68,7 +68,7 @@ def test_a_series_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     assert field.velocity[2, 0, 0, 0] == pytest.approx(3 * field.velocity[0, 0, 0, 0])
 
 
-@pytest.mark.vtk_log_allowed("the file is broken")
+@pytest.mark.vtk_log_allowed("the file is damaged")
 def test_a_broken_file_is_told(tmp_path: Path) -> None:
     path = tmp_path / "broken.vts"
     path.write_text("<VTKFile")

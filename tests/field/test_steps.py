@@ -117,7 +117,7 @@ def test_dates_are_those_of_their_calendar() -> None:
     assert date_text(datetime(2000, 1, 1), 5400.0, 3600.0) == "2000-01-01 01:30"
     assert date_text(datetime(2000, 1, 1), 1.0, 0.5) == "2000-01-01 00:00:01"
     assert seconds_since(None, 3) == 3.0
-    with pytest.raises(ValueError, match="are no dates"):
+    with pytest.raises(ValueError, match="are not dates"):
         seconds_since(None, "2000-01-01")
     with pytest.raises(FieldError, match="no fixed length"):
         as_seconds(np.array([1], "timedelta64[M]"), "")

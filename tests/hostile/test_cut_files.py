@@ -313,7 +313,7 @@ def test_what_is_missing_is_told(files: Whole, tmp_path: Path, name: str, share:
     data = data[: int(share * len(data))]
     # At the end of a line a text looks whole.
     data = data[: data.rfind(b"\n") + 1] if name.startswith(("text", "cells", "poly")) else data
-    with pytest.raises(FieldError, match="cut short"):
+    with pytest.raises(FieldError, match="truncated"):
         inspect_file(lay(tmp_path / "cut", files, name, name, data))
 
 
@@ -335,11 +335,11 @@ GOLD += "tria3\n         2\n         1\n         2\n" + "".join(
 @pytest.mark.parametrize(
     ("file", "drop", "fault"),
     [
-        ("flow.geo", 31, "tria3 of part 1 declares 8 values, the file has 5 of them, and 3"),
-        ("flow.vel", 4, "the last line declares 12 bytes, the file has 9"),
+        ("flow.geo", 31, "tria3 of part 1 declares 8 values, but the file has 5, and 3"),
+        ("flow.vel", 4, "the last line declares 12 bytes, but the file has 9"),
         ("flow.geo", 92, "tria3 declares 1 whole numbers"),
-        ("flow.vel", 26, "coordinates of part 1 declares 12 values, the file has 10"),
-        ("flow.speed", 26, "tria3 of part 1 declares 2 values, the file has 0"),
+        ("flow.vel", 26, "coordinates of part 1 declares 12 values, but the file has 10"),
+        ("flow.speed", 26, "tria3 of part 1 declares 2 values, but the file has 0"),
     ],
 )
 def test_what_is_missing_of_ensight_is_told(
@@ -367,14 +367,16 @@ def test_a_grid_that_is_cut_to_one_of_two_dimensions_is_refused(
     files: Whole, tmp_path: Path
 ) -> None:
     data = files["wing.xyz"]["wing.xyz"][: 4 * (2 + 2 * 35)]
-    with pytest.raises(FieldError, match="the grid is cut short, or the solution is of another"):
+    with pytest.raises(
+        FieldError, match="the grid file is truncated, or the solution belongs to another"
+    ):
         FlowField.from_file(lay(tmp_path, files, "wing.xyz", "wing.xyz", data))
 
 
 def test_a_mesh_whose_cells_name_points_that_it_has_not_is_refused() -> None:
     mesh = surface()
     mesh.faces = np.where(mesh.faces == 5, 99, mesh.faces)
-    with pytest.raises(FieldError, match="its cells have points 0 to 99, and there are 25"):
+    with pytest.raises(FieldError, match="its cells refer to points 0 to 99, but there are 25"):
         FlowField.from_pyvista(mesh)
 
 

@@ -144,7 +144,7 @@ def test_shards_in_each_others_place_are_found(whole: Path, copy: Path) -> None:
     one.write_bytes(other.read_bytes())
     other.write_bytes(data)
     faults = verify(copy, progress=False)
-    assert len(faults) == 2 and all("is not what was written there" in fault for fault in faults)
+    assert len(faults) == 2 and all("differs from what was written" in fault for fault in faults)
     build(flow(), copy, progress=False)
     assert contents(copy) == contents(whole)
 
@@ -255,7 +255,9 @@ def test_what_does_not_fit_into_the_memory_is_not_read(
 ) -> None:
     levels = Levels(whole)
     monkeypatch.setattr("flowtex.pyramid.levels.available_bytes", lambda: 1000)
-    with pytest.raises(PyramidError, match=r"takes [\d,]+ bytes, and 1,000 bytes .* available"):
+    with pytest.raises(
+        PyramidError, match=r"takes [\d,]+ bytes, but only 1,000 bytes .* available"
+    ):
         levels.check_tile(TileKey(0, 0, 0), 0)
 
 

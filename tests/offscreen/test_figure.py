@@ -80,9 +80,9 @@ def test_a_margin_out_of_range_is_refused(margin: Any) -> None:
 def test_what_has_no_extent_is_refused() -> None:
     with pytest.raises(ValueError, match=r"^the surface is curved.* with flowtex\.render"):
         flowtex.extent(flowtex.examples.delta_wing_field())
-    with pytest.raises(ValueError, match=r"^beside makes two views.*leave it out"):
+    with pytest.raises(ValueError, match=r"^beside makes two views.*omit it"):
         flowtex.extent(edge(), beside={"lod": False})
-    with pytest.raises(ValueError, match=r"^camera is .*; leave it out, and choose by zoom"):
+    with pytest.raises(ValueError, match=r"^camera is .*; omit it, and use zoom"):
         flowtex.extent(edge(), camera=[(0, 0, 9), (0, 0, 0), (0, 1, 0)])
 
 
@@ -189,12 +189,14 @@ def test_a_colour_bar_has_the_range_and_the_colours(figure: Figure) -> None:
 
 @pytest.mark.parametrize("options", [{"projection": "polar"}, {"xscale": "log"}])
 def test_axes_of_another_kind_are_refused(figure: Figure, options: dict[str, Any]) -> None:
-    with pytest.raises(FieldError, match=r"^ax .*; expected (rectilinear axes|linear ones)"):
+    with pytest.raises(
+        FieldError, match=r"^ax .*; expected (rectilinear matplotlib axes|linear ones)"
+    ):
         flowtex.axes(figure.add_subplot(**options), edge())
 
 
 def test_a_curved_surface_has_no_axes(figure: Figure) -> None:
     with pytest.raises(ValueError, match=r"^the surface is curved"):
         flowtex.axes(figure.add_subplot(), flowtex.examples.delta_wing_field())
-    with pytest.raises(FieldError, match=r"^ax is None; expected rectilinear axes"):
+    with pytest.raises(FieldError, match=r"^ax is None; expected rectilinear matplotlib axes"):
         flowtex.axes(None, edge())  # type: ignore[arg-type]

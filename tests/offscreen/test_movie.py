@@ -219,15 +219,15 @@ def test_a_period_leaves_its_last_time_out() -> None:
     ("options", "said"),
     [
         ({"motion": "off"}, "motion is 'off'; expected 'speed' or 'uniform'"),
-        ({"noise": "spots"}, "noise is 'spots', which stands still"),
+        ({"noise": "spots"}, "noise is 'spots', which cannot move"),
         ({"seconds": 0.0}, "seconds is 0.0; expected a number from 0.1 to 600"),
         ({"fps": 500.0}, "fps is 500.0; expected more than 0 and at most 120"),
         ({"fps": 100.0, "seconds": 600.0}, "60,000 frames; expected at most"),
-        ({"size": (95, 64)}, "size is 95 x 64; MP4 wants even sides, such as 94 x 64"),
-        ({"size": (8192, 8192)}, "MP4 has at most 35,651,584 pixels"),
+        ({"size": (95, 64)}, "size is 95 x 64; an MP4 needs even sides, such as 94 x 64"),
+        ({"size": (8192, 8192)}, "MP4 can have at most 35,651,584 pixels"),
         ({"quality": 0}, "quality is 0; expected a number from 1 to 100"),
-        ({"path": "flow.avi"}, "'.avi' is no format that movies are written in; use .mp4, .gif"),
-        ({"path": "flow.gif", "fps": 60.0}, "a GIF shows at most 50 a second"),
+        ({"path": "flow.avi"}, "'.avi' is not a format; expected one for movies: .mp4, .gif"),
+        ({"path": "flow.gif", "fps": 60.0}, "a GIF can show at most 50 a second"),
         ({"path": "flow.gif", "size": (0, 10)}, "size is 0 x 10; expected 1 to 16384 pixels"),
     ],
 )
@@ -246,7 +246,7 @@ def test_a_field_without_a_sign_does_not_stream() -> None:
     field = FlowField.from_arrays(
         np.stack([x, y], -1), np.stack([1 + 0 * x, 0.2 * y], -1), sign_free=True
     )
-    with pytest.raises(MovieError, match="has no sign, so it does not stream"):
+    with pytest.raises(MovieError, match="has no sign, so it cannot stream"):
         frame_times(field, Settings(motion="speed"), fps=10)
 
 

@@ -80,7 +80,7 @@ def test_what_stands_beside_the_flow_comes_along(notebook: Any) -> None:
 
 def test_without_a_flow_it_says_how_to_add_one(notebook: Any) -> None:
     notebook.add_mesh(pv.Sphere())
-    with pytest.raises(ValueError, match=r"^there is no flow texture on this plotter; add one"):
+    with pytest.raises(ValueError, match=r"^this plotter has no flow texture; add one"):
         shown(notebook, jupyter_backend="flowtex")
 
 

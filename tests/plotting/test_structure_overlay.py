@@ -119,7 +119,7 @@ def test_they_are_found_in_the_background_where_that_is_asked_for() -> None:
 def test_fields_without_a_sign_are_refused() -> None:
     points = np.stack(np.meshgrid(np.arange(9.0), np.arange(9.0)), axis=-1)
     field = FlowField.from_arrays(points, np.ones((9, 9, 2)), sign_free=True)
-    expected = "separatrices is 25; expected 0, as the vectors of this field have no sign"
+    expected = "separatrices is 25; expected 0, because the field is sign-free"
     with pytest.raises(SettingsError, match=expected):
         flowtex.render(field, separatrices=True)
     scene = Scene(field)

@@ -261,7 +261,7 @@ def test_a_build_that_ends_early_goes_on(
             write(*given)
 
         patch.setattr(tasks, "write_tile", broken)
-        with pytest.raises(PyramidError, match=r"shards could not be made .* OSError: no room"):
+        with pytest.raises(PyramidError, match=r"shards could not be built .* OSError: no room"):
             made(store, steady())
     assert made(store, steady()).kept > 3
     assert contents(store) == contents(stores.get("steady"))
@@ -294,10 +294,10 @@ def test_a_small_field_is_all_root(tmp_path: Path) -> None:
 
 
 def test_places_that_hold_something_else(tmp_path: Path, stores: Stores) -> None:
-    with pytest.raises(PyramidError, match="holds no pyramid"):
+    with pytest.raises(PyramidError, match="contains no readable pyramid"):
         open_store(tmp_path / "none.zarr")
     zarr.open_group(tmp_path / "other.zarr", mode="w").create_array("u", shape=(3,), dtype="f4")
-    with pytest.raises(PyramidError, match="holds no pyramid"):
+    with pytest.raises(PyramidError, match="contains no readable pyramid"):
         open_store(tmp_path / "other.zarr")
     with pytest.raises(PyramidError, match="holds other data"):
         made(tmp_path / "other.zarr", steady())
@@ -306,7 +306,7 @@ def test_places_that_hold_something_else(tmp_path: Path, stores: Stores) -> None
         made(tmp_path / "a.zarr", series())
     group = zarr.open_group(tmp_path / "a.zarr", mode="r+")
     group.attrs["flowtex"] = sealed({**Levels(tmp_path / "a.zarr").about, "levels_done": False})
-    with pytest.raises(PyramidError, match="not built to its end"):
+    with pytest.raises(PyramidError, match="incomplete"):
         open_store(tmp_path / "a.zarr")
     group.attrs["flowtex"] = {"format": "flowtex-pyramid-9"}
     with pytest.raises(PyramidError, match="flowtex-pyramid-9"):

@@ -125,7 +125,7 @@ def test_every_kind_of_numbers_and_shape_is_taken(image: Any) -> None:
         (None, r"^the image has shape \(\); expected"),
         (np.zeros((0, 4)), r"^the image is empty, of shape \(0, 4\); expected at least one"),
         (np.array([[0.0, np.nan]]), r"^the image has 1 values that are NaN or infinite; replace"),
-        (np.array([[0.0, 255.0]]), r"floats go from 0 to 255; expected 0 to 1: divide by"),
+        (np.array([[0.0, 255.0]]), r"floats range from 0 to 255; expected 0 to 1: divide by"),
         (np.array([[0, 1]]), r"^the image holds int64; expected uint8, or floats from 0 to 1$"),
         (np.array([["red"]]), r"^the image holds <U3; expected uint8"),
     ],
@@ -171,10 +171,10 @@ def test_files_that_cannot_be_read_are_told(tmp_path: Path, rng: np.random.Gener
     Image.fromarray(photo(rng)).save(tmp_path / "whole.png")
     (tmp_path / "cut.png").write_bytes((tmp_path / "whole.png").read_bytes()[:900])
     for name, told in (
-        ("none.png", r"none.png: there is no such file; expected a picture"),
+        ("none.png", r"none.png: the file does not exist; expected a picture"),
         (".", r": is a folder; expected a picture"),
-        ("text.png", r"text.png: is no picture that can be read; expected a PNG"),
-        ("cut.png", r"cut.png: cannot be read \(.+\); give another picture"),
+        ("text.png", r"text.png: the picture cannot be read; expected a PNG"),
+        ("cut.png", r"cut.png: cannot be read \(.+\); pass another picture"),
     ):
         with pytest.raises(ImageError, match=told):
             load_image(tmp_path / name)
@@ -482,10 +482,10 @@ def test_a_change_costs_no_more_than_it_must(noise: str, name: str, affects: str
 
 
 def test_an_image_that_is_not_there_is_told_and_nothing_changes(plotter: Any) -> None:
-    told = r"^noise is 'image' and there is no image; give one as image="
+    told = r"^noise is 'image', but no image is given; pass image="
     with pytest.raises(SettingsError, match=told):
         plotter.flowtex.add(uniform(), noise="image")
-    with pytest.raises(SettingsError, match=r"^noise is 'texture' and an image is given; leave"):
+    with pytest.raises(SettingsError, match=r"^noise is 'texture', but an image is given; omit"):
         plotter.flowtex.add(uniform(), noise="texture", image=np.ones((2, 2)))
     assert len(plotter.flowtex) == 0
     handle = plotter.flowtex.add(uniform(), noise="spots")
@@ -510,9 +510,9 @@ def test_an_image_is_a_flag_of_the_command_line(
     with Image.open(out) as drawn:
         assert drawn.getpixel((30, 20)) == (200, 0, 0)
     for more, told in (
-        (["--image", str(tmp_path / "no.png")], "no.png: there is no such file"),
-        (["--noise", "image"], "there is no picture; name one with --image FILE"),
-        (["--noise", "spots", "--image", picture], "leave out one of them"),
+        (["--image", str(tmp_path / "no.png")], "no.png: the file does not exist"),
+        (["--noise", "image"], "no image is given; add --image FILE"),
+        (["--noise", "spots", "--image", picture], "omit one of them"),
     ):
         capsys.readouterr()
         assert main([*words, *more]) == 2

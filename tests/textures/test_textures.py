@@ -239,7 +239,7 @@ def test_slices_of_another_field_are_refused() -> None:
 def test_slices_that_a_shader_cannot_use_are_refused(count: int) -> None:
     field = double_gyre_field(shape=(6, 11))
     slices = trace(field, lags=np.linspace(0.1, 1, count))
-    with pytest.raises(ValueError, match=rf"^{count} lags were traced; expected 2 to 32 to draw"):
+    with pytest.raises(ValueError, match=rf"^{count} lags were traced; drawing needs 2 to 32"):
         textures(field, slices)
 
 

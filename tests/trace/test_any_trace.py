@@ -130,7 +130,7 @@ def test_slices_do_not_depend_on_the_unit_of_time(speed: float, steps: int) -> N
 
 def test_lags_that_single_precision_does_not_hold_are_refused() -> None:
     field = FlowField.from_arrays(*turning())
-    with pytest.raises(ValueError, match="lags go from 1e-40 to 1; expected 1e-30 to 1e"):
+    with pytest.raises(ValueError, match="lags range from 1e-40 to 1; expected 1e-30 to 1e"):
         trace(field, lags=[1e-40, 1.0])
 
 

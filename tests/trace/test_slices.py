@@ -143,7 +143,7 @@ def test_positions_beyond_the_slices_are_refused(slices: TraceSlices) -> None:
 def test_forward_positions_need_forward_slices() -> None:
     one_sided = trace(double_gyre_field(shape=(6, 11)), two_sided=False)
     assert one_sided.forward is None
-    with pytest.raises(ValueError, match=r"^there are no forward slices: trace with"):
+    with pytest.raises(ValueError, match=r"^the slices have no forward side: trace with"):
         one_sided.positions(0.1, forward=True)
 
 
@@ -241,7 +241,7 @@ def broken(path: Path, kind: str) -> None:
 def test_files_of_another_kind_are_refused(tmp_path: Path, kind: str) -> None:
     path = tmp_path / "slices.npz"
     broken(path, kind)
-    expected = f"{path} does not hold trace slices; expected a file that TraceSlices.save wrote"
+    expected = f"{path} does not contain trace slices; expected a file written by TraceSlices.save"
     with pytest.raises(ValueError, match=f"^{re.escape(expected)}$"):
         TraceSlices.open(path)
     assert not (tmp_path / "sprung").exists()

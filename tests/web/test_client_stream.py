@@ -296,7 +296,7 @@ def test_a_broken_tile_leaves_the_coarser_one_and_is_told_once(
     page = linked(server, "flat", **NEAR)
     server.fault = answer
     shown.open(page.as_uri())
-    assert "is broken" in shown.told()
+    assert "are corrupt" in shown.told()
     shown.wait()
     coarse = shown.pixels()
     assert coarse.std() > 10

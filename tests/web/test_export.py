@@ -360,7 +360,7 @@ def test_a_page_without_webgl_says_so_and_keeps_its_picture(
         "delete window.OffscreenCanvas;"
     )
     page.goto((tmp_path / "page.html").as_uri())
-    page.get_by_text("for want of WebGL2").wait_for()
+    page.get_by_text("because it has no WebGL2").wait_for()
     assert page.locator("#preview").count() == 1
 
 

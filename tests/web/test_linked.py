@@ -87,7 +87,9 @@ def test_the_policy_names_the_server_of_the_store(address: str, source: str) -> 
     ],
 )
 def test_what_no_browser_reads_is_refused(address: str) -> None:
-    with pytest.raises(FieldError, match="expected the address at which a browser finds the store"):
+    with pytest.raises(
+        FieldError, match="expected the address from which a browser reads the store"
+    ):
         StoreLink.of(address)
 
 
@@ -103,7 +105,7 @@ def test_what_no_browser_reads_is_refused(address: str) -> None:
     ],
 )
 def test_what_is_secret_never_enters_a_page(address: str, store: Path, tmp_path: Path) -> None:
-    with pytest.raises(FieldError, match="everybody could read in the page") as told:
+    with pytest.raises(FieldError, match="everyone could read in the page") as told:
         export(str(store), tmp_path / "page.html", store=address)
     assert "geheim" not in str(told.value)
     assert not (tmp_path / "page.html").exists()
@@ -165,7 +167,7 @@ def test_what_the_store_has_not_is_refused(
 
 
 def test_a_flow_that_is_in_no_store_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(FieldError, match=r"`flowtex pyramid FILE -o flow\.zarr` builds it"):
+    with pytest.raises(FieldError, match=r"`flowtex pyramid FILE -o flow\.zarr` and export that"):
         export(flow(), tmp_path / "page.html", store=BUCKET)
 
 
@@ -176,7 +178,7 @@ def test_a_store_that_is_not_whole_is_told(tmp_path: Path) -> None:
     group = zarr.open_group(tmp_path / "a.zarr", mode="r+")
     told: Any = group.attrs["flowtex"]
     group.attrs["flowtex"] = sealed({**told, "complete": False})
-    with pytest.warns(UserWarning, match="not been built to its end"):
+    with pytest.warns(UserWarning, match="incomplete"):
         text_of(tmp_path / "a.zarr")
 
 

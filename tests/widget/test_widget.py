@@ -116,7 +116,7 @@ def test_every_setting_is_a_trait_of_both_sides(make: Make) -> None:
     [
         ("samples", 999, r"^samples is 999; expected a whole number from 1 to 200"),
         ("kernel", "gauss", r"^kernel is 'gauss'; expected 'hann' or 'box' or 'ramp'"),
-        ("noise", "image", r"^noise is 'image' and there is no image"),
+        ("noise", "image", r"^noise is 'image', but no image is given"),
         ("time", 5.0, r"^time is 5.0; expected 0 to 2"),
         ("camera", {"zoom": 2}, r"^camera is {'zoom': 2}; expected a mapping with some of"),
         (
@@ -380,7 +380,7 @@ def test_a_missing_extra_is_named(missing: str) -> None:
         "try:\n    flowtex.FlowWidget\nexcept ModuleNotFoundError as error:\n    print(error)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert f"the notebook widget needs {missing}, not installed here" in done.stdout
+    assert f"the notebook widget needs {missing}, which is not installed" in done.stdout
     assert "[notebook]" in done.stdout
 
 
@@ -599,7 +599,7 @@ def test_a_flow_that_does_not_fit_leaves_what_is_shown(make: Make) -> None:
         ("mesh", r"mesh"),
         (np.zeros((3, 3)), r"ndarray"),
         (pv.Plane(), r"vectors"),
-        (gyre(), r"^there is no scalar 'heat'"),  # which the second view shows
+        (gyre(), r"^the field has no scalar 'heat'"),  # which the second view shows
     ]
     for value, said in wrong:
         with pytest.raises((ValueError, TypeError, OSError), match=said):
@@ -716,8 +716,8 @@ def test_lines_of_the_earth_are_switched_from_both_sides(
 @pytest.mark.parametrize(
     ("name", "value", "said"),
     [
-        ("scalars", "hight", "there is no scalar 'hight' on this field; there are 'speed', 'hei"),
-        ("cmap", "virids", "there is no colour map 'virids'; did you mean 'viridis'"),
+        ("scalars", "hight", "the field has no scalar 'hight'; expected one of 'speed', 'hei"),
+        ("cmap", "virids", "the colour map 'virids' does not exist; did you mean 'viridis'"),
         ("clim", (1, 0), "the lower one first"),
         ("opacity", 3, "opacity is 3; expected a number from 0 to 1"),
         ("colour_map", "magma", "FlowWidget has no attribute 'colour_map'; "),

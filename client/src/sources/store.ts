@@ -102,11 +102,11 @@ class CheckSum {
 
   decode(bytes: Uint8Array): Uint8Array {
     const end = bytes.byteLength - SUM_BYTES;
-    if (end < 0) throw new Error("there is no check sum");
+    if (end < 0) throw new Error("the checksum is missing");
     const { buffer, byteOffset } = bytes;
     const told = new DataView(buffer, byteOffset + end, SUM_BYTES).getUint32(0, true);
     const inside = new Uint8Array(buffer, byteOffset, end);
-    if (told !== crc32c(inside)) throw new Error("the check sum does not fit");
+    if (told !== crc32c(inside)) throw new Error("checksum mismatch");
     return inside;
   }
 
@@ -181,7 +181,7 @@ async function answer(url: string, signal: AbortSignal): Promise<[status: number
 /** The bytes of an object, or nothing where there is none; asks again where nobody answers. */
 async function object(url: string, signal: AbortSignal): Bytes {
   for (let trial = 0; ; trial += 1) {
-    let said = "nobody answers";
+    let said = "no server answers";
     try {
       const [status, bytes] = await answer(url, signal);
       if (status === OK) return bytes;
@@ -223,7 +223,7 @@ export class Objects implements zarr.AsyncReadable {
 
   private async object(key: string, signal = new AbortController().signal): Bytes {
     const bytes = await object(this.url + key, signal);
-    if (!bytes) throw new StoreError("missing", `${key} is not there`);
+    if (!bytes) throw new StoreError("missing", `${key} is missing`);
     return bytes;
   }
 

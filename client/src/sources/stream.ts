@@ -28,10 +28,10 @@ const TRACED_FROM = ["padded", "unit", "open", "nearest", "normal", "rays"];
 
 /** Why a request failed. */
 const REASONS: Record<Exclude<StoreFault, "other">, string> = {
-  missing: "it is not in the store, or the store is not open to everyone.",
-  broken: "what the store has of it is broken.",
+  missing: "it is not in the store, or the store is not public.",
+  broken: "its data in the store are corrupt.",
   unreachable:
-    "the store does not answer. It is away, the network is, or pages from elsewhere may not read it (CORS).",
+    "the store does not answer. The server or the network may be down, or the server does not allow this page to read it (CORS).",
 };
 
 /** What of a store has to be that of the page. */
@@ -112,7 +112,7 @@ function checkHeader(own: TileHeader, { geometry: whole, slices: all }: Header):
         areNumbers([...trace.offset, ...trace.middle, trace.unit, trace.pace, trace.rest], 12) &&
         arePoles(trace) &&
         (!trace.timed || areNumbers([trace.timed.unit, trace.timed.speed], 2))));
-  if (!fits) throw new Error("what is told of a tile does not fit the page");
+  if (!fits) throw new Error("the header of a tile does not match the page");
 }
 
 /** Types of the parts of a tile, and how many numbers each has. */
@@ -158,7 +158,7 @@ function checkParts(parts: NamedPart[], header: Pick<Header, "geometry" | "slice
         own[0] === blocks[0] &&
         own[1] === blocks[1] &&
         data.length === own[0] * own[1] * own[2];
-    if (!fits) throw new Error(`the part "${name}" of a tile has another size than is told`);
+    if (!fits) throw new Error(`the part "${name}" of a tile has a wrong size`);
   }
 }
 
@@ -195,7 +195,7 @@ export class Stream implements Source {
   /** `header` is that of the page, whose colours may change. */
   constructor(header: Header, base: string) {
     const told = header.store;
-    if (!told) throw new Error("the page does not tell where its store is");
+    if (!told) throw new Error("the page does not say where its store is");
     this.header = header;
     this.told = told;
     this.url = new URL(told.url, base);
@@ -216,14 +216,14 @@ export class Stream implements Source {
     const { url } = this.told;
     if (!/^https?:/.test(this.url.protocol)) {
       const text =
-        `This page looks for its store at ${url} beside itself, which a browser does not read where ` +
-        "the page is a file: open it from a web server.";
+        `This page reads its store from ${url} in the same folder, which browsers do not allow when ` +
+        "the page is opened as a file: open it from a web server.";
       throw new StoreError("other", text);
     }
     const own = (await this.store.attributes()).flowtex as Partial<StoreHeader> | undefined;
     if (IDENTITY.every((name) => own?.[name] === this.told[name])) return;
     const text =
-      `The store at ${url} holds another flow than this page, or one with other paths or of another ` +
+      `The store at ${url} does not match this page: it has another flow, other paths or another ` +
       "version: export the page again.";
     throw new StoreError("other", text);
   }
@@ -282,13 +282,13 @@ export class Stream implements Source {
     const array = await this.store.array(`${key[0]}/${kind}`);
     const chunk = async (n: number) => {
       const { data } = await array.getChunk([...at, n], { signal });
-      if (!(data instanceof Uint8Array)) throw new Error(`${array.path} has no bytes`);
+      if (!(data instanceof Uint8Array)) throw new Error(`${array.path} is empty`);
       return data;
     };
     const first = await chunk(0);
     const [infos, start] = infosOfFile(first);
     const size = infos.reduce((sum, { bytes }) => sum + bytes, start);
-    if (!isCount(size, MOST_BYTES)) throw new Error(`a file of ${array.path} tells another size`);
+    if (!isCount(size, MOST_BYTES)) throw new Error(`a file of ${array.path} has a wrong size`);
     const file = new Uint8Array(Math.ceil(size / first.length) * first.length);
     file.set(first);
     for (let n = 1; n * first.length < size; n += 1) file.set(await chunk(n), n * first.length);
@@ -299,7 +299,7 @@ export class Stream implements Source {
       parts.set(name, { ...part, name });
     }
     const of = new TextDecoder().decode(parts.get("of")?.data as Uint8Array | undefined);
-    if (of !== this.told.fingerprint) throw new Error(`tile ${nameOf(key)} is that of another flow`);
+    if (of !== this.told.fingerprint) throw new Error(`tile ${nameOf(key)} belongs to another flow`);
     parts.delete("of");
     return parts;
   }

@@ -190,7 +190,9 @@ class Appearance(Controller):
             self.context.complain(error)
             return
         self.close()  # the latest picture counts
-        self._laying = start_task(self._lay(*picture), "a picture could not be laid on the surface")
+        self._laying = start_task(
+            self._lay(*picture), ("an image could not be applied to the surface")
+        )
 
     async def _lay(self, content: bytes, name: str) -> None:
         try:

@@ -245,7 +245,7 @@ class Job:
             if self._cancelled:
                 raise Stopped
         if picture is None:
-            msg = "there was nothing to draw; expected a size of at least one pixel"
+            msg = "the size is empty; expected at least one pixel"
             raise ExportError(msg)
         if self._annotations:
             tiled.annotate(picture)

@@ -168,7 +168,7 @@ class FileBeside(Controller):
         if all(units) and units[0] != units[1]:
             msg = (
                 f"{request.name} is in {units[1]} and {self._data.name} in {units[0]}; expected "
-                "one unit of length for two files that one camera sees"
+                "the same unit of length in both files, because they share one camera"
             )
             raise FieldError(msg)
         self._name, self._choice, self._flow = request.name, choice, flow

@@ -49,7 +49,7 @@ SUFFIXES = frozenset(
 )
 #: Endings that are listed though nothing of them is drawn, and why.
 UNSHOWN = dict.fromkeys(
-    (".pkl", ".pickle", ".joblib"), "a pickle can run any program, and is refused"
+    (".pkl", ".pickle", ".joblib"), "a pickle can run any program, so it is refused"
 )
 #: Folders below the one that was given that are searched, and files that are listed, at most.
 FOLDER_DEPTH, MOST_FILES = 4, 500
@@ -171,7 +171,7 @@ class Library:
             prepare_readers()
         if not self.names:
             endings = " ".join(sorted(SUFFIXES))
-            msg = f"{folder}: there is no file in it that can be opened; expected {endings}"
+            msg = f"{folder}: the folder has no file that can be opened; expected {endings}"
             raise FieldError(msg)
 
     def branch(self) -> Library:
@@ -252,7 +252,7 @@ class Library:
             if self._is_line(name):
                 return lambda: FlowSource(line_field(name))
             label = repr(shortened(name, 80))
-            msg = f"there is no file {label} among those that may be opened here"
+            msg = f"the file {label} is not among those that may be opened here"
             raise FieldError(msg)
         return opener
 
@@ -427,7 +427,7 @@ def _reason(path: Path) -> str:
     """Return why nothing of a file is drawn, by its ending; empty where something may be."""
     beside = path.with_suffix(".npy")
     if path.suffix.lower() in WITHOUT_VECTORS and not beside.exists():
-        return f"no vectors, which would be in {beside.name}"
+        return f"it has no vectors, and {beside.name} does not exist"
     return UNSHOWN.get(path.suffix.lower(), "")
 
 

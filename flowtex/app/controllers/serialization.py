@@ -87,7 +87,10 @@ def to_link(state: Mapping[str, Any]) -> str:
     ]
     for name, value in (state.get("settings") or {}).items():
         if name not in TABLE:
-            msg = f"there is no setting {name!r} to put in a link; there are: {', '.join(TABLE)}"
+            msg = (
+                f"the setting {name!r} of a link does not exist; expected one of: "
+                f"{', '.join(TABLE)}"
+            )
             raise SettingsError(msg)
         # An image is a person's own; a link has no room for it.
         if value not in (TABLE[name].default, "image"):
@@ -110,11 +113,11 @@ def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
             elif name in TABLE:
                 state.setdefault("settings", {})[name] = TABLE[name].parse(value)
             elif name not in IGNORED:
-                messages.append(f"the link says {_quoted(name)}, which means nothing here")
+                messages.append(f"the link has the unknown name {_quoted(name)}")
         except UnreadableError as fault:
             messages.append(f"the link's {name} is {_quoted(value)}; expected {fault}")
         except FieldError as fault:
-            messages.append(f"in the link {shortened(str(fault), FAULT_LENGTH)}")
+            messages.append(f"error in the link: {shortened(str(fault), FAULT_LENGTH)}")
     return state
 
 
@@ -151,7 +154,7 @@ def _one_of(*choices: str) -> Form:
 
 def _name(text: str) -> str:
     if not text.isprintable() or len(text) > NAME_LENGTH:
-        msg = f"a name of at most {NAME_LENGTH} characters that can be printed"
+        msg = f"a name of at most {NAME_LENGTH} printable characters"
         raise UnreadableError(msg)
     return text
 
@@ -238,7 +241,7 @@ def to_python(
 
 def _from_file(state: Mapping[str, Any]) -> str:
     if not state.get("file"):
-        msg = "the state names no file; give the expression that makes its field as source"
+        msg = "the state has no file; pass the expression that makes its field as source"
         raise FieldError(msg)
     values = {name: state[name] for name in FILE_ARGUMENTS if state.get(name)}
     axis, _, number = values.get("plane", "").partition("=")

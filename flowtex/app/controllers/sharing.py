@@ -32,7 +32,7 @@ LABELS = {
     "out_height": "the height",
     "out_density": "the fineness",
     "out_seconds": "the length in seconds",
-    "out_fps": "the pictures in a second",
+    "out_fps": "the pictures per second",
 }
 
 _log = logging.getLogger(__name__)

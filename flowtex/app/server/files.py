@@ -238,7 +238,7 @@ class Downloads:
     def add(self, path: Path) -> str:
         """Hand out a file from :meth:`reserve`; return its address, relative to the page."""
         if not path.resolve().is_relative_to(self.folder.resolve()):
-            msg = f"{path} lies outside {self.folder}; expected a file from reserve()"
+            msg = f"{path} is outside {self.folder}; expected a file from reserve()"
             raise FieldError(msg)
         self.expire()
         token = new_secret()

@@ -36,7 +36,7 @@ FRAME = (
     "</iframe>"
 )
 FAILURE = "the page in the cell has failed"
-NO_LOOP = "flowtex: no event loop runs here, so nothing is shown; flowtex.app.serve makes a page"
+NO_LOOP = "flowtex: no event loop is running, so nothing is shown; use flowtex.app.serve"
 
 
 def proxy_path(proxy: str | bool | None = None) -> str | None:  # noqa: FBT001 one question

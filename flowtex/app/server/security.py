@@ -44,7 +44,7 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
 }
 
-FAULT = "This failed. The program that serves the page has printed why."
+FAULT = "The request failed. The server has printed the reason."
 
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
@@ -82,7 +82,7 @@ def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
     for name in allowed:
         if name != ANY and not re.fullmatch(r"[\w.-]+", name):
             msg = (
-                f"allow_host is {name!r}; expected a name without scheme and port, such as "
+                f"allow_host is {name!r}; expected a host name without scheme and port, such as "
                 f"'flow.example.org', or {ANY!r} for any"
             )
             raise FieldError(msg)
@@ -110,11 +110,14 @@ def guard(
     async def own_pages_only(request: web.Request, handler: Handler) -> web.StreamResponse:
         name = _host_name(request)
         if not (ANY in hosts or name in hosts or _is_address(name)):
-            words = f"This page is not open as {name[:100]!r}; --allow-host NAME adds a name.\n"
+            words = (
+                f"The server does not accept the host name {name[:100]!r}; allow it with "
+                "--allow-host NAME.\n"
+            )
             raise web.HTTPForbidden(text=words)
         origin = request.headers.get("Origin")
         if origin is not None and _split(origin).netloc not in _own_hosts(request):
-            raise web.HTTPForbidden(text="This page is not open to other sites.\n")
+            raise web.HTTPForbidden(text="Other sites cannot use this page.\n")
         return await handler(request)
 
     @web.middleware

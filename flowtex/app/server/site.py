@@ -52,14 +52,14 @@ IDLE_MINUTES = 15.0
 #: Bytes of what the door sends, at most.
 REQUEST_BYTES = 4096
 
-WRONG = "This page opens with the whole address that flowtex printed, the secret included."
+WRONG = "This page opens only with the complete address that flowtex printed, including the secret."
 FULL = (
-    "There is room for {pages} at a time here, and all places are taken. One becomes free soon "
-    "after somebody closes a page."
+    "The limit is {pages} at a time, and all are in use. One becomes free soon after somebody "
+    "closes a page."
 )
-ENDS = "The server is ending. Start it again to open this page."
-BROKEN = "The page could not be made: {error}"
-MALFORMED = "This is no request of this page."
+ENDS = "The server is shutting down. Start it again to open this page."
+BROKEN = "The page could not be opened: {error}"
+MALFORMED = "This request is not valid for this page."
 
 _log = logging.getLogger(__name__)
 
@@ -113,7 +113,7 @@ class Site:
     async def listen(self, where: sockets.socket | tuple[str, int] = ("127.0.0.1", 0)) -> None:
         """Let pages in, after :meth:`prepare`, at a host and port, or on a socket that listens."""
         if self._server is None:
-            msg = "nothing is there to let in to; call prepare() first"
+            msg = "the site is not prepared; call prepare() first"
             raise RuntimeError(msg)
         self.port = await self._server.start(where)
         self._sweep = asyncio.create_task(self.sessions.sweep())
@@ -180,7 +180,7 @@ class Site:
         except (FieldError, OSError) as error:
             return _answer(500, words=BROKEN.format(error=error))
         except Exception:
-            _log.exception("a page could not be made")
+            _log.exception("a page could not be opened")
             return _answer(500, words=FAULT)
         return _answer(200, session=session.token)
 
@@ -287,8 +287,8 @@ async def serve_until_ended(
             port = await listen()
         except OSError as error:
             msg = (
-                f"cannot listen on {host}:{port} ({error.strerror or error}); choose another port, "
-                "or 0 for one that is free"
+                f"cannot listen on {host}:{port} ({error.strerror or error}); choose another "
+                "port, or 0 for a free one"
             )
             raise ServeError(msg) from error
         address = f"http://{_host_name(host)}:{port}/{rest}"

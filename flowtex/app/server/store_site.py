@@ -24,7 +24,7 @@ from flowtex.pyramid.places import DOCUMENT
 
 #: Seconds for which a browser may keep an object.
 KEPT_S = 3600
-WRONG = "This page opens with the whole address that flowtex printed."
+WRONG = "This page opens only with the complete address that flowtex printed."
 
 
 def store_application(
@@ -49,7 +49,7 @@ def store_application(
         try:
             body = await served.get(name)
         except LookupError:
-            raise web.HTTPNotFound(text="There is no such object.") from None
+            raise web.HTTPNotFound(text="This object does not exist.") from None
         return web.Response(body=body, headers=_headers(name))
 
     async def to_page(request: web.Request) -> web.Response:

@@ -54,10 +54,13 @@ class Uploads:
         name = plain_name(name.replace("\\", "/").rsplit("/", 1)[-1])
         if Path(name).suffix.lower() not in UPLOAD_SUFFIXES:
             endings = ", ".join(UPLOAD_SUFFIXES)
-            msg = f"{name}: expected one file of a mesh or of the Earth, {endings}"
+            msg = f"{name}: this format cannot be uploaded; expected one of {endings}"
             raise FieldError(msg)
         if self._count >= MOST_UPLOADS:
-            msg = f"{name}: {MOST_UPLOADS} files were sent already; open the page anew for more"
+            msg = (
+                f"{name}: {MOST_UPLOADS} files have been uploaded already; reload the page to "
+                "upload more"
+            )
             raise FieldError(msg)
         self._count += 1
         prepare_readers()
@@ -65,7 +68,7 @@ class Uploads:
             path = await self._written(name, content)
         except OSError as error:
             self._count -= 1
-            msg = f"{name}: cannot be kept on the server ({error.strerror or error})"
+            msg = f"{name}: cannot be stored on the server ({error.strerror or error})"
             raise FieldError(msg) from error
         except BaseException:
             self._count -= 1
@@ -81,7 +84,10 @@ class Uploads:
                 async for part in content:
                     size += len(part)
                     if size > UPLOAD_BYTES:
-                        msg = f"{name}: expected {UPLOAD_BYTES / 1e6:g} MB at most"
+                        msg = (
+                            f"{name}: the file is too large; expected {UPLOAD_BYTES / 1e6:g} MB "
+                            "at most"
+                        )
                         raise FieldError(msg)
                     await asyncio.to_thread(file.write, part)
         except BaseException:

@@ -81,7 +81,7 @@ def sent_picture(sent: Any) -> tuple[bytes, str]:
     name = str(sent.get("name", "the picture")) if isinstance(sent, Mapping) else "the picture"
     name = shortened(name, 80)
     if not isinstance(content, bytes) or not content:
-        msg = f"{name}: did not arrive; expected a PNG or a JPEG"
+        msg = f"{name}: the upload is empty; expected a PNG or a JPEG"
         raise SettingsError(msg)
     if len(content) > PICTURE_BYTES:
         msg = f"{name}: has {len(content) / 1e6:.1f} MB; expected {PICTURE_BYTES / 1e6:g} at most"
@@ -126,7 +126,7 @@ def _read(content: bytes, name: str) -> AnyArray:
     except (OSError, SyntaxError, ValueError) as error:
         if isinstance(error, SettingsError):
             raise
-        msg = f"{name}: is no picture that can be read; expected a PNG, a JPEG or a WebP"
+        msg = f"{name}: the picture cannot be read; expected a PNG, a JPEG or a WebP"
         raise SettingsError(msg) from error
 
 

@@ -66,7 +66,7 @@ class Player:
             return
         self._wanted = nearest
         if self._reading is None or self._reading.done():
-            self._reading = start_task(self._read(), "a time cannot be read")
+            self._reading = start_task(self._read(), "a time step cannot be read")
 
     async def _read(self) -> None:
         """Read the time that is wanted, the latest only, and show it."""

@@ -229,9 +229,9 @@ def _samples(found: Probe) -> str:
     count = len(found.lags)
     reasons = []
     if found.asked > found.setting + 1:
-        reasons.append(f"{found.setting} are set, in motion it takes twice as many")
+        reasons.append(f"{found.setting} are set; motion doubles them")
     elif found.asked > found.setting:
-        reasons.append(f"{found.setting} are set, and the point itself is one more")
+        reasons.append(f"{found.setting} are set, plus one for the point itself")
     if count < found.asked:
         reasons.append("the path ends")
     text = f"{count} of {found.asked}" if count < found.asked else f"{count}"

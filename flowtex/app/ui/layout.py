@@ -26,9 +26,9 @@ MS_PER_LETTER = 70
 #: What mouse and keys do.
 HELP = {
     "drag": "pan a flat surface, turn a curved one",
-    "Shift and drag": "the other one of the two",
+    "Shift and drag": "the opposite: turn, or pan",
     "wheel, two fingers": "zoom to the pointer",
-    "click": "the path through a point",
+    "click": "values and path of a point",
     "arrows": "pan",
     "+ and -": "zoom",
     "space": "play or pause",
@@ -38,7 +38,7 @@ HELP = {
     "h": "the bar of controls",
     "t": "light or dark",
     "f": "full screen",
-    "Esc": "close what is open",
+    "Esc": "close panels and messages",
 }
 
 
@@ -112,7 +112,7 @@ def _title(controllers: Controllers) -> None:
                 click=controllers.data.reload,
                 aria_label="Read the file again",
                 __properties=ARIA,
-                **hint("Read the file again, where it has changed.", "bottom"),
+                **hint("Read the file again if it has changed.", "bottom"),
             ):
                 v3.VIcon("mdi-refresh", size=16)
         PageElement(
@@ -133,9 +133,9 @@ def _planes(controllers: Controllers) -> None:
     with html.Div(classes="flowtex-planes", v_if=(some,)):
         word = key("block_word")
         for label, name, choices, more, text in (
-            ("Grid", "block", "blocks", f" && {word} === 'Grid'", "Which of the grids is drawn."),
-            ("Map", "block", "blocks", f" && {word} === 'Map'", "On which map it is drawn."),
-            ("Velocity", "vectors", "vectors_choices", "", "What is taken for the velocity."),
+            ("Grid", "block", "blocks", f" && {word} === 'Grid'", "Choose the grid to draw."),
+            ("Map", "block", "blocks", f" && {word} === 'Map'", "Choose the map."),
+            ("Velocity", "vectors", "vectors_choices", "", "Choose the velocity."),
         ):
             with html.Div(
                 classes="flowtex-row",
@@ -147,7 +147,9 @@ def _planes(controllers: Controllers) -> None:
         with html.Div(classes="flowtex-stack", v_if=(f"{key('axes')}.length",)):
             with html.Div(classes="flowtex-line"):
                 html.Span("Plane", classes="flowtex-label")
-                across = hint("Along which axis a plane, or a level, is chosen.", "end")
+                across = hint(
+                    "Choose the axis along which the slider selects a plane or a level.", "end"
+                )
                 with toggle("Axis across the plane", key("axis"), **across):
                     one = f"one in {key('axes')}"
                     v3.VBtn("{{ one }}", v_for=one, key="one", value=("one",), size="small")

@@ -50,7 +50,7 @@ def _view(controllers: Controllers) -> None:
     if controllers.context.library.typed:
         with row(
             "formula",
-            "Type your own: the rates of x and y, ranges and parameters, with semicolons between.",
+            "Type a formula: the rates of x and y, ranges and parameters, separated by semicolons.",
         ):
             html.Span("Formula", classes="flowtex-label")
             html.Input(
@@ -61,23 +61,23 @@ def _view(controllers: Controllers) -> None:
                 __events=["change"],
                 classes="flowtex-formula",
             )
-    with row("compare", "A second view beside the first, which moves with it."):
+    with row("compare", "Add a second view that moves with the first."):
         select("Beside it", key("compare"), (key("comparisons"),))
     with row(
         "time_beside",
-        "The time in the second view.",
+        "Choose the time in the second view.",
         v_if=(f"{key('compare')} === '{ANOTHER_TIME}'",),
     ):
         html.Span("Time beside", classes="flowtex-label")
         slider("Time beside", key("time_beside"), (key("first"),), (key("last"),), (key("tick"),))
     with row(
         "file_beside",
-        "The file in the second view.",
+        "Choose the file in the second view.",
         v_if=(f"{key('compare')} === '{ANOTHER_FILE}'",),
     ):
         others = f"{key('files')}.filter(name => name !== {key('file')})"
         select("File beside", key("file_beside"), (others,))
-    with row("image", "A picture of your own, PNG or JPEG, that the flow smears."):
+    with row("image", "Choose an image of your own, PNG or JPEG, that the flow smears."):
         html.Span("Your image", classes="flowtex-label")
         v3.VFileInput(
             v_model=(key("image_file"),),
@@ -90,9 +90,9 @@ def _view(controllers: Controllers) -> None:
             __properties=[*ARIA, "accept"],
             classes="flowtex-file",
         )
-    with row("background", "What lies behind the surface."):
+    with row("background", "Choose the background colour."):
         select("Background", key("background"), (f"{list(BACKGROUNDS)}",))
-    with row("painter", "The browser draws with its own graphics; the server sends pictures."):
+    with row("painter", "Choose who draws: the browser, or the server, which sends pictures."):
         buttons("Drawn by", key("painter"), PAINTERS)
 
 
@@ -100,27 +100,31 @@ def _save(controllers: Controllers) -> None:
     """Put what makes pictures and movies into the group that is open."""
     key = controllers.context.state.key
     movie = f"{key('out_format')} !== 'PNG'"
-    with row("format", "A picture, or a movie: one seamless round, or all times of the flow."):
+    with row(
+        "format", ("Choose a picture, or a movie: one seamless period, or all times of the flow.")
+    ):
         buttons("Format", key("out_format"), FORMATS)
-    with row("size", "Width and height in pixels; it may be larger than the window."):
+    with row("size", "Width and height in pixels; may exceed the window."):
         html.Span("Size", classes="flowtex-label")
         with html.Span(classes="flowtex-range"):
             number("Width in pixels", key("out_width"), 16, 30_000, whole=True)
             number("Height in pixels", key("out_height"), 16, 30_000, whole=True)
-    with row("density", "Pixels for one of the screen: 2 for print, with larger grain."):
+    with row("density", "Pixels per screen pixel: 2 for print, with larger grain."):
         html.Span("Fineness", classes="flowtex-label")
         number("Fineness", key("out_density"), 1, 8)
-    with row("smooth", "Draw at twice the size and average: smoother edges, four times as long."):
+    with row(
+        "smooth", ("Draw at twice the size and average: smoother edges, but four times slower.")
+    ):
         html.Span("Smooth edges", classes="flowtex-label")
         switch("Smooth edges", key("out_smooth"))
-    with row("annotations", "Legend, scale bar, time and name, written on it."):
+    with row("annotations", "Add legend, scale bar, time and name."):
         html.Span("Annotations", classes="flowtex-label")
         switch("Annotations", key("out_annotations"))
-    with row("seconds", "How long the movie is, and its pictures in a second.", v_if=(movie,)):
+    with row("seconds", "Length of the movie, and pictures per second.", v_if=(movie,)):
         html.Span("Seconds, rate", classes="flowtex-label")
         with html.Span(classes="flowtex-range"):
             number("Seconds", key("out_seconds"), 0.1, 600)
-            number("Pictures in a second", key("out_fps"), 1, 60)
+            number("Pictures per second", key("out_fps"), 1, 60)
     progress, file = key("out_progress"), key("out_file")
     with html.Div(classes="flowtex-row", v_if=(f"{progress} === null",)):
         html.Button("Make it", click=controllers.sharing.start, classes="flowtex-action")

@@ -54,7 +54,7 @@ class Choice:
     def check(self, known: set[str]) -> None:
         """Raise for a name that no axis has."""
         for name in {*self.sel, *self.isel} - self.used:
-            msg = f"there is no axis {name!r} to choose along; {near_names(name, sorted(known))}"
+            msg = f"the axis {name!r} does not exist; {near_names(name, sorted(known))}"
             raise FieldError(msg)
 
 
@@ -114,11 +114,11 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
         len(k) < len(d) for k, d in zip(kinds, others, strict=True)
     ):
         listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in arrays)
-        msg = f"the components lie along different axes: {listed}. Choose along them before"
+        msg = f"the components have different axes: {listed}. Select along these axes first"
         raise FieldError(msg)
     for array in arrays:
         if empty := [str(d) for d, count in array.sizes.items() if count == 0]:
-            msg = f"{array.name} has no values along {', '.join(empty)}; expected one at least"
+            msg = f"{array.name} has no values along {', '.join(empty)}; expected at least one"
             raise FieldError(msg)
     done, notes, level = list(arrays), [], ""
     numbers: dict[str, int] = {}
@@ -284,7 +284,7 @@ def _picks(
             choice.used.add(name)
             number = choice.isel[name]
             if not isinstance(number, (int, np.integer)) or not -count <= number < count:
-                msg = f"{name} is number {number!r} of {count}; expected 0 to {count - 1}"
+                msg = f"{name} has index {number!r} of {count}; expected 0 to {count - 1}"
                 raise FieldError(msg)
             value = None if line is None else line[number]
             return [_alike(value, int(number) % count, other) for other in lines], ""
@@ -292,7 +292,9 @@ def _picks(
             choice.used.add(name)
             wanted = choice.sel[name]
             if line is None:
-                msg = f"{name} has no values; choose by number, as in isel={{{name!r}: 0}}"
+                msg = (
+                    f"{name} has no coordinate values; select by index, as in isel={{{name!r}: 0}}"
+                )
                 raise FieldError(msg)
             number = _nearest(wanted, line, name)
             return [_alike(line[number], number, other) for other in lines], ""
@@ -337,7 +339,10 @@ def _alike(value: Any, number: int, line: AnyArray | None) -> int:
     if not len(near) and line.dtype.kind in "fiu":
         near = np.flatnonzero(np.isclose(line.astype(float), float(value), rtol=1e-4))
     if not len(near):
-        msg = f"only one of the components has the level or time {value}; choose one that both have"
+        msg = (
+            f"only one of the components has the level or time {value}; choose one that both "
+            "components have"
+        )
         raise FieldError(msg)
     return int(near[0])
 
@@ -362,7 +367,7 @@ def _at_surface(lines: list[Any], coordinate: Any) -> int:
 def _nearest(wanted: Any, line: AnyArray, name: str) -> int:
     """Return the number of the value nearest to what is wanted, within the ends of the axis."""
     listed = ", ".join(map(str, line[:8])) + (", ..." if len(line) > 8 else "")
-    msg = f"{name} is {wanted!r}; there are {listed}"
+    msg = f"{name} is {wanted!r}; expected one of {listed}"
     try:
         if line.dtype.kind == "M":
             at = (line - np.datetime64(wanted)) / np.timedelta64(1, "s")

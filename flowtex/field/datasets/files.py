@@ -110,8 +110,9 @@ def import_cfgrib() -> Any:
             raise
         until = ".".join(map(str, ECCODES_UNTIL))
         msg = (
-            "GRIB is read by the library ecCodes, which is missing: its wheels are for Python up "
-            f"to {until}. Take such a Python, or cfgrib of conda-forge, which brings it"
+            "reading GRIB needs the library ecCodes, which is missing: its wheels support Python "
+            f"up to {until}. Use such a Python, or cfgrib from conda-forge, which includes the "
+            "library"
         )
         raise ModuleNotFoundError(msg, name="cfgrib") from error
 
@@ -149,7 +150,9 @@ def _joined(datasets: list[Any], paths: Sequence[Path]) -> Any:
             join="exact",
         ).sortby(name)
     except (ValueError, KeyError) as error:
-        msg = f"the files are no steps of one series: {error}. Give those that belong together"
+        msg = (
+            f"the files are not steps of one series: {error}. Give only files that belong together"
+        )
         raise FieldError(msg) from error
 
 

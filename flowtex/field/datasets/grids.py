@@ -51,7 +51,7 @@ def find_grid(
             return (
                 (None, None),
                 find_places(u, cells, [_own(u, datasets), *datasets]),
-                "one place for both components",
+                "both components at the same position",
             )
         rows = Sides(-1, v.sizes[row_v], v.sizes[row_v])
         columns = Sides(-1, u.sizes[column_u], u.sizes[column_u], _wraps(places))
@@ -63,8 +63,8 @@ def find_grid(
     for name, (sides, middle) in counts.items():
         if abs(sides - middle) > 1:
             msg = (
-                f"{u.name} has {_sizes(u)} and {v.name} {_sizes(v)}; along a {name} they differ by "
-                "more than one, so they are no components of one staggered grid"
+                f"{u.name} has {_sizes(u)} and {v.name} {_sizes(v)}; along a {name} they differ "
+                "by more than one, so they cannot be components of one staggered grid"
             )
             raise FieldError(msg)
     firsts = [
@@ -108,7 +108,7 @@ def _moved(places: Places, sides: Sides) -> Places:
         found = centred(places.a, 1, sides), centred(places.b, 1, sides)
     a, b = np.full(shape, np.nan), np.full(shape, np.nan)
     a[:, sides.known], b[:, sides.known] = found
-    return replace(places, a=a, b=b, is_line=False, why=f"{places.why}, between the sides")
+    return replace(places, a=a, b=b, is_line=False, why=f"{places.why}, at the cell centres")
 
 
 def _nemo_places(pair: Pair, cells: tuple[str, str], datasets: Sequence[Any]) -> Places | None:

@@ -90,7 +90,7 @@ class Pair:
 def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) -> Pair:
     """Return the velocity that is named, or the only one that is likely."""
     if (u is None) != (v is None):
-        msg = f"u is {u!r} and v is {v!r}; name both components, or none"
+        msg = f"u is {u!r} and v is {v!r}; name both components, or neither"
         raise FieldError(msg)
     pairs = find_pairs(datasets)
     if u is not None and v is not None:
@@ -161,8 +161,8 @@ def to_metres_per_second(array: xr.DataArray) -> float | None:
         plain = re.sub(pattern, word, plain)
     if plain not in UNITS:
         msg = (
-            f"the unit of {array.name!r} is {unit!r}, which is none of a velocity; expected "
-            f"{', '.join(UNITS)}. Set {array.name}.attrs['units'] if it is wrong"
+            f"the unit of {array.name!r} is {unit!r}, which is not a unit of velocity; expected "
+            f"{', '.join(UNITS)}. If it is wrong, set {array.name}.attrs['units']"
         )
         raise FieldError(msg)
     return UNITS[plain]
@@ -241,7 +241,7 @@ def _named(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
         if name in ds.data_vars:
             return ds[name]
     names = ", ".join(str(n) for ds in datasets for n, a in ds.data_vars.items() if a.ndim >= 2)
-    msg = f"there is no variable {name!r}; there are {names or 'none with two axes'}"
+    msg = f"the variable {name!r} does not exist; expected one of {names or 'none with two axes'}"
     raise FieldError(msg)
 
 
@@ -257,13 +257,13 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
             ]
             if alone:
                 return (
-                    f"there is one component of a velocity, {u.name!r} "
-                    f"({u.attrs.get('long_name', source)}), and not the other one, whose "
+                    f"the data have one component of a velocity, {u.name!r} "
+                    f"({u.attrs.get('long_name', source)}), but not the other one, whose "
                     f"{source.replace('_', ' ')} would be {alone[0]!r}; open the file that has it "
                     "together with this one, or name both, as in u=..., v=..."
                 )
     names = ", ".join(str(a.name) for a in arrays)
     return (
-        "no two variables are known as the components of a velocity; there are "
-        f"{names or 'none with two axes'}. Name them, as in u=..., v=..."
+        "no two variables are recognised as the components of a velocity; the variables are "
+        f"{names or 'none with two axes'}. Name the components, as in u=..., v=..."
     )

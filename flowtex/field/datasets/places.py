@@ -98,10 +98,10 @@ def find_places(
         return _plane(array, x, y, a, b, datasets)
     names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
     msg = (
-        f"no longitude and latitude, and no x and y, are known for {array.name!r} with the "
-        f"dimensions {', '.join(dims)}; the coordinates are {', '.join(names) or 'none'}. Add "
-        f"them, as in ds.assign_coords(lon=({dims!r}, ...), lat=({dims!r}, ...)), or give the file "
-        "that has them too"
+        f"{array.name!r} with the dimensions {', '.join(dims)} has neither longitude and latitude "
+        f"nor x and y; the coordinates are {', '.join(names) or 'none'}. Add them, as in "
+        f"ds.assign_coords(lon=({dims!r}, ...), lat=({dims!r}, ...)), or open the file that has "
+        "them together with this one"
     )
     raise FieldError(msg)
 
@@ -123,8 +123,8 @@ def _size(dim: str, array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> int:
         if dim in ds.sizes:
             return int(ds.sizes[dim])
     msg = (
-        f"{array.name!r} has the dimensions {', '.join(map(str, array.dims))}; expected "
-        f"{dim!r} among them, as the velocity has; give the files of one model alone"
+        f"{array.name!r} has the dimensions {', '.join(map(str, array.dims))}; expected {dim!r} "
+        "among them, as in the velocity; open only files of one model"
     )
     raise FieldError(msg)
 
@@ -175,9 +175,9 @@ def _spread(
     if a.ndim == 1 and b.ndim == 1:
         if a.dims == b.dims:
             msg = (
-                f"{a.name} and {b.name} both lie along {a.dims[0]}: the values are those of an "
-                "unstructured mesh whose faces are not known, or of stations. Give the file of the "
-                "mesh too, which tells the nodes of each face"
+                f"{a.name} and {b.name} both lie along {a.dims[0]}: the values are on an "
+                "unstructured mesh with unknown faces, or at stations. Open the file of the "
+                "mesh, with the nodes of each face, together with this one"
             )
             raise FieldError(msg)
         if a.dims != (dims[1],) or b.dims != (dims[0],):
@@ -201,7 +201,7 @@ def _spread(
 
 def _numbers(c: Any) -> Floats:
     if c.dtype.kind not in "fiu":
-        msg = f"the coordinate {c.name!r} holds {c.dtype}; expected numbers"
+        msg = f"the coordinate {c.name!r} has type {c.dtype}; expected numbers"
         raise FieldError(msg)
     return np.asarray(values_in(c), dtype=float)
 
@@ -224,13 +224,13 @@ def _is_lonlat(a: Floats, b: Floats, lon: Any, lat: Any) -> bool:
     finite = np.isfinite(a), np.isfinite(b)
     known = (finite[0] & finite[1]).any() if lon.ndim > 1 else finite[0].any() and finite[1].any()
     if not known:
-        msg = f"{lon.name} and {lat.name} are NaN everywhere, so nothing has a place"
+        msg = f"{lon.name} and {lat.name} are NaN everywhere; expected positions of the nodes"
         raise FieldError(msg)
     if far > 90.001 or wide > 720:
         if all(DEGREES.match(u) for u in units):
             msg = (
-                f"{lat.name} reaches {far:g} and {lon.name} {wide:g} in size; expected degrees, up "
-                "to 90 and 360"
+                f"{lat.name} reaches {far:g} and {lon.name} reaches {wide:g} in magnitude; "
+                "expected degrees, up to 90 and 360"
             )
             raise FieldError(msg)
         return False
@@ -245,8 +245,8 @@ def _longitudes(lon: Floats, name: str) -> Floats:
     steps = np.diff(line)
     if not ((steps > 0).all() or (steps < 0).all()):
         msg = (
-            f"{name} goes back and forth along its axis; expected longitudes in one direction. "
-            f"Sort them, as in ds.sortby({name!r})"
+            f"{name} increases and decreases along its axis; expected longitudes in one "
+            f"direction. Sort them, as in ds.sortby({name!r})"
         )
         raise FieldError(msg)
     return np.broadcast_to(line, lon.shape)

@@ -117,7 +117,7 @@ def read_datasets(
 ) -> GridArrays | TriangleArrays | Regions:
     """Read what a field needs; with ``regions`` no nodes, if any part can be read by itself."""
     if globe and projection not in (None, GLOBE):
-        msg = f"globe=True and projection={projection!r} are given; leave out one of them"
+        msg = f"globe=True and projection={projection!r} are given; omit one of them"
         raise FieldError(msg)
     projection = GLOBE if globe else projection
     sel = {**(sel or {}), **selection}
@@ -128,8 +128,8 @@ def read_datasets(
     places = known.places
     if not places.is_earth and projection is not None:
         msg = (
-            f"projection is {projection!r}, and the positions are {known.coordinates}, which are "
-            "no longitude and latitude; leave it out"
+            f"projection is {projection!r}, but the positions are {known.coordinates}, not "
+            "longitude and latitude; omit projection"
         )
         raise FieldError(msg)
     times, numbers = drawn_steps(known.u, known.pair.u)
@@ -199,8 +199,8 @@ def _on_mesh_nodes(
     nodes = mesh_on_map(mesh, known.places, projection)
     if nodes.lost:
         notify(
-            f"{nodes.lost:,} triangles are left out, for the map tears them apart, as at a "
-            "pole; a globe has them all, as in globe=True"
+            f"{nodes.lost:,} triangles are left out, because the map cuts them, as at a pole; "
+            "draw a globe to see all of them: globe=True"
         )
     is_valid = nodes.at(valid * 1.0) > 1 - 1e-9
     return nodes, {"length_unit": "m", "triangles": nodes.triangles, "valid": is_valid}
@@ -266,7 +266,10 @@ def recognise(
     factors = [to_metres_per_second(array) for array in (pair.u, pair.v)]
     if len(set(factors)) > 1:
         units = " and ".join(repr(str(a.attrs.get("units", ""))) for a in (pair.u, pair.v))
-        msg = f"the units of {pair.u.name!r} and {pair.v.name!r} are {units}; expected the same"
+        msg = (
+            f"the units of {pair.u.name!r} and {pair.v.name!r} are {units}; expected the same "
+            "unit unit"
+        )
         raise FieldError(msg)
     factor = factors[0] if factors[0] is not None else 1.0
     choice = Choice(dict(sel or {}), dict(isel or {}))
@@ -274,7 +277,7 @@ def recognise(
     surface = horizontal_dims(pair.u), horizontal_dims(pair.v)
     notes = list(one.notes)
     if factors[0] is None:
-        notes.append(f"{pair.u.name} and {pair.v.name} have no unit, and count as m/s")
+        notes.append(f"{pair.u.name} and {pair.v.name} have no unit; m/s is assumed")
     mesh = find_mesh(datasets)
     if mesh is not None and len(surface[0]) == 1:
         return _on_mesh(mesh, pair, (one, two), factor, notes, datasets, choice)
@@ -409,7 +412,7 @@ def as_datasets(data: Any) -> Datasets:
     result = []
     for ds in data if isinstance(data, (list, tuple)) else [data]:
         if not isinstance(ds, (xarray.Dataset, xarray.DataArray)):
-            msg = f"data is {ds!r}; expected a data set of xarray's, or a list of them"
+            msg = f"data is {ds!r}; expected an xarray dataset, or a list of them"
             raise FieldError(msg)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

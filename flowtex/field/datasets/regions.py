@@ -177,7 +177,7 @@ def numbers_in(array: Any) -> Floats:
     """Return the values of a variable as float64; what stands for missing data is NaN."""
     values = values_in(array)
     if values.dtype.kind not in "fiub":
-        msg = f"{getattr(array, 'name', 'a variable')!r} holds {values.dtype}; expected numbers"
+        msg = f"{getattr(array, 'name', 'a variable')!r} has type {values.dtype}; expected numbers"
         raise FieldError(msg)
     values = values.astype(float)
     # Fill values that no attribute tells.

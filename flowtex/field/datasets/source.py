@@ -52,7 +52,7 @@ class DatasetSource(Source):
     def part(self, block: str | None = None) -> Source:
         """Return this source, which draws on any of the maps."""
         if block is not None and block not in self.blocks:
-            msg = f"block is {block!r}; there are {', '.join(self.blocks)}"
+            msg = f"block is {block!r}; expected one of {', '.join(self.blocks)}"
             raise FieldError(msg)
         return self
 
@@ -77,7 +77,10 @@ def open_source(path: str | Path | Sequence[str | Path]) -> Source:
     paths = dataset_paths(path)
     if not paths:
         if not isinstance(path, (str, Path)):
-            msg = f"{len(path)} files are given, and a mesh is read from one; name one of them"
+            msg = (
+                f"{len(path)} files are given, but a mesh is read from a single file; give one of "
+                "them"
+            )
             raise FieldError(msg)
         return FlowSource.from_file(path)
     with errors_of_file(paths[0]):

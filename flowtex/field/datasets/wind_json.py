@@ -36,10 +36,13 @@ def read_winds(path: Path) -> xr.Dataset:
     except FieldError:
         raise
     except (ValueError, RecursionError) as error:
-        msg = f"it is no JSON ({error})"
+        msg = f"it is not valid JSON ({error})"
         raise FieldError(msg) from error
     if not isinstance(records, list) or not all(isinstance(r, dict) for r in records):
-        msg = "it is no list of records with header and data, as leaflet-velocity and earth read"
+        msg = (
+            "it is not a list of records with header and data, as used by leaflet-velocity and "
+            "earth"
+        )
         raise FieldError(msg)
     components: dict[str, Any] = {}
     for record in records:
@@ -50,12 +53,12 @@ def read_winds(path: Path) -> xr.Dataset:
             components[name] = _component(xarray, header, record.get("data"), name)
     if len(components) < 2:
         missing = " and ".join(n for n in WORDS if n not in components)
-        msg = f"there is no record of the component {missing} (parameterNumber 2 and 3)"
+        msg = f"the record of the component {missing} is missing (parameterNumber 2 and 3)"
         raise FieldError(msg)
     try:
         merged: xr.Dataset = xarray.merge(list(components.values()), join="exact")
     except ValueError as error:
-        msg = f"the two components lie on different grids ({error})"
+        msg = f"the two components have different grids ({error})"
         raise FieldError(msg) from error
     return merged
 
@@ -76,7 +79,7 @@ def _component(xarray: Any, header: dict[str, Any], data: Any, name: str) -> Any
     except FieldError:
         raise
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        msg = f"the record of the component {name} is broken ({error})"
+        msg = f"the record of the component {name} is damaged ({error})"
         raise FieldError(msg) from error
     coordinates: dict[str, Any] = {
         "latitude": ("latitude", lat, {"units": "degrees_north"}),

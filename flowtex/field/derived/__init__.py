@@ -47,7 +47,7 @@ def derived_steps(
 def followed_steps(name: str, field: Any, horizon: float | None) -> Steps:
     """Return one of :data:`FOLLOWED` at each node and step of a field, (T, J, I)."""
     if name not in FOLLOWED:
-        msg = f"horizon={horizon} for {name!r}; it belongs to {', '.join(FOLLOWED)}"
+        msg = f"horizon={horizon} is given for {name!r}; only {', '.join(FOLLOWED)} uses it"
         raise FieldError(msg)
     if horizon is None or not (np.isfinite(horizon) and horizon != 0):
         msg = f"horizon is {horizon} for {name!r}; expected a time other than 0"

@@ -152,11 +152,11 @@ class Formula:
                 if places
                 else "two, the rates of x and y"
             )
-            msg = f"there are {len(expressions)} expressions; expected {expected}"
+            msg = f"{len(expressions)} expressions are given; expected {expected}"
             raise FieldError(msg)
         for name, given in ranges.items():
             if given is not None and name not in own:
-                msg = f"{name} has a range; the coordinates here are {' and '.join(own)}"
+                msg = f"{name} has a range, but the coordinates here are {' and '.join(own)}"
                 raise FieldError(msg)
         if taken := [name for name in parameters if name in VARIABLES]:
             msg = f"{taken[0]} is a coordinate or the time; give the parameter another name"
@@ -227,7 +227,7 @@ def _values(expressions: tuple[Expression, ...], values: Mapping[str, Any]) -> F
             try:
                 result[..., k] = each.values(values)
             except (TypeError, ValueError) as error:
-                msg = f"{each.text} gives no numbers at nodes of shape {shape}: {error}"
+                msg = f"{each.text} does not return numbers at nodes of shape {shape}: {error}"
                 raise FormulaError(msg) from error
         result[~(np.abs(result) < MOST)] = np.nan
     return result

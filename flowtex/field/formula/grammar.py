@@ -118,7 +118,7 @@ class _Parser:
         self.text = re.sub(r"\s", " ", text).translate(_PRINTED)
         self.names = names
         if len(text) > MOST_LETTERS:
-            msg = f"a formula has {len(text)} letters; expected {MOST_LETTERS} at most"
+            msg = f"the formula has {len(text)} characters; expected {MOST_LETTERS} at most"
             raise FormulaError(msg)
         #: Kind, text and place of each token; the last one is the end.
         self.tokens: list[tuple[str, str, int]] = []
@@ -127,7 +127,7 @@ class _Parser:
             match = _TOKEN.match(self.text, at)
             if match is None:
                 at += len(self.text[at:]) - len(self.text[at:].lstrip())
-                self.fail(f"{self.text[at]!r} is no part of a formula", at)
+                self.fail(f"{self.text[at]!r} is not allowed in a formula", at)
             kind = str(match.lastgroup)
             self.tokens.append((kind, match[kind], match.start(kind)))
             at = match.end()
@@ -156,7 +156,7 @@ class _Parser:
         tree = self.expression(0)
         kind, text, _ = self.tokens[self.next]
         if kind == "sign":
-            self.fail(f"here is {text!r}, which nothing opens or waits for")
+            self.fail(f"{text!r} is unexpected here")
         if kind != "end":
             self.fail(f"an operator is missing before {text!r}; write * for a product")
         return tree
@@ -165,7 +165,7 @@ class _Parser:
         """Read as far as operators bind more tightly than that."""
         self.depth += 1
         if self.depth > MOST_DEPTH:
-            self.fail(f"more than {MOST_DEPTH} parts lie in one another; write it more simply")
+            self.fail(f"the formula is nested more than {MOST_DEPTH} levels deep; simplify it")
         left = self.operand()
         while BINDING.get(self.tokens[self.next][1], 0) > binding:
             left = self.operation(left)
@@ -175,7 +175,7 @@ class _Parser:
     def operation(self, left: Tree) -> Tree:
         _, sign, at = self.take()
         if BINDING[sign] == 1 and isinstance(left, tuple) and BINDING.get(left[0]) == 1:
-            self.fail("comparisons have two sides; write (a < b)*(b < c)", at)
+            self.fail("a comparison can have only two sides; write (a < b)*(b < c)", at)
         is_power = BINDING[sign] == BINDING["^"]
         right = self.expression(BINDING[sign] - is_power)
         if sign == "-":
@@ -187,7 +187,7 @@ class _Parser:
     def checked(self, tree: tuple[Any, ...], at: int) -> Tree:
         """Refuse operators one after the other that make too deep a tree."""
         if _depth(tree) > MOST_DEPTH:
-            self.fail(f"more than {MOST_DEPTH} parts lie in one another; write it more simply", at)
+            self.fail(f"the formula is nested more than {MOST_DEPTH} levels deep; simplify it", at)
         return tree
 
     def operand(self) -> Tree:
@@ -219,14 +219,17 @@ class _Parser:
             return self.call(name, at)
         if is_called:
             if name in (*self.names, *CONSTANTS):
-                self.fail(f"{name} is no function; write {name}*( for a product", at)
-            self.fail(f"there is no function {name!r}; {near_names(name, FUNCTIONS)}", at)
+                self.fail(f"{name} is not a function; write {name}*( for a product", at)
+            self.fail(f"the function {name!r} does not exist; {near_names(name, FUNCTIONS)}", at)
         if name in CONSTANTS:
             return CONSTANTS[name]
         if name == "t":
             self.fail("t is the time; give times=, such as times=np.linspace(0, 10, 41)", at)
         known = ", ".join(sorted(self.names))
-        return self.fail(f"{name} is not known, only {known}; a parameter gets {name}=1", at)
+        return self.fail(
+            (f"{name} is unknown; known are {known}. Give a parameter its value, as in {name}=1"),
+            at,
+        )
 
     def call(self, name: str, at: int) -> Tree:
         count = OPERATIONS[name][1]
@@ -238,7 +241,7 @@ class _Parser:
         self.expect(")", f'a ")" of {name} is missing')
         if len(given) != count if count else len(given) < 2:
             expected = count or "two or more"
-            self.fail(f"{name} has {len(given)} values between its brackets, not {expected}", at)
+            self.fail(f"{name} has {len(given)} arguments; expected {expected}", at)
         return self.checked((name, *given), at)
 
 

@@ -39,18 +39,23 @@ def line_arguments(line: str) -> tuple[list[str], dict[str, Any]]:
             try:
                 values = numbers(1, 2, 3, expected="one to three numbers")(match[2])
             except UnreadableError as error:
-                msg = f"{match[1]} is {match[2].strip()!r}; expected {error} with commas between"
+                msg = f"{match[1]} is {match[2].strip()!r}; expected {error} separated by commas"
                 raise FieldError(msg) from error
             named[match[1]] = values if len(values) > 1 else values[0]
     if isinstance(times := named.pop("t", None), tuple) and len(times) == 3:
         first, last, count = times
         named["times"] = np.linspace(first, last, int(min(max(count, 2), MOST_TIMES)))
     elif times is not None:
-        msg = "t is the time; expected the first one, the last and how many, such as t=0,10,41"
+        msg = (
+            "t is the time; expected the first time, the last, and their number, such as t=0,10,41"
+        )
         raise FieldError(msg)
     known = ("x", "y", "u", "v", "surface", "times")
     if taken := [n for n in ("resolution", "name") if n in named]:
-        msg = f"{taken[0]} is no parameter; expected another name, or one of {', '.join(known)}"
+        msg = (
+            f"{taken[0]} cannot be the name of a parameter; expected another name, or one of "
+            f"{', '.join(known)}"
+        )
         raise FieldError(msg)
     return expressions, named
 

@@ -119,7 +119,7 @@ def formula(
     whole = np.concatenate([*velocity, points], axis=-1)
     gaps: Bools = np.isnan(whole).any(axis=-1)
     if (gaps[1:, 1:] | gaps[1:, :-1] | gaps[:-1, 1:] | gaps[:-1, :-1]).all():
-        msg = f"{made.title} has a value in no cell of the grid; choose other ranges"
+        msg = f"{made.title} has no value in any cell of the grid; choose other ranges"
         raise FieldError(msg)
     title = made.title if len(made.title) <= MOST_TITLE else made.title[:MOST_TITLE] + "…"
     field = FlowField.from_arrays(
@@ -136,9 +136,14 @@ def _known(name: Any) -> tuple[str, tuple[str, str], dict[str, Any]]:
     key = name.replace(" ", "_") if isinstance(name, str) else ""
     if key not in KNOWN:
         near = (
-            near_names(name, KNOWN) if isinstance(name, str) else f"there are: {', '.join(KNOWN)}"
+            near_names(name, KNOWN)
+            if isinstance(name, str)
+            else (f"expected one of: {', '.join(KNOWN)}")
         )
-        msg = f"there is one expression, {name!r}, which names no known formula; {near}"
+        msg = (
+            f"only one expression is given, {name!r}, and it is not the name of a known formula; "
+            f"{near}"
+        )
         raise FieldError(msg)
     title, expressions, known = KNOWN[key]
     return title, expressions, dict(known)

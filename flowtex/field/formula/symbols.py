@@ -36,19 +36,22 @@ def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
     """
     kind = type(expression).__name__
     if depth > MOST_DEPTH:
-        msg = f"more than {MOST_DEPTH} parts of {kind} lie in one another; write it more simply"
+        msg = f"{kind} is nested more than {MOST_DEPTH} levels deep; simplify it"
         raise FormulaError(msg)
     if kind in ("Symbol", "Dummy"):
         if expression.name in names:
             return str(expression.name)
         known = ", ".join(sorted(names))
-        msg = f"{expression.name} is not known, only {known}; a parameter gets {expression.name}=1"
+        msg = (
+            f"{expression.name} is unknown; known are {known}. Give a parameter its value, as in "
+            f"{expression.name}=1"
+        )
         raise FormulaError(msg)
     if not expression.args:
         try:
             return float(expression)
         except (TypeError, ValueError) as error:
-            msg = f"{expression} of sympy is no real number; expected one"
+            msg = f"the sympy expression {expression} is not a real number; expected one"
             raise FormulaError(msg) from error
     if kind == "Piecewise":
         pairs = [(p.args[0], p.args[1]) for p in expression.args]
@@ -61,7 +64,10 @@ def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
     name = _NAMES.get(kind, kind.lower())
     if name not in (*_NAMES.values(), *FUNCTIONS):
         functions = ", ".join(FUNCTIONS)
-        msg = f"sympy's {kind} is no part of a formula; there are + - * / ^ and {functions}"
+        msg = (
+            f"the sympy function {kind} is not allowed in a formula; expected + - * / ^ and "
+            f"{functions}"
+        )
         raise FormulaError(msg)
     given = [tree_of(part, names, depth + 1) for part in expression.args]
     if name == "^":

@@ -163,8 +163,8 @@ class GridSurface(Surface):
                 shares = (1 - a, a - b, b) if a >= b else (1 - b, a, b - a)
                 return np.array([j, i]), number, np.array(shares)
         msg = (
-            f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a point where the "
-            "surface is drawn"
+            f"(j, i) is ({j:g}, {i:g}), in a cell with a blanked node; expected a point on the "
+            "drawn surface"
         )
         raise FieldError(msg)
 

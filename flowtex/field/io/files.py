@@ -143,8 +143,8 @@ def open_file(path: str | Path) -> OpenFile:
             raise
         what = repr(file.suffix) if file.suffix else "no suffix"
         if file.suffix.lower() in {*plot3d.GRID_SUFFIXES, ".q"}:
-            what = "no PLOT3D grid of any layout"
-        msg = f"the format is not known ({what}); expected {_KNOWN_FORMATS}"
+            what = "not a PLOT3D grid in any layout"
+        msg = f"unknown format ({what}); expected {_KNOWN_FORMATS}"
         raise FieldError(msg) from error
 
 
@@ -153,20 +153,20 @@ def _check_path(file: Path) -> None:
     problem = ""
     if _ADDRESS.match(str(file)) and not file.exists():
         problem = (
-            "the address of no flowtex pyramid, and files are read from folders; open data there "
-            "with xarray.open_dataset or xarray.open_zarr, and give the dataset"
+            "this address has no flowtex pyramid, and files are read only from folders; open the "
+            "data with xarray.open_dataset or xarray.open_zarr, and pass the dataset"
         )
     elif not file.exists():
-        problem = "no such file; check the spelling and the folder"
+        problem = "the file does not exist; check the spelling and the folder"
         near = sorted(p.name for p in file.parent.glob(f"{file.stem}.*")) if file.name else []
         if near:
-            problem += f". There is {', '.join(near[:5])}"
+            problem += f". Similar names: {', '.join(near[:5])}"
     elif file.is_dir():
-        problem = "a folder, where a file was expected; name the mesh inside it"
+        problem = "this is a folder; expected a file: name the mesh inside it"
     elif file.suffix.lower() in {".pkl", ".pickle", ".joblib"}:
         problem = (
-            "a pickle, which can run any program when it is loaded, and is refused; save the mesh "
-            'as VTK instead, as in mesh.save("flow.vts")'
+            "this is a pickle, which can run any program when it is loaded, so it is refused; "
+            'save the mesh as VTK instead, as in mesh.save("flow.vts")'
         )
     else:
         try:
@@ -211,14 +211,16 @@ def read_files(
     of_meshes = {name: options.pop(name) for name in OF_MESHES if name in options}
     chosen = {name: value for name, value in options.items() if value is not None}
     if paths:
-        _refuse(of_meshes, "meshes, and this is data of the Earth")
+        _refuse(of_meshes, "meshes, but this is data of the Earth")
         if time is not None:
             chosen["sel"] = {**chosen.get("sel", {}), "time": time}
         chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
         return read_datasets(open_datasets(paths), **chosen)
-    _refuse(chosen, "data of the Earth, and this is a mesh")
+    _refuse(chosen, "data of the Earth, but this is a mesh")
     if not isinstance(path, (str, Path)):
-        msg = f"{len(path)} files are given, and a mesh is read from one; name one of them"
+        msg = (
+            f"{len(path)} files are given, but a mesh is read from a single file; give one of them"
+        )
         raise FieldError(msg)
     if isinstance(time, str):
         msg = f"time is {time!r}; expected a number, one of the times of the file"
@@ -235,5 +237,5 @@ def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager
 
 def _refuse(choices: Mapping[str, Any], what: str) -> None:
     if given := [name for name, value in choices.items() if value not in (None, False)]:
-        msg = f"{', '.join(given)} is for {what}; leave it out"
+        msg = f"{', '.join(given)} applies to {what}; omit it"
         raise FieldError(msg)

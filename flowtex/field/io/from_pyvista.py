@@ -73,7 +73,7 @@ def read_meshes(
     cut = find_cut(slice, contour)
     if cut is not None and plane is not None:
         words = "slice" if slice is not None else "contour"
-        msg = f"plane is {plane!r} and {words} is {cut.text}; choose one of them"
+        msg = f"plane is {plane!r} and {words} is {cut.text}; choose one of the two"
         raise FieldError(msg)
     steps = time_steps(mesh, block, cut=cut is not None)
     first = next(steps)
@@ -84,12 +84,12 @@ def read_meshes(
     given = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
     if wrong := [f"{name}={value!r}" for name, value in given.items() if value not in (None, "")]:
         msg = (
-            f"{', '.join(wrong)} is for structured meshes, and this is a surface of triangles; "
-            "leave it out, or sample the mesh onto a structured one, as in "
-            "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh), with 1 along what is flat"
+            f"{', '.join(wrong)} applies to structured meshes, but this is a surface of "
+            "triangles; omit it, or sample the mesh onto a structured one, as in "
+            "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh), with 1 along a flat axis"
         )
         if plane is not None:
-            msg += '. A volume is cut by slice="x=0.5"'
+            msg += '. To cut a volume, use slice="x=0.5"'
         raise FieldError(msg)
     return TriangleArrays(**read_surfaces(chain([first], steps), vectors, cut, times), name=name)
 

@@ -158,9 +158,9 @@ def several_fault(parts: dict[str, Any], label: str) -> str:
     more = ", ..." if len(listed) > MOST_LISTED else ""
     solid = any(part.max_cell_dimensionality == 3 for part in parts.values())
     return (
-        f"{label} has {len(parts)} blocks, and no time steps of one: "
-        f"{', '.join(listed[:MOST_LISTED])}{more}; choose one, as in block="
-        f'"{next(iter(parts))}"' + (', or cut all volumes, as in slice="z"' if solid else "")
+        f"{label} has {len(parts)} blocks that are not time steps of one mesh: "
+        f'{", ".join(listed[:MOST_LISTED])}{more}; choose one, as in block="{next(iter(parts))}"'
+        + (', or cut all volumes, as in slice="z"' if solid else "")
     )
 
 
@@ -241,7 +241,8 @@ def check_arrays(step: TimeStep, vectors: MeshArray) -> None:
         arrays = [str(array) for array in catalogue(step.grid)]
         msg = (
             f"{step.label} has no array {missing[0]}, which the first step has; expected it in "
-            f"every step. Its arrays, with their components: {', '.join(arrays) or 'none'}"
+            "every step. Its arrays, with their numbers of components: "
+            f"{', '.join(arrays) or 'none'}"
         )
         raise FieldError(msg)
 
@@ -268,9 +269,9 @@ def _wrapped(source: Any, label: str) -> Any:
     if hasattr(source, "IsA") and source.IsA("vtkDataObject"):
         return pv.wrap(source)
     msg = (
-        f"{label} is of type {type(source).__name__}; expected a mesh of PyVista's or a "
-        "MultiBlock, a list of them, or a reader. Arrays go to FlowField.from_arrays(points, "
-        "velocity) and FlowField.from_triangles(points, triangles, velocity)"
+        f"{label} has type {type(source).__name__}; expected a PyVista mesh or MultiBlock, a list "
+        "of them, or a reader. For arrays use FlowField.from_arrays(points, velocity) or "
+        "FlowField.from_triangles(points, triangles, velocity)"
     )
     raise FieldError(msg)
 
@@ -286,7 +287,7 @@ def _time(mesh: Any) -> float | None:
 def _no_mesh(mesh: Any, label: str) -> str:
     kinds = sorted({type(block).__name__ for _, block in leaves(mesh)})
     if not kinds:
-        return f"{label} has no blocks; check the file or the filter that made it"
+        return f"{label} has no blocks; check the file or filter that made it"
     return f"{label} is a {', '.join(kinds)}; expected a mesh, with points and cells"
 
 

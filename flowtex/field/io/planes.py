@@ -64,7 +64,7 @@ def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
     """Return faults in a choice of plane; ``None`` is the mesh, or the middle of a volume."""
     size = count_nodes(dimensions)
     if min(dimensions) < 1:
-        return ["the mesh is empty: check that the file or the filter that made it gave any nodes"]
+        return ["the mesh has no nodes; check the file or filter that made it"]
     if sum(n > 1 for n in dimensions) < 2:
         return [
             f"the mesh has {size}, a single row; a surface needs at least 2 nodes along two of "
@@ -83,13 +83,13 @@ def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
     count = dimensions[axis]
     if not -count <= index < count:
         return [
-            f"plane is {plane!r}; expected {letter} between {-count} and {count - 1}, as the mesh "
-            f"has {size}"
+            f"plane is {plane!r}; expected {letter} from {-count} to {count - 1}, because the "
+            f"mesh has {size}"
         ]
     if min(dimensions) == 1 and count > 1:
         return [
-            f"plane is {plane!r}, which leaves a single row, as the mesh has {size}; it is one "
-            "surface already: leave plane out"
+            f"plane is {plane!r}, which selects a single row, because the mesh has {size}; the "
+            "mesh is already a surface: omit plane"
         ]
     return []
 

@@ -124,8 +124,8 @@ def find_solution(grid: Path) -> Path:
         if (grid.parent / name).is_file():
             return grid.parent / name
     msg = (
-        f"{grid} is a PLOT3D grid, and no solution lies beside it (looked for "
-        f"{', '.join(names)}); the velocity is in the solution: put it there under such a name"
+        f"{grid} is a PLOT3D grid, but its solution, which contains the velocity, is not in the "
+        f"same folder (tried {', '.join(names)}); put it there under one of these names"
     )
     raise FieldError(msg)
 
@@ -166,8 +166,12 @@ def _check_solution(layout: Layout, solution: Path) -> None:
         )
         fits = own == axes or size == _solution_length(layout, found, own)
         if found and fits and found != grids:
-            msg = f"{solution.name} is of grids of {found[:3]} nodes, and the grid of {grids[:3]}"
-            raise FieldError(msg + "; the grid is cut short, or the solution is of another one")
+            msg = (
+                f"{solution.name} has grids of {found[:3]} nodes, but the grid file has {grids[:3]}"
+            )
+            raise FieldError(
+                msg + ("; the grid file is truncated, or the solution belongs to another grid")
+            )
         check_count(size, _solution_length(layout, grids, axes), solution.name)
         if size == _solution_length(layout, grids, axes):
             break

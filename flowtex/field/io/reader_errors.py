@@ -37,7 +37,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
             cause = RuntimeError("its data do not fit into memory")
         except (AttributeError, IndexError, TypeError, EOFError) as error:
             # Readers of broken files trip over what is missing in them.
-            cause = RuntimeError(f"its content is not as expected ({error})")
+            cause = RuntimeError(f"its content is invalid ({error})")
         except Exception as error:
             # Those of ecCodes have no class in common with others.
             if not type(error).__module__.startswith("gribapi"):
@@ -46,7 +46,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
     if catcher.error_events:
         # VTK goes on after an error and gives a part of the data, or none: the cause is here.
         first = _first_line(catcher.error_events[0].alert)
-        msg = f"{file}: the file is broken or incomplete. VTK says: {first}"
+        msg = f"{file}: the file is damaged or incomplete. VTK reports: {first}"
         raise FieldError(msg) from cause
     if isinstance(cause, FieldError):
         msg = f"{file}: {cause}"
@@ -56,7 +56,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
         msg = f"{file}: cannot be read: {reason}"
         raise FieldError(msg) from cause
     for warning in dict.fromkeys(_first_line(event.alert) for event in catcher.warning_events):
-        warnings.warn(f"{file}: VTK says: {warning}", stacklevel=4)
+        warnings.warn(f"{file}: VTK reports: {warning}", stacklevel=4)
 
 
 @contextmanager

@@ -137,15 +137,16 @@ def vector_faults(mesh: Any, vectors: Any) -> list[str]:
     if meant:
         return [
             f"vectors is {vectors!r}, an array of {meant[0].components} component(s); expected 2 "
-            "or 3 numbers at each point or cell, or the names of as many arrays of one, with "
-            f"commas between. The arrays of the mesh, with their components: {listed}"
+            "or 3 components at each point or cell, or the names of 2 or 3 arrays of one "
+            "component, separated by commas. The arrays of the mesh, with their numbers of "
+            f"components: {listed}"
         ]
     words = _words(vectors)
     if len(words) > 1:
         return [_component_fault(vectors, words, arrays, listed)]
     return [
-        f"vectors is {vectors!r}, and the mesh has no such array{_hint(vectors, arrays)} Its "
-        f"arrays, with their components: {listed}"
+        f"vectors is {vectors!r}, but the mesh has no such array{_hint(vectors, arrays)} Its "
+        f"arrays, with their numbers of components: {listed}"
     ]
 
 
@@ -180,11 +181,11 @@ def _component_fault(
     vectors: Any, words: tuple[str, ...], arrays: list[MeshArray], listed: str
 ) -> str:
     """Return what is wrong with a list of components."""
-    end = f"The arrays of the mesh, with their components: {listed}"
+    end = f"The arrays of the mesh, with their numbers of components: {listed}"
     missing = next((w for w in words if not any(a.name == w for a in arrays)), None)
     if missing is not None:
         hint = _hint(missing, arrays)
-        return f"vectors is {vectors!r}, and the mesh has no array {missing!r}{hint} {end}"
+        return f"vectors is {vectors!r}, but the mesh has no array {missing!r}{hint} {end}"
     return (
         f"vectors is {vectors!r}; expected two or three arrays of one component each, all on "
         f"points or all on cells. {end}"
@@ -213,8 +214,9 @@ def _search_faults(mesh: Any, listed: str) -> list[str]:
     if not arrays:
         return [
             "the mesh has no vectors that could be the velocity; expected a point or cell array "
-            f"of real numbers with 2 or 3 components. Its arrays, with their components: {listed}. "
-            'Name single components with commas between, as in vectors="u,v,w"'
+            "of real numbers with 2 or 3 components. Its arrays, with their numbers of "
+            f"components: {listed}. To use single components, separate their names by commas, as "
+            'in vectors="u,v,w"'
         ]
     if len(arrays) > 1:
         return [

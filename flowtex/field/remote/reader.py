@@ -66,7 +66,7 @@ class Reader:
     @property
     def _opened(self) -> Source:
         if self._source is None:
-            msg = "nothing is open"
+            msg = "no file is open"
             raise RuntimeError(msg)
         return self._source
 

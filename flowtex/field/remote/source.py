@@ -143,7 +143,7 @@ class _OpenFile:
         if "memory" in text:
             return f"{path}: its reader {text}"
         return (
-            f"{path}: the reader of this file {text}; the file is broken, or needs more than "
+            f"{path}: the reader of this file {text}; the file is damaged, or needs more than "
             f"{limit:.1f} GB of memory"
         )
 
@@ -174,7 +174,7 @@ def open_remote(paths: Sequence[Path]) -> RemoteSource:
         if file_identity(paths) == source.identity:
             return source
         source.close()
-    msg = f"{paths[0]}: the file changes while it is read; open it once it is complete"
+    msg = f"{paths[0]}: the file changed while it was read; open it when it is complete"
     raise FieldError(msg)
 
 

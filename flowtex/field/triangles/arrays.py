@@ -55,7 +55,7 @@ def triangle_nodes(
     try:
         corners = np.asarray(triangles)
     except ValueError as error:
-        msg = f"triangles is no array ({error}); expected three numbers of nodes in every row"
+        msg = f"triangles is not an array ({error}); expected three node numbers in every row"
         raise FieldError(msg) from error
     shown = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
     given = {name: with_gaps(f"scalars[{name!r}]", first_step(s)) for name, s in scalars.items()}
@@ -80,8 +80,8 @@ def triangle_nodes(
     corners, pairs = _usable(p, corners.astype(np.intp))
     if not (ok[corners].all(axis=1)).any():
         msg = (
-            f"{int(ok.sum())} of {ok.size} nodes are usable, and none of the triangles has three "
-            "of them; check the triangles and what is masked"
+            f"{int(ok.sum())} of {ok.size} nodes are usable, but no triangle has three of them; "
+            "check the triangles and the mask"
         )
         raise FieldError(msg)
     # What is not known about a place must not be computed with.
@@ -123,14 +123,14 @@ def _faults(
     faults, count = [], len(p)
     if corners.ndim != 2 or corners.shape[-1] != 3 or corners.dtype.kind not in "iu":
         faults.append(
-            f"triangles has shape {corners.shape} of {corners.dtype}; expected (M, 3) whole "
-            "numbers, those of the nodes at the corners of each triangle"
+            f"triangles has shape {corners.shape} and type {corners.dtype}; expected whole "
+            "numbers of shape (M, 3): the nodes at the corners of each triangle"
         )
     elif not len(corners):
-        faults.append("triangles is empty; expected (M, 3) numbers of nodes")
+        faults.append("triangles is empty; expected node numbers of shape (M, 3)")
     elif corners.min() < 0 or corners.max() >= count:
         wrong = int(corners.min() if corners.min() < 0 else corners.max())
-        faults.append(f"triangles has node {wrong}; expected 0 to {count - 1}, as points has rows")
+        faults.append(f"triangles has node {wrong}; expected 0 to {count - 1}, the rows of points")
     return faults + nodal_faults((count,), v, steps, times, valid, scalars)
 
 

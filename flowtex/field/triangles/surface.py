@@ -172,13 +172,16 @@ class TriangleSurface(Surface):
         count = len(self.triangles)
         if not (0 <= j < count and 0 <= i <= 1):
             msg = (
-                f"(j, i) is ({j:g}, {i:g}), outside the surface; expected a j from 0 to {count}, "
-                "the number of the triangle plus the share of its second corner, and the share of "
-                "its third as i"
+                f"(j, i) is ({j:g}, {i:g}), outside the surface; expected j from 0 to {count}, "
+                "the number of the triangle plus the weight of its second corner, and i, the "
+                "weight of its third"
             )
             raise FieldError(msg)
         if not self.cells[int(j)]:
-            msg = f"(j, i) is ({j:g}, {i:g}), in a triangle with a blanked node; expected another"
+            msg = (
+                f"(j, i) is ({j:g}, {i:g}), in a triangle with a blanked node; expected a point "
+                "in another triangle"
+            )
             raise FieldError(msg)
         return index, int(j), self.corners_at(index[::-1])[1]
 

@@ -34,15 +34,15 @@ def cover_place(
     clip = points @ matrix[:, :3].T + matrix[:, 3]
     x, y, _, w = place.weights @ clip
     if not w > 0:
-        msg = f"(j, i) = {place.index} lies behind the camera at {camera.position}; expected a "
-        raise FieldError(msg + "camera that sees the place")
+        msg = f"(j, i) = {place.index} is behind the camera at {camera.position}; expected a "
+        raise FieldError(msg + "camera that sees this point")
     # Derivatives of pixels to the right and down by the shares of the corners.
     pixels = np.array(size) * [0.5, -0.5]
     by_share = (clip[:, :2] - clip[:, 3:] * [x / w, y / w]) * pixels / w
     # The shares sum to one, so two of them are free.
     free = by_share[1:] - by_share[0]
     if not abs(np.linalg.det(free)) > 1e-12 * np.abs(free).max() ** 2:
-        msg = f"the triangle at (j, i) = {place.index} is seen edge on; expected one that is seen"
+        msg = f"the triangle at (j, i) = {place.index} is seen edge-on; expected a visible triangle"
         raise FieldError(msg)
     two = np.linalg.inv(free)
     shares = np.concatenate([-two.sum(axis=1, keepdims=True), two], axis=1)
@@ -66,7 +66,10 @@ def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera
     across = np.cross(b - a, c - a)
     length = float(np.linalg.norm(across))
     if not length > 0:
-        msg = f"the triangle at (j, i) = {place.index} has no area; expected a place beside it"
+        msg = (
+            f"the triangle at (j, i) = {place.index} has no area; expected a point in another "
+            "triangle"
+        )
         raise FieldError(msg)
     focus = place.weights @ np.stack([a, b, c])
     up = max((b - a, c - a), key=lambda side: float(np.linalg.norm(side)))

@@ -268,8 +268,8 @@ class FlowSurface:
             self._told.add(key)
             error = errors[key]
             warnings.warn(
-                f"a part of the surface is shown coarse, for tile {tuple(key)} could not be made: "
-                f"{type(error).__name__}: {error}",
+                f"a part of the surface is shown coarse, because tile {tuple(key)} could not be "
+                f"made: {type(error).__name__}: {error}",
                 stacklevel=2,
             )
 

@@ -148,7 +148,7 @@ class CriticalPoints(Sequence[CriticalPoint]):
         features = []
         for point, row in zip(self._points, self.records(), strict=True):
             if point.lonlat is None:
-                msg = "GeoJSON needs longitudes and latitudes; this field is not one of the Earth"
+                msg = "GeoJSON needs longitudes and latitudes, but this field is not on the Earth"
                 raise FieldError(msg)
             properties = {key: value for key, value in row.items() if key not in ("lon", "lat")}
             geometry = {"type": "Point", "coordinates": list(point.lonlat)}
@@ -207,7 +207,7 @@ def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> 
     """
     check_field(field, FlowField)
     if field.sign_free:
-        msg = "critical points need directions, and the vectors of this field have no sign"
+        msg = "critical points need a direction, but this field is sign-free"
         raise FieldError(msg)
     numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
     points: list[CriticalPoint] = []

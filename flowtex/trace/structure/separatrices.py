@@ -111,7 +111,7 @@ class Separatrices(list[Separatrix]):
         features = []
         for line, row in zip(self, self.records(), strict=True):
             if line.lonlat is None:
-                msg = "GeoJSON needs longitudes and latitudes; this field is not one of the Earth"
+                msg = "GeoJSON needs longitudes and latitudes, but this field is not on the Earth"
                 raise FieldError(msg)
             jumps = np.flatnonzero(np.abs(np.diff(line.lonlat[:, 0])) > 180) + 1
             parts = [part.tolist() for part in np.split(line.lonlat, jumps) if len(part) > 1]

@@ -144,7 +144,7 @@ def test_without_the_right_secret_there_is_no_picture(page: Page, demo: Served) 
     page.on("websocket", lambda link: tried.append(link))
     for path in ("", "index.html", "?secret=wslink-secret"):
         page.goto(demo.bare + path)
-        page.get_by_text("the secret included").wait_for()
+        page.get_by_text("including the secret").wait_for()
         assert page.locator(".flowtex-page").count() == 0
     assert not tried
 

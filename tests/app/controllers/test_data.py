@@ -26,8 +26,8 @@ pytestmark = pytest.mark.usefixtures("opengl")
 
 
 def test_a_complaint_does_not_tell_where_a_file_lies() -> None:
-    said = "/srv/private/runs/torn.vts: the file is broken. VTK says: no"
-    assert without_folder(said, "runs/torn.vts") == "torn.vts: the file is broken. VTK says: no"
+    said = "/srv/private/runs/torn.vts: the file is damaged. VTK says: no"
+    assert without_folder(said, "runs/torn.vts") == "torn.vts: the file is damaged. VTK says: no"
     assert (
         without_folder("block is 'x'; there are a, b", "torn.vts") == "block is 'x'; there are a, b"
     )

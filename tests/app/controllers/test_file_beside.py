@@ -183,7 +183,7 @@ async def test_a_slider_moves_the_plane_of_both(tmp_path: Path) -> None:
         assert app.viewport.panes[1] is before
         app.state.send(problem="", file_beside="../secret.vts")
         await until(lambda: app.state.get("problem"))
-        assert "there is no file '../secret.vts'" in app.state.get("problem")
+        assert "the file '../secret.vts'" in app.state.get("problem")
 
 
 async def test_what_takes_long_can_be_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -268,7 +268,7 @@ async def test_a_link_and_the_lines_of_python_name_both() -> None:
         await until(lambda: app.controllers.beside.name == "three")
         app.restore(from_link(link.replace("beside_file=two", "beside_file=../four")))
         await until(lambda: app.state.get("problem"))
-        assert "there is no file '../four'" in app.state.get("problem")
+        assert "the file '../four'" in app.state.get("problem")
         assert len(app.viewport.panes) == 1
 
 

@@ -41,7 +41,7 @@ def folder(tmp_path: Path) -> Path:
 def test_members_of_a_series_are_folded_and_what_cannot_be_shown_says_why(folder: Path) -> None:
     library = Library.of(folder)
     assert library.names == ("series.pvd",)
-    assert library.unshown == {"hull.stl": "no vectors, which would be in hull.npy"}
+    assert library.unshown == {"hull.stl": "it has no vectors, and hull.npy does not exist"}
     with pytest.raises(FieldError, match="there is no file"):
         library.source("hull.stl")
 

@@ -87,7 +87,7 @@ def test_an_image_is_not_in_a_link() -> None:
 
 
 def test_an_unknown_setting_makes_no_link() -> None:
-    with pytest.raises(SettingsError, match="there is no setting 'smaples'"):
+    with pytest.raises(SettingsError, match="the setting 'smaples'"):
         to_link({"settings": {"smaples": 3}})
 
 
@@ -103,7 +103,7 @@ def test_an_unknown_setting_makes_no_link() -> None:
         ("plane=../etc", "plane is '../etc'; expected an axis and a number, such as k=20"),
         ("plane=k=1e3", "plane is 'k=1e3'"),
         ("cmap=os.system", "cmap is 'os.system'; expected the name of a colour map"),
-        ("clim=2,1", "clim is '2,1'; expected a lower number and a higher one"),
+        ("clim=2,1", "clim is '2,1'; expected two numbers, the lower one first"),
         ("clim=0,inf", "clim is '0,inf'; expected two numbers"),
         ("clim=0", "expected two numbers"),
         ("opacity=x", "opacity is 'x'; expected a number"),
@@ -119,7 +119,7 @@ def test_an_unknown_setting_makes_no_link() -> None:
         ("camera=parallel,0,0,1,0,0,0,0,1,0,-1,30", "camera.parallel_scale is -1.0; expected"),
         ("camera=parallel,0,0,1,0,0,0,0,1,0,1,200", "camera.view_angle is 200.0; expected"),
         ("camera=fisheye,0,0,1,0,0,0,0,1,0,1,30", "expected nine numbers"),
-        ("evil=1", "the link says 'evil', which means nothing here"),
+        ("evil=1", "the link has the unknown name 'evil'"),
         ("a=1&" * 101, "too many values"),
         ("x" * 9000, "has 9,000 characters"),
     ],
@@ -239,7 +239,7 @@ def test_the_python_lines_are_plain() -> None:
     assert "field = flowtex.examples.cylinder_field()\n" in own and "scalars=False" in own
     bare = to_python({"file": "winds.nc", "coastlines": False, "graticule": True})
     assert "coastlines=False" in bare and "graticule" not in bare
-    with pytest.raises(ValueError, match="names no file"):
+    with pytest.raises(ValueError, match="has no file"):
         to_python({})
 
 

@@ -34,7 +34,7 @@ def test_a_message_has_an_end() -> None:
     head = (7).to_bytes(4, "little") + bytes(4)
     with pytest.raises(ValueError, match="exceeds"):
         messages.process_chunk(head + (MESSAGE_BYTES + 1).to_bytes(4, "little"))
-    with pytest.raises(ValueError, match="were begun"):
+    with pytest.raises(ValueError, match="are incomplete"):
         for number in range(10):
             begun = number.to_bytes(4, "little") + bytes(4) + (99).to_bytes(4, "little")
             messages.process_chunk(begun)

@@ -80,7 +80,7 @@ def test_names_are_of_this_machine_and_those_that_are_given(
     assert known_hosts("0.0.0.0") == {"localhost", "0.0.0.0", "node7"}
     assert "flow.org" in known_hosts("flow.org") and "a.b" in known_hosts("::1", ["A.b"])
     for wrong in ("http://a.b", "a.b:80", "", "a b"):
-        with pytest.raises(FieldError, match="expected a name without scheme and port"):
+        with pytest.raises(FieldError, match="expected a host name without scheme and port"):
             known_hosts("127.0.0.1", [wrong])
     monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", "/user/me/")
 

@@ -68,7 +68,7 @@ def test_only_the_whole_address_opens(store: Path) -> None:
         wrong = f"{at}/zarr.json".replace("word", "wrong")
         for path in ("/", "/wrong/", wrong, "/wrong"):
             answer = await client.get(path)
-            assert answer.status == 403 and "whole address" in await text_of(answer)
+            assert answer.status == 403 and "complete address" in await text_of(answer)
         assert (await client.get(wrong.removeprefix("/wrong"))).status in (403, 404)
         page = await client.get("/word")  # leads to the folder, so that relative addresses hold
         assert str(page.url).endswith("/word/") and await text_of(page) == "<p>A page"

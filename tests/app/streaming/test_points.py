@@ -86,9 +86,9 @@ def test_a_number_of_samples_that_is_not_the_one_set_has_a_reason() -> None:
         return dict(words_of(got))["samples"]
 
     assert said(samples=21) == said(samples=21, two_sided=False) == "21"
-    assert said(samples=20) == "21: 20 are set, and the point itself is one more"
+    assert said(samples=20) == "21: 20 are set, plus one for the point itself"
     assert said(samples=20, two_sided=False) == "20"
-    assert said(samples=20, motion="speed") == "39: 20 are set, in motion it takes twice as many"
+    assert said(samples=20, motion="speed") == "39: 20 are set; motion doubles them"
     assert said(samples=1, motion="speed") == "1"
     got = probe(view_of(flat()), (10.0, 0.5), pixel=0.02)
     assert dict(words_of(got))["samples"] == f"{len(got.lags)} of 49: the path ends"

@@ -81,11 +81,11 @@ def test_files_of_several_days_are_one_series(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        ("{", "no JSON"),
-        ("{}", "no list of records"),
-        ("[]", "no record of the component u and v"),
-        ("[{}, 3]", "no list of records"),
-        ('[{"header": {"parameterNumber": 2, "nx": 3}, "data": []}]', "component u is broken"),
+        ("{", "not valid JSON"),
+        ("{}", "not a list of records"),
+        ("[]", "record of the component u and v is missing"),
+        ("[{}, 3]", "not a list of records"),
+        ('[{"header": {"parameterNumber": 2, "nx": 3}, "data": []}]', "component u is damaged"),
         (
             '[{"header": {"parameterNumber": 2, "nx": 1e99, "ny": 2}, "data": [1]}]',
             "the component u declares some 10",
@@ -113,9 +113,9 @@ def test_broken_files_end_in_one_error(tmp_path: Path) -> None:
     (tmp_path / "e.zarr" / "zarr.json").write_text("{}")
     with pytest.raises(FieldError):
         FlowField.from_file(tmp_path / "e.zarr")
-    with pytest.raises(FieldError, match="plane is for meshes"):
+    with pytest.raises(FieldError, match="plane applies to meshes"):
         FlowField.from_file(good, plane="k=3")
-    with pytest.raises(FieldError, match="no such file"):
+    with pytest.raises(FieldError, match="the file does not exist"):
         FlowField.from_file(tmp_path / "none.nc")
 
 
@@ -161,7 +161,9 @@ def test_without_its_library_grib_names_the_remedy(
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "cfgrib", raising=False)
     monkeypatch.setattr(files, "ECCODES_UNTIL", (3, 0))
-    with pytest.raises(FieldError, match=r"for Python up to 3\.0\. Take such a Python, or cfgrib"):
+    with pytest.raises(
+        FieldError, match=r"support Python up to 3\.0\. Use such a Python, or cfgrib"
+    ):
         FlowField.from_file(tmp_path / "a.grib")
 
 

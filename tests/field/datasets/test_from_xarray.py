@@ -151,7 +151,7 @@ def test_all_times_are_there_and_read_when_they_are_shown() -> None:
     assert str(field.start) == "2000-01-01 00:00:00"
     one = FlowField.from_xarray(ds, time="2000-01-03", globe=True)
     assert one.steady and str(one.start)[:10] == "2000-01-03"
-    with pytest.raises(FieldError, match="time is '2001-01-01'; there are 2000-01-01"):
+    with pytest.raises(FieldError, match="time is '2001-01-01'; expected one of 2000-01-01"):
         FlowField.from_xarray(ds, time="2001-01-01")
 
 
@@ -182,9 +182,9 @@ def test_the_level_nearest_the_surface_is_said() -> None:
     assert np.allclose(
         field.velocity, 3 * FlowField.from_xarray(levels(), globe=True, isel={"level": 0}).velocity
     )
-    with pytest.raises(FieldError, match=r"level is 20; there are 200\.0, 500\.0, 850\.0"):
+    with pytest.raises(FieldError, match=r"level is 20; expected one of 200\.0, 500\.0, 850\.0"):
         FlowField.from_xarray(levels(), level=20)
-    with pytest.raises(FieldError, match="no axis 'lvel'"):
+    with pytest.raises(FieldError, match="the axis 'lvel' does not exist"):
         FlowField.from_xarray(levels(), lvel=500)
 
 
@@ -198,7 +198,7 @@ def _nameless(ds: Any) -> Any:
     ("change", "words"),
     [
         (lambda ds: ds.drop_vars("v"), "one component of a velocity, 'u'.*'northward_wind'"),
-        (lambda ds: ds.drop_vars(["lon", "lat"]), "no longitude and latitude.*assign_coords"),
+        (lambda ds: ds.drop_vars(["lon", "lat"]), "neither longitude and latitude.*assign_coords"),
         (lambda ds: ds.assign_coords(lat=ds.lat * np.nan), "NaN everywhere"),
         (
             lambda ds: ds.assign_coords(lat=("lat", ds.lat.values * 3, ds.lat.attrs)),
@@ -208,9 +208,9 @@ def _nameless(ds: Any) -> Any:
             lambda ds: ds.assign_coords(
                 lon=("lon", np.random.default_rng(1).permutation(ds.lon), ds.lon.attrs)
             ),
-            "lon goes back and forth.*sortby",
+            "lon increases and decreases.*sortby",
         ),
-        (_nameless, "Name them, as in u="),
+        (_nameless, "Name the components, as in u="),
     ],
     ids=["one component", "no coordinates", "NaN", "no degrees", "scrambled", "no names"],
 )
@@ -229,10 +229,10 @@ def test_units_are_those_of_velocities_and_the_same() -> None:
         FlowField.from_xarray(ds, globe=True).velocity * 1852 / 3600,
     )
     ds["v"].attrs["units"] = "cm/s"
-    with pytest.raises(FieldError, match="'m s-1' and 'cm/s'; expected the same"):
+    with pytest.raises(FieldError, match="'m s-1' and 'cm/s'; expected the same unit"):
         FlowField.from_xarray(ds, "u", "v")
     ds["v"].attrs["units"] = "kg"
-    with pytest.raises(FieldError, match="'kg', which is none of a velocity"):
+    with pytest.raises(FieldError, match="'kg', which is not a unit of velocity"):
         FlowField.from_xarray(ds, "u", "v")
 
 

@@ -130,7 +130,7 @@ def test_a_global_mesh_on_flat_maps(projection: str | None) -> None:
 
 
 def test_what_a_map_tears_apart_is_told() -> None:
-    with pytest.warns(DatasetNotice, match="triangles are left out, for the map tears them apart"):
+    with pytest.warns(DatasetNotice, match="triangles are left out, because the map cuts them"):
         FlowField.from_xarray(ugrid(globe(200)))
 
 
@@ -211,10 +211,12 @@ def test_files_of_a_mesh_and_of_its_values(tmp_path: Path, capsys: Any) -> None:
 
 def test_what_is_missing_is_told() -> None:
     _, u, v = CONVENTIONS["fesom"][0](globe(100))
-    with pytest.raises(FieldError, match="no longitude and latitude"):
+    with pytest.raises(FieldError, match="neither longitude and latitude"):
         FlowField.from_xarray([u, v])
     (ds,) = ugrid(globe(100))
-    with pytest.raises(FieldError, match="'Mesh2' names Mesh2_face_nodes, which the data lack"):
+    with pytest.raises(
+        FieldError, match="'Mesh2' names Mesh2_face_nodes, which the data do not contain"
+    ):
         FlowField.from_xarray(ds.drop_vars("Mesh2_face_nodes"))
     nodes = xr.zeros_like(ds.height).assign_attrs(ds.ucy.attrs)
     with pytest.raises(FieldError, match="expected both at nodes, or both in faces"):

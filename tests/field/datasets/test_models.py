@@ -21,11 +21,11 @@ from flowtex.field.datasets.read import recognise
 
 #: What is recognised: the names of the components, along what they are, and the grid.
 KNOWN = {
-    "ds_copernicusmarine": ("uo", "vo", "earth", "one place"),
-    "ds_copernicusmarine_waves": ("VSDX", "VSDY", "grid", "one place"),
-    "ds_CESM": ("UVEL", "VVEL", "grid", "one place.*curvilinear"),
+    "ds_copernicusmarine": ("uo", "vo", "earth", "both components at the same position"),
+    "ds_copernicusmarine_waves": ("VSDX", "VSDY", "grid", "both components at the same position"),
+    "ds_CESM": ("UVEL", "VVEL", "grid", "both components at the same position.*curvilinear"),
     "ds_MITgcm_netcdf": ("U", "V", "", "Arakawa C, sides before"),
-    "ds_ERA5_wind": ("u10", "v10", "", "one place"),
+    "ds_ERA5_wind": ("u10", "v10", "", "both components at the same position"),
     "ds_ecco4": ("UVEL", "VVEL", "grid", "Arakawa C, sides before"),
     "ds_CROCO_idealized": ("u", "v", "grid", "Arakawa C, sides after"),
 }
@@ -36,7 +36,7 @@ REFUSED = {
     "ds_FES_tides": "one component of a velocity, 'Ua'",
     "ds_hycom_espc": "one component of a velocity, 'water_u'.*'northward_sea_water_velocity'",
     # Its coordinates are metres that are said to be degrees.
-    "ds_MITgcm_mds": "YC reaches 5000 and XC 5000 in size; expected degrees",
+    "ds_MITgcm_mds": "YC reaches 5000 and XC reaches 5000 in magnitude; expected degrees",
 }
 
 

@@ -158,8 +158,8 @@ def test_several_triples_are_asked_about() -> None:
 
 
 LISTED = (
-    "The arrays of the mesh, with their components: X Velocity (points, 1), Y Velocity (points, "
-    "1), Z Velocity (points, 1), p (points, 1), q (cells, 1)"
+    "The arrays of the mesh, with their numbers of components: X Velocity (points, 1), Y "
+    "Velocity (points, 1), Z Velocity (points, 1), p (points, 1), q (cells, 1)"
 )
 
 
@@ -168,7 +168,7 @@ LISTED = (
     [
         (
             "X Velocity,Y Velocity,Z Velocit",
-            ", and the mesh has no array 'Z Velocit'. Did you mean \"Z Velocity\"? ",
+            ", but the mesh has no array 'Z Velocit'. Did you mean \"Z Velocity\"? ",
         ),
         (
             "X Velocity,Y Velocity,q",
@@ -178,7 +178,7 @@ LISTED = (
             "p,p,p,p",
             "; expected two or three arrays of one component each, all on points or all on cells. ",
         ),
-        ("p,", ", and the mesh has no array ''. "),
+        ("p,", ", but the mesh has no array ''. "),
     ],
 )
 def test_components_that_make_no_vector(vectors: str, fault: str) -> None:

@@ -257,13 +257,13 @@ def test_plot3d_of_several_grids(tmp_path: Path) -> None:
     Plot3D(several=True, sizes=sizes).save(tmp_path / "a.g", tmp_path / "a.q")
     assert FlowField.from_file(tmp_path / "a.g", plane="k=0", block=1).shape == (6, 3)
     with says(
-        f"{tmp_path / 'a.g'}: the mesh has 2 blocks, and no time steps of one: 0 (0, "
+        f"{tmp_path / 'a.g'}: the mesh has 2 blocks that are not time steps of one mesh: 0 (0, "
         '5 x 4 x 3 nodes), 1 (1, 3 x 6 x 2 nodes); choose one, as in block="0", or cut all '
         'volumes, as in slice="z"'
     ):
         FlowField.from_file(tmp_path / "a.g", plane="k=0")
     assert describe(tmp_path / "a.g").problem == (
-        "the file has 2 blocks, and no time steps of one: 0 (0, 5 x 4 x 3 nodes), "
+        "the file has 2 blocks that are not time steps of one mesh: 0 (0, 5 x 4 x 3 nodes), "
         '1 (1, 3 x 6 x 2 nodes); choose one, as in block="0", or cut all '
         'volumes, as in slice="z"'
     )
@@ -296,8 +296,8 @@ def test_a_grid_without_its_solution(tmp_path: Path) -> None:
     path = tmp_path / "postxyz.bin"
     Plot3D().save(path, tmp_path / "other.q")
     with says(
-        f"{path}: {path} is a PLOT3D grid, and no solution lies beside it (looked for postq.bin, "
-        "postxyz.q); the velocity is in the solution: put it there under such a name"
+        f"{path}: {path} is a PLOT3D grid, but its solution, which contains the velocity, is not "
+        "in the same folder (tried postq.bin, postxyz.q); put it there under one of these names"
     ):
         FlowField.from_file(path)
 
@@ -311,8 +311,8 @@ def test_a_solution_that_is_cut_off(tmp_path: Path) -> None:
         FlowField.from_file(tmp_path / "a.xyz", plane="k=0")
     missing = len(whole) - len(whole) // 2
     assert str(caught.value) == (
-        f"{tmp_path / 'a.xyz'}: the file is cut short or broken: a.q declares {len(whole):,} "
-        f"bytes, the file has {len(whole) // 2:,} of them, and {missing:,} are missing; write or "
+        f"{tmp_path / 'a.xyz'}: the file is truncated or damaged: a.q declares {len(whole):,} "
+        f"bytes, but the file has {len(whole) // 2:,}, and {missing:,} are missing; write or "
         "copy it again"
     )
 
@@ -324,8 +324,7 @@ def test_a_grid_that_is_cut_off(tmp_path: Path, length: int) -> None:
     (tmp_path / "a.xyz").write_bytes(whole[:length])
     assert len(whole) > length
     with says(
-        f"{tmp_path / 'a.xyz'}: the format is not known (no PLOT3D grid of any layout); expected "
-        + KNOWN
+        f"{tmp_path / 'a.xyz'}: unknown format (not a PLOT3D grid in any layout); expected " + KNOWN
     ):
         FlowField.from_file(tmp_path / "a.xyz")
 
@@ -366,12 +365,14 @@ def test_the_post_tells_what_it_is(data_dir: Path) -> None:
 
 
 def test_a_file_that_is_missing(tmp_path: Path) -> None:
-    with says(f"{tmp_path / 'flow.vts'}: no such file; check the spelling and the folder"):
+    with says(
+        f"{tmp_path / 'flow.vts'}: the file does not exist; check the spelling and the folder"
+    ):
         FlowField.from_file(tmp_path / "flow.vts")
     flowing().save(tmp_path / "flow.vtk")
     with says(
-        f"{tmp_path / 'flow.vts'}: no such file; check the spelling and the folder. There is "
-        "flow.vtk"
+        f"{tmp_path / 'flow.vts'}: the file does not exist; check the spelling and the folder. "
+        "Similar names: flow.vtk"
     ):
         FlowField.from_file(tmp_path / "flow.vts")
     with says(f"{tmp_path}: a folder, where a file was expected; name the mesh inside it"):
@@ -404,8 +405,8 @@ def test_a_pickle_is_never_loaded(tmp_path: Path, suffix: str) -> None:
     # Loading this would make a folder.
     path.write_bytes(b"cos\nmkdir\n(V" + str(tmp_path / "made").encode() + b"\ntR.")
     with says(
-        f"{path}: a pickle, which can run any program when it is loaded, and is refused; save the "
-        'mesh as VTK instead, as in mesh.save("flow.vts")'
+        f"{path}: this is a pickle, which can run any program when it is loaded, so it is "
+        'refused; save the mesh as VTK instead, as in mesh.save("flow.vts")'
     ):
         FlowField.from_file(path)
     assert not (tmp_path / "made").exists()
@@ -414,17 +415,17 @@ def test_a_pickle_is_never_loaded(tmp_path: Path, suffix: str) -> None:
 def test_a_format_that_is_not_known(tmp_path: Path) -> None:
     path = tmp_path / "flow.abc"
     path.write_text("hello", encoding="ascii")
-    with says(f"{path}: the format is not known ('.abc'); expected {KNOWN}"):
+    with says(f"{path}: unknown format ('.abc'); expected {KNOWN}"):
         FlowField.from_file(path)
     path.rename(tmp_path / "flow")
-    with says(f"{tmp_path / 'flow'}: the format is not known (no suffix); expected {KNOWN}"):
+    with says(f"{tmp_path / 'flow'}: unknown format (no suffix); expected {KNOWN}"):
         FlowField.from_file(tmp_path / "flow")
 
 
 def test_broken_netcdf_is_told(tmp_path: Path) -> None:
     path = tmp_path / "flow.nc"
     path.write_bytes(b"CDF\x01")
-    with pytest.raises(FieldError, match=r"flow\.nc: the file is cut short"):
+    with pytest.raises(FieldError, match=r"flow\.nc: the file is truncated"):
         FlowField.from_file(path)
 
 
@@ -447,9 +448,9 @@ def test_a_broken_file(
     path = tmp_path / name
     path.write_text(text, encoding="ascii")
     reason = reason.format(path=path)
-    with says(f"{path}: the file is broken or incomplete. VTK says: {reason}"):
+    with says(f"{path}: the file is damaged or incomplete. VTK reports: {reason}"):
         FlowField.from_file(path)
-    with says(f"{path}: the file is broken or incomplete. VTK says: {reason}"):
+    with says(f"{path}: the file is damaged or incomplete. VTK reports: {reason}"):
         describe(path)
     out, err = capfd.readouterr()
     assert out == err == "", "VTK's own lines got through"
@@ -459,7 +460,7 @@ def test_a_broken_series(tmp_path: Path) -> None:
     path = tmp_path / "a.pvd"
     path.write_text("garbage", encoding="ascii")
     with says(
-        f"{path}: the file is broken, it is no XML (syntax error: line 1, column 0); write or copy "
+        f"{path}: the file is not valid XML (syntax error: line 1, column 0); write or copy "
         "it again"
     ):
         FlowField.from_file(path)
@@ -522,11 +523,14 @@ def test_threads_that_read_broken_files_do_not_corrupt_the_heap(tmp_path: Path) 
     assert done.returncode == 0, f"{done.returncode}: {done.stderr}"
     assert done.stderr == ""
     (fault,) = done.stdout.splitlines()
-    assert fault.startswith(f"{path}: the file is broken or incomplete. VTK says: ")
+    assert fault.startswith(f"{path}: the file is damaged or incomplete. VTK reports: ")
 
 
 def test_what_vtk_only_warns_of_is_passed_on(tmp_path: Path) -> None:
-    with pytest.warns(UserWarning, match=r"^a\.vts: VTK says: odd$"), errors_of_file(Path("a.vts")):
+    with (
+        pytest.warns(UserWarning, match=r"^a\.vts: VTK reports: odd$"),
+        errors_of_file(Path("a.vts")),
+    ):
         from vtkmodules.vtkCommonCore import vtkOutputWindow
 
         vtkOutputWindow.GetInstance().DisplayWarningText("odd")
@@ -544,8 +548,8 @@ def test_faults_of_the_field_start_with_the_path(tmp_path: Path) -> None:
     path = tmp_path / "flow.vts"
     flowing().save(path)
     with says(
-        f"{path}: vectors is 'w', and the mesh has no such array. Its arrays, with their "
-        "components: v (points, 3), p (points, 1)"
+        f"{path}: vectors is 'w', but the mesh has no such array. Its arrays, with their numbers "
+        "of components: v (points, 3), p (points, 1)"
     ):
         FlowField.from_file(path, vectors="w")
 

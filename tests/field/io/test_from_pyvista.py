@@ -447,7 +447,7 @@ def test_a_reader_of_pyvista_is_a_reader(tmp_path: Path) -> None:
 def test_parts_of_one_mesh_are_no_steps() -> None:
     left, right = flowing(), moved()
     with says(
-        "the mesh has 2 blocks, and no time steps of one: 0 (left, 4 x 3 x 1 nodes), "
+        "the mesh has 2 blocks that are not time steps of one mesh: 0 (left, 4 x 3 x 1 nodes), "
         '1 (right, 4 x 3 x 1 nodes); choose one, as in block="left"'
     ):
         FlowField.from_pyvista(pv.MultiBlock({"left": left, "right": right}))
@@ -469,7 +469,7 @@ def test_a_scalar_that_a_step_lacks_is_left_out() -> None:
 
 def test_a_step_of_several_blocks() -> None:
     with says(
-        "step 0 has 2 blocks, and no time steps of one: 0 (Block-00, 4 x 3 x 1 nodes), "
+        "step 0 has 2 blocks that are not time steps of one mesh: 0 (Block-00, 4 x 3 x 1 nodes), "
         '1 (Block-01, 5 x 3 x 1 nodes); choose one, as in block="Block-00"'
     ):
         FlowField.from_pyvista([pv.MultiBlock([flowing(), flowing(5)])])
@@ -479,9 +479,9 @@ def test_a_step_of_several_blocks() -> None:
 # --- what is wrong with a mesh ---------------------------------------------------------------
 
 
-SOLID = "as the mesh has 5 x 4 x 3 nodes (I x J x K)"
+SOLID = "because the mesh has 5 x 4 x 3 nodes (I x J x K)"
 PARTS = " If these are parts of one mesh and not time steps, give one of them, as in block=0"
-KNOWN = "Its arrays, with their components:"
+KNOWN = "Its arrays, with their numbers of components:"
 
 
 def carrying(**arrays: Any) -> Any:
@@ -512,8 +512,8 @@ def moved() -> Any:
         *(
             (flowing(5, 4, 3), {"plane": plane}, f"plane is {plane!r}; expected {expected}")
             for plane, expected in [
-                ("k=3", f"k between -3 and 2, {SOLID}"),
-                ("i=-6", f"i between -5 and 4, {SOLID}"),
+                ("k=3", f"k from -3 to 2, {SOLID}"),
+                ("i=-6", f"i from -5 to 4, {SOLID}"),
                 *(
                     (p, '"i=N", "j=N" or "k=N" with a whole number N, as in plane="k=1"')
                     for p in ("z=3", 3)
@@ -523,8 +523,8 @@ def moved() -> Any:
         (
             flowing(),
             {"plane": "i=2"},
-            "plane is 'i=2', which leaves a single row, as the mesh has 4 x 3 x 1 nodes "
-            "(I x J x K); it is one surface already: leave plane out",
+            "plane is 'i=2', which selects a single row, because the mesh has 4 x 3 x 1 nodes "
+            "(I x J x K); the mesh is already a surface: omit plane",
         ),
         (
             flowing(4, 1, 1),
@@ -536,16 +536,15 @@ def moved() -> Any:
             (
                 empty,
                 {},
-                "the mesh is empty: check that the file or the filter that made it gave any nodes",
+                "the mesh has no nodes; check the file or filter that made it",
             )
             for empty in (pv.StructuredGrid(), pv.ImageData(), pv.RectilinearGrid())
         ),
         (
             flowing(5, 4, 3),
             {"plane": "k=9", "vectors": "w"},
-            "2 things are wrong:\n"
-            f"  1. plane is 'k=9'; expected k between -3 and 2, {SOLID}\n"
-            f"  2. vectors is 'w', and the mesh has no such array. {KNOWN} v (points, 3)",
+            f"2 things are wrong:\n  1. plane is 'k=9'; expected k from -3 to 2, {SOLID}\n  2. "
+            f"vectors is 'w', but the mesh has no such array. {KNOWN} v (points, 3)",
         ),
         (
             carrying(v=np.ones((12, 3)), cells_w=np.ones((6, 2))),
@@ -556,39 +555,40 @@ def moved() -> Any:
         (
             carrying(p=np.ones(12)),
             {},
-            "the mesh has no vectors that could be the velocity; expected a point or cell array of "
-            f"real numbers with 2 or 3 components. {KNOWN} p (points, 1). "
-            'Name single components with commas between, as in vectors="u,v,w"',
+            "the mesh has no vectors that could be the velocity; expected a point or cell array "
+            f"of real numbers with 2 or 3 components. {KNOWN} p (points, 1). To use single "
+            'components, separate their names by commas, as in vectors="u,v,w"',
         ),
         (
             flowing(),
             {"vectors": "V1"},
-            f"vectors is 'V1', and the mesh has no such array. {KNOWN} v (points, 3)",
+            f"vectors is 'V1', but the mesh has no such array. {KNOWN} v (points, 3)",
         ),
         (
             carrying(velocity=np.ones((12, 3))),
             {"vectors": "velcity"},
-            "vectors is 'velcity', and the mesh has no such array. Did you mean \"velocity\"? "
+            "vectors is 'velcity', but the mesh has no such array. Did you mean \"velocity\"? "
             f"{KNOWN} velocity (points, 3)",
         ),
         (
             carrying(v=np.ones((12, 3)), p=np.ones(12)),
             {"vectors": "p"},
-            "vectors is 'p', an array of 1 component(s); expected 2 or 3 numbers at each point or "
-            "cell, or the names of as many arrays of one, with commas between. The arrays of the "
-            "mesh, with their components: v (points, 3), p (points, 1)",
+            "vectors is 'p', an array of 1 component(s); expected 2 or 3 components at each "
+            "point or cell, or the names of 2 or 3 arrays of one component, separated by commas. "
+            "The arrays of the mesh, with their numbers of components: v (points, 3), p (points, "
+            "1)",
         ),
         (
             carrying(v=np.full((12, 3), np.nan)),
             {},
-            "none of the 12 nodes is usable: each is blanked, masked or NaN; check the chosen "
-            "vectors and the blanking",
+            "none of the 12 nodes is usable: all are blanked, masked or NaN; check the selected "
+            "vectors and the mask",
         ),
         (
             [at_time(2.0), at_time(1.0)],
             {},
-            "times[1] = 1 does not come after times[0] = 2; expected strictly increasing times: "
-            "sort the steps, and drop those that repeat",
+            "times[1] = 1 is not greater than times[0] = 2; expected strictly increasing times: "
+            "sort the steps, and drop repeated ones",
         ),
         (
             [at_time(0.0), at_time(1.0)],
@@ -598,8 +598,8 @@ def moved() -> Any:
         (
             [at_time(0.0), at_time(1.0, i=5)],
             {},
-            "step 1 has 5 x 3 x 1 nodes (I x J x K) and the first step has 4 x 3 x 1 nodes "
-            f"(I x J x K); expected the same nodes in every step.{PARTS}",
+            "step 1 has 5 x 3 x 1 nodes (I x J x K) and the first step has 4 x 3 x 1 nodes (I x "
+            f"J x K); expected the same nodes in every step.{PARTS}",
         ),
         (
             [flowing(), moved()],
@@ -617,16 +617,16 @@ def moved() -> Any:
         (
             pv.MultiBlock([None]),
             {},
-            "the mesh has no blocks; check the file or the filter that made it",
+            "the mesh has no blocks; check the file or filter that made it",
         ),
         *(
             (
                 thing,
                 {},
-                f"the mesh is of type {type(thing).__name__}; expected a mesh of PyVista's or a "
-                "MultiBlock, a list of them, or a reader. Arrays go to "
-                "FlowField.from_arrays(points, velocity) and "
-                "FlowField.from_triangles(points, triangles, velocity)",
+                f"the mesh has type {type(thing).__name__}; expected a PyVista mesh or "
+                "MultiBlock, a list of them, or a reader. For arrays use "
+                "FlowField.from_arrays(points, velocity) or FlowField.from_triangles(points, "
+                "triangles, velocity)",
             )
             for thing in (np.ones((3, 4, 3)), "flow.vts", None)
         ),

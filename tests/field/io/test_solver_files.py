@@ -43,7 +43,7 @@ def test_zones_of_cgns_are_blocks_by_their_paths(tmp_path: Path) -> None:
     field = FlowField.from_file(path, block=2, plane="k=0", time=1.0)
     assert field.steady and field.shape == (3, 4), "cells have become nodes"
     with says(
-        f"{path}: step 0 has 3 blocks, and no time steps of one: 0 (Wing/Zone 1, "
+        f"{path}: step 0 has 3 blocks that are not time steps of one mesh: 0 (Wing/Zone 1, "
         "4 x 3 x 2 nodes), 1 (Wing/Zone 2, 6 x 3 x 2 nodes), 2 (Tail/Zone 1, 4 x 3 x 2 nodes); "
         'choose one, as in block="Wing/Zone 1", or cut all volumes, as in slice="z"'
     ):
@@ -58,7 +58,7 @@ def test_cgns_tells_what_it_holds(tmp_path: Path) -> None:
         BlockSummary("Wing/Zone 2", 1, "StructuredGrid", "6 x 3 x 2 nodes"),
         BlockSummary("Tail/Zone 1", 2, "StructuredGrid", "4 x 3 x 2 nodes"),
     )
-    assert summary.problem.startswith("the file has 3 blocks, and no time steps of one:")
+    assert summary.problem.startswith("the file has 3 blocks that are not time steps of one mesh:")
     summary = describe(tmp_path / "flow.cgns", block="Tail/Zone 1")
     assert [(a.name, a.where) for a in summary.arrays] == [
         ("Velocity", "cells"),
@@ -113,7 +113,7 @@ def test_blocks_with_times_are_read_when_they_are_asked_for(
     assert source.nbytes == source.part(last).nbytes > 0
     assert np.allclose(source.field(block="1", plane="k=0").velocity, field.velocity)
     assert source.field(block=source.blocks[0]).shape == (3, 4)
-    with pytest.raises(FieldError, match=r"block is 'nowhere'; there are "):
+    with pytest.raises(FieldError, match=r"block is 'nowhere'; expected one of "):
         source.field(block="nowhere")
 
 

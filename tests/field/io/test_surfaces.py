@@ -21,7 +21,7 @@ from flowtex.field.triangles.surface import TriangleSurface
 
 pv = pytest.importorskip("pyvista")
 
-ACROSS = "ignore:.*of the flow points out of the surface:flowtex._util.notices.Notice"
+ACROSS = "ignore:.*of the flow is normal to the surface:flowtex._util.notices.Notice"
 WAY = np.array([1.0, -2.0, 0.5])
 
 
@@ -170,21 +170,23 @@ def test_hidden_parts_are_blanked(where: str) -> None:
 
 def test_a_surface_is_not_cut_and_has_no_planes() -> None:
     mesh = turning(pv.Sphere())
-    with says("slice is 'x', and the mesh is a surface already"):
+    with says("slice is 'x', but the mesh is already a surface"):
         FlowField.from_pyvista(mesh, slice="x")
-    with says("plane='k=0' is for structured meshes"):
+    with says("plane='k=0' applies to structured meshes"):
         FlowField.from_pyvista(mesh, plane="k=0")
-    with says("sign_free=True is for structured meshes, and this is a surface of triangles; leave"):
+    with says(
+        "sign_free=True applies to structured meshes, but this is a surface of triangles; omit"
+    ):
         FlowField.from_pyvista(mesh, sign_free=True)
 
 
 @pytest.mark.parametrize(
     ("mesh", "text"),
     [
-        (pv.PolyData(np.ones((3, 3))), "the mesh has points alone; expected a surface"),
-        (pv.Line(), "the mesh has lines alone; expected a surface"),
-        (pv.PolyData(), "the mesh is empty"),
-        (pv.UnstructuredGrid(), "the mesh is empty"),
+        (pv.PolyData(np.ones((3, 3))), "the mesh has only points; expected a surface"),
+        (pv.Line(), "the mesh has only lines; expected a surface"),
+        (pv.PolyData(), "the mesh has no"),
+        (pv.UnstructuredGrid(), "the mesh has no"),
         (pv.Table({"a": np.ones(3)}), "the mesh is a Table; expected a mesh"),
     ],
 )
@@ -249,7 +251,9 @@ def test_a_contour_of_a_ball(kind: str, where: str) -> None:
 @pytest.mark.filterwarnings(ACROSS)
 def test_the_outer_surface_is_taken_and_told(kind: str) -> None:
     mesh = uniform(VOLUMES[kind]())
-    with pytest.warns(Notice, match="the outer surface of the volume is drawn; to cut it: slice="):
+    with pytest.warns(
+        Notice, match="the outer surface of the volume is drawn; to cut the volume, use slice="
+    ):
         field = FlowField.from_pyvista(mesh)
     ends = np.reshape(mesh.bounds, (3, 2))
     np.testing.assert_allclose(field.points[0].min(0), ends[:, 0], atol=1e-6)
@@ -289,7 +293,7 @@ def test_hidden_parts_of_a_volume_are_not_cut() -> None:
 
 
 def test_flow_across_a_surface_is_told() -> None:
-    with pytest.warns(Notice, match=r"^\d\d% of the flow points out of the surface and is not"):
+    with pytest.warns(Notice, match=r"^\d\d% of the flow is normal to the surface and is not"):
         field = FlowField.from_pyvista(uniform(box()), slice="y=0.3")
     assert field.normal_share > 0.5
 
@@ -302,13 +306,13 @@ def test_flow_across_a_surface_is_told() -> None:
         ({"slice": "x=inf"}, "slice is 'x=inf'; expected"),
         ({"slice": "1,0,0 through 1,2"}, "expected"),
         ({"slice": 5}, "slice is 5; expected"),
-        ({"slice": "x=7"}, "slice is 'x=7', which is beside the mesh; it has x from 0 to 1, y"),
+        ({"slice": "x=7"}, "slice is 'x=7', which does not cut the mesh; it has x from 0 to 1, y"),
         ({"contour": "p"}, "contour is 'p'; expected an array and its value"),
         ({"contour": "plane=1"}, "no array 'plane' of one component. Did you mean \"place\"?"),
-        ({"contour": "place=9"}, "contour is 'place=9'; place is 0 to 1 here"),
-        ({"contour": "place=1", "slice": "x"}, "choose one of them"),
-        ({"slice": "x", "plane": "k=1"}, "plane is 'k=1' and slice is 'x'; choose one of them"),
-        ({"slice": "x", "vectors": "w"}, "vectors is 'w', and the mesh has no such array"),
+        ({"contour": "place=9"}, "contour is 'place=9'; expected a value of place from 0 to 1"),
+        ({"contour": "place=1", "slice": "x"}, "choose one of the two"),
+        ({"slice": "x", "plane": "k=1"}, "plane is 'k=1' and slice is 'x'; choose one of the two"),
+        ({"slice": "x", "vectors": "w"}, "vectors is 'w', but the mesh has no such array"),
     ],
 )
 def test_a_cut_that_cannot_be(choice: dict[str, Any], text: str) -> None:
@@ -383,7 +387,9 @@ def test_volumes_are_cut_together() -> None:
 def test_vectors_beside_a_file(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"ball{suffix}"
     pv.Sphere().save(path)
-    with says(f"{path}: the file has no vectors, for which its format has no room; expected them"):
+    with says(
+        f"{path}: the file has no vectors, because its format cannot store them; expected them"
+    ):
         FlowField.from_file(path)
     mesh = pv.read(path)
     flow = np.cross([0, 0, 1.0], np.asarray(mesh.points, dtype=float))
@@ -411,10 +417,10 @@ def test_vectors_beside_a_file(tmp_path: Path, suffix: str) -> None:
 @pytest.mark.parametrize(
     ("vectors", "text"),
     [
-        (np.ones((5, 3)), "ball.npy beside it has shape (5, 3); expected them beside it in"),
-        (np.ones((842, 4)), "has shape (842, 4) of float64"),
-        (np.array([{}] * 842), "ball.npy beside it is no array of NumPy's"),
-        (np.full((842, 3), "a"), "has shape (842, 3) of <U1"),
+        (np.ones((5, 3)), "ball.npy has shape (5, 3); expected them in"),
+        (np.ones((842, 4)), "has shape (842, 4) and type float64"),
+        (np.array([{}] * 842), "ball.npy is not a NumPy array"),
+        (np.full((842, 3), "a"), "has shape (842, 3) and type <U1"),
     ],
 )
 def test_vectors_that_do_not_fit(tmp_path: Path, vectors: Any, text: str) -> None:

@@ -112,7 +112,7 @@ def test_what_another_process_reads_is_the_same(
         assert one.vectors == other.vectors
     for options in chosen:
         assert_same(there.field(**options), here.field(**options))
-    with pytest.raises(FieldError, match=r"there is|no such"):
+    with pytest.raises(FieldError, match=r"no such array|does not exist"):
         there.field(vectors="nothing,at all" if name.endswith(".nc") else "nothing")
     assert there.alive
     there.close()
@@ -128,7 +128,7 @@ def test_levels_are_found_and_several_files_are_one_series(tmp_path: Path) -> No
     assert len(source.field().times) == 4
     with pytest.raises(FieldError, match="level is 'nowhere'"):
         source.plane_of("nowhere")
-    with pytest.raises(FieldError, match="and this is a mesh"):
+    with pytest.raises(FieldError, match="but this is a mesh"):
         open_remote([volume(tmp_path / "block.vts")]).plane_of(20)
 
 
@@ -142,7 +142,9 @@ def test_a_reader_that_dies_is_told_of(tmp_path: Path, monkeypatch: pytest.Monke
     source = tricky(path, monkeypatch)
     fault = rf"^{re.escape(str(path))}: the reader of this file crashed \(SIGSEGV\); the file is "
     field = source.field()
-    with pytest.raises(FieldError, match=fault + r"broken, or needs more than [\d.]+ GB of memory"):
+    with pytest.raises(
+        FieldError, match=fault + r"damaged, or needs more than [\d.]+ GB of memory"
+    ):
         source.plane_of("crash")
     with pytest.raises(FieldError, match=fault):
         source.field()
@@ -224,9 +226,9 @@ def test_steps_that_nobody_has_any_more_are_forgotten(tmp_path: Path) -> None:
     reader({"do": "step", "steps": second, "number": 1, "forgotten": [first]})
     with pytest.raises(KeyError):
         reader({"do": "step", "steps": first, "number": 1})
-    with pytest.raises(RuntimeError, match="nothing is open"):
+    with pytest.raises(RuntimeError, match="no file is open"):
         Reader()({"do": "part", "block": None})
-    with pytest.raises(FieldError, match=r"no\.vts: no such file"):
+    with pytest.raises(FieldError, match=r"no\.vts: the file does not exist"):
         Reader()({"do": "open", "paths": [str(tmp_path / "no.vts")]})
 
 
@@ -241,7 +243,7 @@ def test_a_file_that_changes_while_it_is_read(
     source = tricky(path, monkeypatch, "Changing")
     assert left.read_text() == "0" and source.field().shape == (6, 7)
     left.write_text("9")
-    with pytest.raises(FieldError, match=r"block\.vts: the file changes while it is read; open"):
+    with pytest.raises(FieldError, match=r"block\.vts: the file changed while it was read; open"):
         tricky(path, monkeypatch, "Changing")
     assert left.read_text() == "6"
 

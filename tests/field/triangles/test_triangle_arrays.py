@@ -37,7 +37,7 @@ def test_a_square_is_a_field() -> None:
     ("change", "words"),
     [
         ({"points": SQUARE.reshape(2, 2, 2)}, "points has shape"),
-        ({"points": np.array([["a"]])}, "points holds"),
+        ({"points": np.array([["a"]])}, "points has type"),
         ({"triangles": HALVES[:, :2]}, "triangles has shape"),
         ({"triangles": HALVES + 0.5}, "whole numbers"),
         ({"triangles": HALVES + 1}, "node 4; expected 0 to 3"),

@@ -117,7 +117,7 @@ class LocalSession(Session):
                 if message.type == WSMsgType.BINARY:
                     await link.send(True, message)
                 elif message.type == WSMsgType.TEXT:
-                    msg = "a text came; expected bytes"
+                    msg = "received text; expected bytes"
                     raise ValueError(msg)
         finally:
             # wslink's endpoint forgets the connection, but not what it has gathered for it.

@@ -58,7 +58,8 @@ class LimitedMessages(UnChunker):
         if len(self.pending_messages) > OPEN_MESSAGES:
             self.release_pending_messages()
             msg = (
-                f"more than {OPEN_MESSAGES} messages were begun; expected one of them to end first"
+                f"more than {OPEN_MESSAGES} messages are incomplete; expected one of them to end "
+                "first"
             )
             raise ValueError(msg)
         return self._checked(message) if isinstance(message, dict) else message

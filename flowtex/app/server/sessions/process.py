@@ -129,7 +129,7 @@ class ProcessSession(Session):
                     if message.type == WSMsgType.BINARY:
                         await there.send_bytes(message.data)
                     elif message.type == WSMsgType.TEXT:
-                        msg = "a text came; expected bytes"
+                        msg = "received text; expected bytes"
                         raise ValueError(msg)
             except ConnectionError:  # the process has ended the connection, or itself
                 await answering

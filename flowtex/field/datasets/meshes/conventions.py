@@ -78,8 +78,8 @@ def _ugrid(variables: Mapping[str, Any]) -> Iterator[Mesh]:
         if missing or len(names) != 2:
             msg = (
                 f"the topology {topology.name!r} names {', '.join(missing) or names}, which the "
-                "data lack; expected two coordinates of the nodes and the nodes of each face. Give "
-                "the file that has them too"
+                "data do not contain; expected two coordinates of the nodes and the nodes of "
+                "each face. Open the file that has them together with this one"
             )
             raise FieldError(msg)
         corners = variables[attrs["face_node_connectivity"]]

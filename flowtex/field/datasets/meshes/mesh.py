@@ -218,7 +218,10 @@ def _numbers(mesh: Mesh, count: int) -> Indices:
     values = values - first
     there &= (values >= 0) & (values < count)
     if not there.any():
-        msg = f"{corners.name!r} has no numbers from {first} to {first + count - 1}; expected nodes"
+        msg = (
+            f"{corners.name!r} has no node numbers from {first} to {first + count - 1}; expected "
+            "numbers of nodes"
+        )
         raise FieldError(msg)
     if mesh.kind == "MPAS" and values.shape[1] == 3:
         there &= there.all(axis=1, keepdims=True)  # at the border of a region

@@ -71,6 +71,6 @@ def _points(stream: BinaryIO, at: int, edition: int, end: int, what: str) -> int
     # ecCodes reads for ever where sections do not lead to the end.
     stream.seek(place)
     if place + 4 != end or stream.read(4) != b"7777":
-        msg = f"the sections of {what} do not lead to its end; the file is corrupt"
+        msg = f"the sections of {what} do not match its length; the file is corrupt"
         raise FieldError(msg)
     return most

@@ -43,7 +43,7 @@ def check_hdf5(path: Path, *, whole: bool) -> None:
         if ends:
             found, base, declared = map(int, ends.groups())
             check_count(found, base + declared, "the header")
-        msg = f"the file is broken: HDF5 says: {error}; write or copy it again"
+        msg = f"the file is damaged: HDF5 reports: {error}; write or copy it again"
         raise FieldError(msg) from error
 
 
@@ -71,7 +71,7 @@ def _check_object(h5py: Any, item: Any, name: str, *, whole: bool) -> None:
 
 def _refuse(what: str, target: str) -> NoReturn:
     msg = (
-        f"{what}, in the file {target!r}, and only what lies in the file itself is read; copy all "
-        "of it into one file, as ds.to_netcdf does"
+        f"{what} in the file {target!r}, but only data in the file itself are read; copy "
+        "everything into one file, for example with ds.to_netcdf"
     )
     raise FieldError(msg)

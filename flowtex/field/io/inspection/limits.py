@@ -18,8 +18,8 @@ def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> No
     """Refuse a file that has less than it declares."""
     if found < declared:
         msg = (
-            f"the file is cut short or broken: {what} declares {_text(declared)} {unit}, the file "
-            f"has {max(found, 0):,} of them, and {_text(declared - max(found, 0))} are missing; "
+            f"the file is truncated or damaged: {what} declares {_text(declared)} {unit}, but the "
+            f"file has {max(found, 0):,}, and {_text(declared - max(found, 0))} are missing; "
             "write or copy it again"
         )
         raise FieldError(msg)
@@ -30,9 +30,9 @@ def check_memory(nbytes: int, what: str) -> None:
     budget = int(available_bytes() * MEMORY_SHARE)
     if nbytes > budget:
         msg = (
-            f"{what} declares {size_text(nbytes)}, and {size_text(budget)} of memory are available "
-            "for data; write a part or a coarser version of it to a file of its own, or read it "
-            "where there is more memory"
+            f"{what} declares {size_text(nbytes)}, but {size_text(budget)} of memory are "
+            "available for data; write a part or a coarser version to a separate file, or read "
+            "it on a machine with more memory"
         )
         raise FieldError(msg)
 

@@ -77,12 +77,12 @@ class _Header:
         self._fits(ranks, 4)
         numbers = [self._number() for _ in range(ranks)]
         if any(number >= len(self._dimensions) for number in numbers):
-            msg = f"the file is broken: the variable {name} has a dimension that is not declared"
+            msg = f"the file is damaged: the variable {name} has an undeclared dimension"
             raise FieldError(msg)
         self._attributes()
         kind = self._unpack(">I")
         if kind not in SIZES:
-            msg = f"the file is broken: the variable {name} has the unknown type {kind}"
+            msg = f"the file is damaged: the variable {name} has the unknown type {kind}"
             raise FieldError(msg)
         self._number()  # its size once more, which has too few bits for a large one
         begin = self._unpack(self._offset)
@@ -128,7 +128,7 @@ class _Header:
         """Refuse a count of things that the rest of the file has no room for."""
         if count * nbytes > self._left:
             msg = (
-                f"the file is cut short or broken: its header goes on for {count * nbytes:,} "
-                f"bytes, and the file for {self._left:,}; write or copy it again"
+                f"the file is truncated or damaged: its header needs {count * nbytes:,} more "
+                f"bytes, but the file has {self._left:,}; write or copy it again"
             )
             raise FieldError(msg)

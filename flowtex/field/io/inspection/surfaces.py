@@ -42,7 +42,7 @@ def check_obj(path: Path) -> None:
     if 0 < most < points:
         notify(
             f"{path.name}: the last {points - most:,} of {points:,} points belong to no face; the "
-            "format has no counts: the file may be cut short"
+            "file may be truncated, which cannot be checked because the format has no counts"
         )
 
 
@@ -94,7 +94,9 @@ def _ply_header(stream: BinaryIO) -> tuple[str, list[tuple[str, int, list[list[s
             case _:
                 break
     msg = (
-        f"the file is broken: its header has {line[:80]!r}" if elements else "the file is cut short"
+        f"the file is damaged: its header has {line[:80]!r}"
+        if elements
+        else ("the file is truncated")
     )
     raise FieldError(msg + "; write or copy it again")
 

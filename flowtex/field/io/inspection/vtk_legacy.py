@@ -229,7 +229,7 @@ class _Legacy:
     def _count(self, what: bytes) -> int:
         count = self._number()
         if count < 0:
-            msg = f"the file is broken: {what.decode()} declares {count}; write or copy it again"
+            msg = f"the file is damaged: {what.decode()} declares {count}; write or copy it again"
             raise FieldError(msg)
         return count
 
@@ -238,7 +238,7 @@ def _refuse(word: bytes, expected: str) -> NoReturn:
     text = word[:40].decode(errors="replace")
     fault = f"has {text!r}" if word else "ends"
     msg = (
-        f"the file is cut short or broken: it {fault} where {expected} was expected; write or copy "
-        "it again"
+        f"the file is truncated or damaged: it {fault} where {expected} was expected; write or "
+        "copy it again"
     )
     raise FieldError(msg)

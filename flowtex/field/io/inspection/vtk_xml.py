@@ -46,7 +46,7 @@ def check_vtk_xml(path: Path) -> list[Path]:
     """
     with path.open("rb") as stream:
         if b"\0" in stream.read(4):
-            msg = "the file is in UTF-16, in which VTK writes none; convert it to UTF-8"
+            msg = "the file is in UTF-16, which VTK does not write; convert it to UTF-8"
             raise FieldError(msg)
         stream.seek(0)
         document = _Document()
@@ -125,7 +125,7 @@ class _Document:
         except expat.ExpatError as error:
             what = "no element found", "unclosed token", "unclosed CDATA"
             cut = any(word in str(error) for word in what)
-            fault = "is cut short, its XML ends early" if cut else "is broken, it is no XML"
+            fault = "is truncated: its XML ends early" if cut else "is not valid XML"
             msg = f"the file {fault} ({error}); write or copy it again"
             raise FieldError(msg) from error
 
@@ -356,5 +356,5 @@ def _whole(word: str) -> int:
 
 
 def _refuse_entity(name: str, *_: object) -> None:
-    msg = f"the file declares the XML entity {name}, which VTK's files have not, and is refused"
+    msg = f"the file declares the XML entity {name}, so it is refused: VTK files have no entities"
     raise FieldError(msg)

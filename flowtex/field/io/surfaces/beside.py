@@ -39,7 +39,7 @@ def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
         reader.reader.SetMerging(0)
         mesh = reader.read()
     if count not in (mesh.n_points, mesh.n_cells):
-        shape = f"{file.with_suffix('.npy').name} beside it has shape {vectors.shape}"
+        shape = f"{file.with_suffix('.npy').name} has shape {vectors.shape}"
         return mesh, None, f"{shape}; {_expected(file, mesh)}"
 
     def with_vectors(step: AnyArray) -> Any:
@@ -58,20 +58,20 @@ def _vectors(file: Path) -> AnyArray:
     """Return the array beside a file, (N, 2 or 3) or (T, N, 2 or 3)."""
     path = file.with_suffix(".npy")
     if not path.is_file():
-        msg = "the file has no vectors, for which its format has no room"
+        msg = "the file has no vectors, because its format cannot store them"
         raise FieldError(msg)
     try:
         # Mapped first: NumPy allocates what the header declares, whether the file has it or not.
         vectors = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError, OSError) as error:
-        msg = f"{path.name} beside it is no array of NumPy's ({error})"
+        msg = f"{path.name} is not a NumPy array ({error})"
         raise FieldError(msg) from error
     if not isinstance(vectors, np.ndarray):  # an archive
-        msg = f"{path.name} beside it holds several arrays"
+        msg = f"{path.name} contains several arrays"
         raise FieldError(msg)
     real = vectors.dtype.kind in "fiu" and vectors.size
     if not real or vectors.ndim not in (2, 3) or vectors.shape[-1] not in (2, 3):
-        msg = f"{path.name} beside it has shape {vectors.shape} of {vectors.dtype}"
+        msg = f"{path.name} has shape {vectors.shape} and type {vectors.dtype}"
         raise FieldError(msg)
     return np.array(vectors)
 
@@ -79,9 +79,11 @@ def _vectors(file: Path) -> AnyArray:
 def _expected(file: Path, mesh: Any) -> str:
     name = file.with_suffix(".npy").name
     points, cells = mesh.n_points, mesh.n_cells
-    corners = f", ({3 * cells}, 3) for their corners" if file.suffix.lower() == ".stl" else ""
+    corners = (
+        f", ({3 * cells}, 3) for the corners of the faces" if file.suffix.lower() == ".stl" else ""
+    )
     return (
-        f"expected them beside it in {name}, numbers of shape ({points}, 3) for its points, "
-        f"({cells}, 3) for its faces{corners}, or (T, {points}, 3) for times, in the order of the "
-        "file, as numpy.save writes them"
+        f"expected them in {name} in the same folder, written by numpy.save: numbers of shape "
+        f"({points}, 3) for the points, ({cells}, 3) for the faces{corners}, or (T, {points}, 3) "
+        "for times, in the order of the file"
     )

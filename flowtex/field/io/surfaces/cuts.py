@@ -54,7 +54,7 @@ class Slice:
             spans = (
                 f"{a} from {low:g} to {high:g}" for a, (low, high) in zip("xyz", ends, strict=True)
             )
-            msg = f"slice is {self.text}, which is beside the mesh; it has {', '.join(spans)}"
+            msg = f"slice is {self.text}, which does not cut the mesh; it has {', '.join(spans)}"
             raise FieldError(msg)
         return cut
 
@@ -76,8 +76,8 @@ class Contour:
         hint = f'. Did you mean "{near[0]}"?' if near else ""
         listed = ", ".join(dict.fromkeys(names)) or "none"
         return [
-            f"contour is {self.text}, and the mesh has no array {self.name!r} of one "
-            f"component{hint}; there are: {listed}"
+            f"contour is {self.text}, but the mesh has no array {self.name!r} of one "
+            f"component{hint}; expected one of: {listed}"
         ]
 
     def of(self, mesh: Any) -> Any:
@@ -86,7 +86,9 @@ class Contour:
         if not cut.n_cells:
             values = np.asarray(mesh.point_data[self.name], dtype=np.float64)
             low, high = np.nanmin(values), np.nanmax(values)
-            msg = f"contour is {self.text}; {self.name} is {low:g} to {high:g} here"
+            msg = (
+                f"contour is {self.text}; expected a value of {self.name} from {low:g} to {high:g}"
+            )
             raise FieldError(msg)
         return cut
 
@@ -97,7 +99,7 @@ Cut = Slice | Contour
 def find_cut(slice: Any, contour: Any) -> Cut | None:
     """Return the cut that is meant, or ``None`` for none."""
     if slice is not None and contour is not None:
-        msg = f"slice is {slice!r} and contour is {contour!r}; choose one of them"
+        msg = f"slice is {slice!r} and contour is {contour!r}; choose one of the two"
         raise FieldError(msg)
     if slice is not None:
         return _slice(slice)
@@ -158,17 +160,17 @@ def cut_faults(mesh: Any, cut: Cut | None) -> list[str]:
     """Faults in a cut of a mesh, and in a mesh that has no surface."""
     dimension = mesh.max_cell_dimensionality
     if not mesh.n_cells:
-        return ["the mesh is empty: check that the file or the filter that made it gave any cells"]
+        return ["the mesh has no cells; check the file or filter that made it"]
     if dimension < 2:
         what = ("points", "lines")[dimension]
-        return [f"the mesh has {what} alone; expected a surface, or a volume to cut"]
+        return [f"the mesh has only {what}; expected a surface, or a volume to cut"]
     if cut is None:
         return []
     if dimension == 2:
         name = type(cut).__name__.lower()
         return [
-            f"{name} is {cut.text}, and the mesh is a surface already, of which only a line would "
-            f"be left; leave {name} out"
+            f"{name} is {cut.text}, but the mesh is already a surface, of which a cut is only a "
+            f"line; omit {name}"
         ]
     return cut.faults(mesh)
 
@@ -190,7 +192,7 @@ def surface_of(
         flat = cut is None and any(kind.dimension == 2 for kind in kinds)
         if tell and cut is None and any(kind.dimension == 3 for kind in kinds):
             what = "cells of two dimensions are" if flat else "outer surface of the volume is"
-            notify(f"the {what} drawn; to cut it: {_examples(mesh)}")
+            notify(f"the {what} drawn; to cut the volume, use {_examples(mesh)}")
         meant = [kind for kind in kinds if kind.dimension == (2 if flat else 3)]
         drawn: Any = np.isin(mesh.celltypes, meant)
         mesh = mesh if drawn.all() else mesh.extract_cells(drawn, pass_cell_ids=False)

@@ -97,7 +97,7 @@ def _surface_step(
     arrays = [a for a in catalogue(surface) if a.numeric and a.components == 1 and a.name != HIDDEN]
     if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
         msg = (
-            f"its cells have points {triangles.min()} to {triangles.max()}, and there are "
+            f"its cells refer to points {triangles.min()} to {triangles.max()}, but there are "
             f"{len(points):,}; write or copy it again"
         )
         raise FieldError(msg)
