@@ -83,13 +83,13 @@ def test_vtk_without_its_library_really_crashes(monkeypatch: pytest.MonkeyPatch)
         (
             (sys.executable, "-c", "import time; time.sleep(60)"),
             {"timeout": 0.2},
-            "the trial did not end within 0.2 s",
+            "the test did not end within 0.2 s",
         ),
-        (("/nowhere/python",), {}, "the trial could not be started: "),
+        (("/nowhere/python",), {}, "the test could not be started: "),
         (
             (sys.executable, "-c", "raise SystemExit('\\033[31mbad server\\033[0m')"),
             {},
-            "the process that tried it ended with code 1; it said: bad server",
+            "the test process ended with code 1; its last message: bad server",
         ),
     ],
     ids=["hangs", "cannot start", "prints"],

@@ -141,7 +141,7 @@ def test_a_path_stands_for_its_file(tmp_path: Path) -> None:
         assert field.shape == (101, 201)
     with pytest.raises(FieldError, match=r"^times is given, but '.*gyre.vts' already has times"):
         FieldOptions(times=[1.0]).field(path)
-    with pytest.raises(FieldError, match=r"none\.vts: no such file"):
+    with pytest.raises(FieldError, match=r"none\.vts: the file does not exist"):
         FieldOptions().field(str(tmp_path / "none.vts"))
 
 

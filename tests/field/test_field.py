@@ -388,8 +388,8 @@ ORDER = "expected strictly increasing times: sort the steps, and drop repeated o
         ),
         (
             {"velocity": ones(flat()) * 1j},
-            "velocity has type complex128; expected real numbers: convert it with astype(float), or "
-            "take its real part",
+            "velocity has type complex128; expected real numbers: convert it with astype(float), "
+            "or take its real part",
         ),
         ({"velocity": np.full((5, 7, 3), np.nan)}, UNUSABLE),
         *(
@@ -474,12 +474,14 @@ def test_downsampling_keeps_the_closing_line() -> None:
         (
             flat(),
             5,
-            "factor is 5, which keeps 1 of 5 lines; expected a smaller factor that keeps at least 2",
+            "factor is 5, which keeps 1 of 5 lines; expected a smaller factor that keeps at "
+            "least 2",
         ),
         (
             ring(9, last=True),
             6,
-            "factor is 6, which keeps 3 of 9 lines; expected a smaller factor that keeps at least 4",
+            "factor is 6, which keeps 3 of 9 lines; expected a smaller factor that keeps at "
+            "least 4",
         ),
     ],
 )

@@ -227,7 +227,7 @@ def test_a_period_leaves_its_last_time_out() -> None:
         ({"size": (8192, 8192)}, "MP4 can have at most 35,651,584 pixels"),
         ({"quality": 0}, "quality is 0; expected a number from 1 to 100"),
         ({"path": "flow.avi"}, "'.avi' is not a format; expected one for movies: .mp4, .gif"),
-        ({"path": "flow.gif", "fps": 60.0}, "a GIF can show at most 50 a second"),
+        ({"path": "flow.gif", "fps": 60.0}, "a GIF can show at most 50 frames per second"),
         ({"path": "flow.gif", "size": (0, 10)}, "size is 0 x 10; expected 1 to 16384 pixels"),
     ],
 )
@@ -236,7 +236,7 @@ def test_what_cannot_be_is_told_before_anything_is_drawn(
 ) -> None:
     pytest.importorskip("av")
     path = tmp_path / options.pop("path", "flow.mp4")
-    with pytest.raises(MovieError, match=r"expected|wants|at most|use|stands") as error:
+    with pytest.raises(MovieError, match=r"expected|needs|at most|use|stands") as error:
         flowtex.movie(shear(), path, **{"size": SIZE, **options})
     assert said in str(error.value) and not list(tmp_path.iterdir())
 
@@ -246,7 +246,7 @@ def test_a_field_without_a_sign_does_not_stream() -> None:
     field = FlowField.from_arrays(
         np.stack([x, y], -1), np.stack([1 + 0 * x, 0.2 * y], -1), sign_free=True
     )
-    with pytest.raises(MovieError, match="has no sign, so it cannot stream"):
+    with pytest.raises(MovieError, match="is sign-free, so it cannot stream"):
         frame_times(field, Settings(motion="speed"), fps=10)
 
 
@@ -287,7 +287,7 @@ def test_an_error_leaves_nothing(tmp_path: Path) -> None:
 
     with pytest.raises(MovieError, match="a picture is 10 x 10; expected 96 x 64"):
         write_movie(tmp_path / "a.mp4", broken(), 10.0)
-    with pytest.raises(MovieError, match="there are no pictures"):
+    with pytest.raises(MovieError, match="the movie has no pictures"):
         write_movie(tmp_path / "a.gif", [], 10.0)
     assert not list(tmp_path.iterdir())
 
@@ -351,5 +351,5 @@ def test_the_command_writes_a_movie(
     words = ["movie", file, "-o", out, "--seconds", 0.5, "--fps", 8, "--size", "96x64"]
     assert main([str(word) for word in [*words, "--samples", 5, "--beside", "lod=false"]]) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert "a loop without a seam" in said and "96 × 64, 4 frames in 0.5 s" in said
+    assert "a seamless loop" in said and "96 × 64, 4 frames in 0.5 s" in said
     assert mp4(out)[1].shape == (4, 64, 96, 3)

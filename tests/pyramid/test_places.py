@@ -68,7 +68,7 @@ def test_a_url_is_looked_at_before_it_is_called_a_store(tmp_path: Path, status: 
         server.fault = lambda path: 403
         with pytest.raises(PyramidError, match=r"zarr.json is missing or access is denied \(403\)"):
             is_store(server.address)
-        with pytest.raises(FieldError, match="the address no flowtex pyramid"):
+        with pytest.raises(FieldError, match="this address has no flowtex pyramid"):
             server.fault = lambda path: 404
             FlowField.from_file(server.address + "flow.nc")
     with pytest.raises(PyramidError, match="no server answers at this address"):

@@ -112,7 +112,7 @@ def test_an_unknown_setting_makes_no_link() -> None:
         ("theme=pink", "theme is 'pink'; expected 'dark' or 'light'"),
         ("split=all", "split is 'all'; expected 'nothing' or"),
         ("file=a%00b", "file is 'a\\x00b'; expected a name"),
-        ("file=" + "a" * 500, "expected a name of at most 400 characters"),
+        ("file=" + "a" * 500, "expected a name of at most 400 printable"),
         ("camera=parallel,0,0", "camera is 'parallel,0,0'; expected nine numbers"),
         ("camera=parallel,0,0,1,0,0,1,0,1,0,1,30", "on one line; expected up to point away"),
         ("camera=parallel,0,0,1,0,0,0,0,0,1,1,30", "on one line; expected up to point away"),

@@ -375,7 +375,7 @@ def test_a_file_that_is_missing(tmp_path: Path) -> None:
         "Similar names: flow.vtk"
     ):
         FlowField.from_file(tmp_path / "flow.vts")
-    with says(f"{tmp_path}: a folder, where a file was expected; name the mesh inside it"):
+    with says(f"{tmp_path}: this is a folder; expected a file: name the mesh inside it"):
         FlowField.from_file(tmp_path)
 
 
