@@ -449,7 +449,7 @@ def test_the_look_is_chosen_by_flags(
     assert np.abs(after - before).mean() > 3
 
 
-@pytest.mark.filterwarnings("default:Nothing of the surface")
+@pytest.mark.filterwarnings("default:The surface is outside")
 def test_a_picture_of_nothing_is_warned_of(run: Run, gyre: Path, tmp_path: Path) -> None:
     words = ["-o", tmp_path / "a.png", "--size", "80x60", "--zoom", "9", "--focus", "50,50"]
     code, _, err = run("render", gyre, *words)

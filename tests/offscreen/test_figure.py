@@ -82,7 +82,7 @@ def test_what_has_no_extent_is_refused() -> None:
         flowtex.extent(flowtex.examples.delta_wing_field())
     with pytest.raises(ValueError, match=r"^beside makes two views.*omit it"):
         flowtex.extent(edge(), beside={"lod": False})
-    with pytest.raises(ValueError, match=r"^camera is .*; omit it, and use zoom"):
+    with pytest.raises(ValueError, match=r"^camera is .*Omit it, and use zoom"):
         flowtex.extent(edge(), camera=[(0, 0, 9), (0, 0, 0), (0, 1, 0)])
 
 

@@ -80,7 +80,7 @@ REFUSED = [
     ("cmap", "virids", r"the colour map 'virids' does not exist; did you mean 'viridis'"),
     ("clim", (2, 1), r"clim is \(2, 1\); expected two numbers, \(low, high\), the lower one"),
     ("opacity", 2, r"opacity is 2; expected a number from 0 to 1"),
-    ("log_scale", True, r"log_scale needs values above 0, but 'speed' go from"),
+    ("log_scale", True, r"log_scale is True, but 'speed' ranges from"),
     ("colours", "magma", r"FlowHandle has no attribute 'colours'; did you mean 'color'"),
     ("contrast", 2, r"has no attribute 'contrast'; it is a setting: use settings\.con"),
 ]

@@ -71,7 +71,7 @@ def test_what_stands_beside_the_flow_comes_along(notebook: Any) -> None:
     add(notebook)
     notebook.add_mesh(pv.Sphere(), name="ball")
     notebook.add_text("words", name="words")
-    with pytest.warns(UserWarning, match=r"left out: 'words' \(vtk.*Another jupyter_backend"):
+    with pytest.warns(UserWarning, match=r"does not show: 'words' \(vtk.*Another jupyter_backend"):
         widget = shown(notebook, jupyter_backend="flowtex")
     [faces] = [run["faces"] for run in widget._header["bodies"]["runs"] if run["faces"][1]]
     assert faces == [0, 1680]

@@ -299,7 +299,7 @@ def test_places_that_hold_something_else(tmp_path: Path, stores: Stores) -> None
     zarr.open_group(tmp_path / "other.zarr", mode="w").create_array("u", shape=(3,), dtype="f4")
     with pytest.raises(PyramidError, match="contains no readable pyramid"):
         open_store(tmp_path / "other.zarr")
-    with pytest.raises(PyramidError, match="holds other data"):
+    with pytest.raises(PyramidError, match="contains other data"):
         made(tmp_path / "other.zarr", steady())
     stores.copy(tmp_path / "a.zarr", "steady")
     with pytest.raises(PyramidError, match="pyramid of another field"):

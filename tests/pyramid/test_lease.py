@@ -46,7 +46,9 @@ def clock() -> Clock:
 def test_a_lease_is_held_by_one(place: str, clock: Clock) -> None:
     with Lease(place, clock) as first:
         clock.now += STALE_S / 2
-        with pytest.raises(PyramidError, match=r"is being built by process \d+ on .*seen 60 s ago"):
+        with pytest.raises(
+            PyramidError, match=r"is being built by process \d+ on .*last active 60 s ago"
+        ):
             Lease(place, clock).__enter__()
         first.check()
     with Lease(place, clock) as second:

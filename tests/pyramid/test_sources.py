@@ -217,7 +217,7 @@ def test_what_has_no_file_is_known_by_all_of_its_values(tmp_path: Path) -> None:
             build(other, store, progress=False)
     # Nor is it mixed with what is made anew.
     (store / "0/velocity/c/1/0/0/0").unlink()
-    with pytest.raises(ChangedError, match="earlier state"):
+    with pytest.raises(ChangedError, match="earlier version"):
         build(corrected(data, 1), store, progress=False)
     with pytest.raises(FieldError, match="incomplete"):
         open_store(store)
@@ -261,7 +261,7 @@ def test_what_cannot_be_built_is_told(tmp_path: Path) -> None:
     data = around()
     with pytest.raises(FieldError, match=r"none of the .* nodes has data"):
         build(data.where(data.u > 9), tmp_path / "a.zarr", progress=False, u="u", v="v")
-    with pytest.raises(FieldError, match="globe is for what a field is made of"):
+    with pytest.raises(FieldError, match="globe applies to the data of a field"):
         build(FlowField.from_xarray(data), tmp_path / "b.zarr", progress=False, globe=True)
     build(data, tmp_path / "c.zarr", progress=False)
     with pytest.raises(FieldError, match="is already a pyramid"):
@@ -273,7 +273,7 @@ def test_threads_are_as_many_as_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     assert Threads().count(TILE_BYTES) == 8
     assert Threads("5GB").count(TILE_BYTES) == 3
     assert Threads(5_000_000_000).count(PART_BYTES) == 8
-    with pytest.raises(FieldError, match="memory is 'lots'; expected bytes"):
+    with pytest.raises(FieldError, match="memory is 'lots'; expected a number of bytes"):
         Threads("lots")
     with pytest.warns(UserWarning, match="memory is 1 GB, but a task may need 1.5 GB"):
         assert Threads("1GB").count(TILE_BYTES) == 1

@@ -154,7 +154,7 @@ def test_the_size_is_told_beforehand(store: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"noise": "texture", "resolution": 64}, "noise is 'texture'"),
+        ({"noise": "texture", "resolution": 64}, "with noise 'texture'"),
         ({"parameter": "time"}, "expected 'time' along"),
         ({"lines": "pathlines"}, "along streamlines; expected .* along pathlines"),
     ],

@@ -162,7 +162,7 @@ async def test_the_page_that_is_one_too_many_is_told(monkeypatch: pytest.MonkeyP
         assert len(here.site.sessions) == 2
         link = await here.link(one)
         status, said = await here.enter()
-        assert status == 503 and "room for 2 pages at a time" in said["words"]
+        assert status == 503 and "limit is 2 pages at a time" in said["words"]
         # Who has been away for a while makes room; who is there does not.
         monkeypatch.setattr(sessions, "REPLACE_AFTER_S", 0.0)
         gone = here.app(other)
@@ -415,7 +415,7 @@ def test_what_cannot_be_served_is_told() -> None:
         serve(field, limit=0)
     with pytest.raises(ServeError, match="idle is -1; expected a positive number"):
         serve(field, idle=-1)
-    with pytest.raises(FieldError, match="samples cannot go with a function"):
+    with pytest.raises(FieldError, match="samples cannot be used with a function"):
         serve(Plain, samples=3)
     assert usual_limit() >= 2
 
@@ -478,7 +478,7 @@ def test_two_users_at_once_look_from_different_places(browser: Browser, two_plac
     # Both places are taken: a third page says so, and opens when one has become free.
     third = users[0].new_page()
     third.goto(two_places.address)
-    third.get_by_text("room for 2 pages at a time").wait_for()
+    third.get_by_text("limit is 2 pages at a time").wait_for()
     other.close()
     let_in(third)
     # Another tab of the first user, and yet not the first user's camera.
