@@ -200,7 +200,7 @@ def test_axe_finds_nothing(page: Page) -> None:
 
 def test_a_broken_file_is_told(page: Page) -> None:
     open_file(page, "torn.vts")
-    page.get_by_text(re.compile("torn.vts.*cut short")).wait_for()
+    page.get_by_text(re.compile("torn.vts.*truncated")).wait_for()
     assert "block" in page.inner_text(".flowtex-title").lower()
 
 

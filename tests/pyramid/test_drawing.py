@@ -112,7 +112,7 @@ def test_the_shell_builds_tells_and_draws(
     assert "kept" in capsys.readouterr().out
     assert main(["info", str(store)]) == 0
     told = capsys.readouterr().out
-    assert "134 × 74 nodes" in told and "all of it" in told
+    assert "134 × 74 nodes" in told and "complete" in told
     assert main(["render", str(store), "-o", str(tmp_path / "a.png"), "--size", "100x80"]) == 0
     assert (tmp_path / "a.png").exists()
     assert main(["render", str(store), "-o", str(tmp_path / "b.png"), "--plane", "k=0"]) == 2

@@ -311,7 +311,7 @@ def test_a_saved_notebook_shows_pictures_where_no_kernel_runs(
     assert box is not None
     assert (box["width"], box["height"]) == (300, 200)
     assert shown.said("w.camera['parallel_scale']") == "0.25"
-    assert page.get_by_text("left out: 'ball'").count() == 0  # it is drawn
+    assert page.get_by_text("does not show: 'ball'").count() == 0  # it is drawn
     # The still that is saved is the last picture.
     page.wait_for_function(SENT)
     was = shown.said("len(w._frame), hash(w._frame)")
