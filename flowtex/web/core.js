@@ -172,10 +172,10 @@ event=>{event.preventDefault(),this.isLost=!0,this.objects=0,this.programs.clear
 this.picker=this.smooth=null;for(let user of this.users)user.lost()}),this.canvas.addEventListener("webglcontextrestored",
 ()=>{this.isLost=!1,this.findFeatures();for(let user of this.users)user.change()})}findFeatures(){let{gl}=this;if(!gl)return;
 let extensions=["EXT_color_buffer_float","EXT_color_buffer_half_float"];this.floats=extensions.some(name=>gl.getExtension(
-name)!==null),this.programs.findFeatures()}get context(){if(!this.gl)throw new Error("there is no WebGL2");return this.gl}leave(user){
-if(this.users.delete(user),this.waiting.delete(user),!this.users.size){cancelAnimationFrame(this.scheduled),this.scheduled=
-0,this.programs.dispose();for(let target of[this.picker,this.smooth])target&&this.freeTarget(target);this.picker=this.smooth=
-null,this.canvas.width=this.canvas.height=16}}request(user){this.waiting.add(user),this.scheduled||=requestAnimationFrame(
+name)!==null),this.programs.findFeatures()}get context(){if(!this.gl)throw new Error("WebGL2 is not available");return this.
+gl}leave(user){if(this.users.delete(user),this.waiting.delete(user),!this.users.size){cancelAnimationFrame(this.scheduled),
+this.scheduled=0,this.programs.dispose();for(let target of[this.picker,this.smooth])target&&this.freeTarget(target);this.
+picker=this.smooth=null,this.canvas.width=this.canvas.height=16}}request(user){this.waiting.add(user),this.scheduled||=requestAnimationFrame(
 now=>this.run(now))}run(now){this.scheduled=0;let until=performance.now()+FRAME_MS;for(let user of[...this.waiting])if(this.
 waiting.delete(user),user.frame(now,until),performance.now()>until)break;this.waiting.size&&(this.scheduled||=requestAnimationFrame(
 then=>this.run(then)))}counted(object){if(object===null)throw new Error("the graphics card has no memory left, or the co\
@@ -238,8 +238,8 @@ return partOfPlanes(info,new Uint8Array(await unzipped(text).arrayBuffer()))}fun
 packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(n);return new Response(
 new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};
 function partOfPlanes(info,planes){let{shape:shape2,differences=[0,0],scale:scale3=null}=info,count2=shape2.reduce((product2,n)=>product2*
-n,1),width=count2?planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(`the part "${info.name}" is not packed \
-as it tells`);let[line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](count2);
+n,1),width=count2?planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(`the packing of the part "${info.name}"\
+ is invalid`);let[line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](count2);
 for(let c=0,from=0;c<channels;c+=1)for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width;plane+=
 1)bits|=planes[plane*count2+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*channels;for(let order=0;order<differences[0];order+=
 1)for(let n=row2;n<count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<
@@ -318,9 +318,9 @@ lifetime.listen(isDarkWished(),"change",look)}update(){let{root}=this;if(!root.p
 root.parentElement);let[r,g,b]=this.colour.map(value=>Math.round(255*value));root.classList.toggle("flowtex-dark",(.299*
 r+.587*g+.114*b)/255<DARK),root.style.setProperty("--ground",`rgb(${r} ${g} ${b})`)}};function makeLayers(gl,texture,size){let{width,height,layers,channels,levels}=size,most=gl.getParameter(gl.MAX_TEXTURE_SIZE),
 mostLayers=gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);if(Math.max(width,height)>most||layers>mostLayers)throw new Error(
-`a texture of ${width} x ${height} texels in ${layers} layers is asked for, and this graphics card has ${most} x ${most}\
- in ${mostLayers}; show fewer nodes`);let target=gl.TEXTURE_2D_ARRAY;gl.bindTexture(target,texture),gl.texStorage3D(target,
-levels+1,channels===1?gl.R16F:gl.RGBA16F,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
+`a texture of ${width} x ${height} texels in ${layers} layers is needed, but this graphics card supports at most ${most}\
+ x ${most} in ${mostLayers}; show fewer nodes`);let target=gl.TEXTURE_2D_ARRAY;gl.bindTexture(target,texture),gl.texStorage3D(
+target,levels+1,channels===1?gl.R16F:gl.RGBA16F,width,height,layers),gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.LINEAR_MIPMAP_LINEAR),
 gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.LINEAR),gl.texParameteri(target,gl.TEXTURE_WRAP_S,gl.CLAMP_TO_EDGE),gl.
 texParameteri(target,gl.TEXTURE_WRAP_T,gl.CLAMP_TO_EDGE)}function sendLayer(gl,{width,height,channels,levels},layer,texels){
 let format=channels===1?gl.RED:gl.RGBA;gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);for(let[level,w,h]=[0,width,height];;level+=
@@ -564,8 +564,8 @@ ends:ends2,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{vi
 PLAIN?!1:scalars.value,clim:null})});for(let end of ends2)lifetime.listen(end,"change",()=>this.takeRange());lifetime.listen(
 auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(this.robust,"click",()=>viewer.chooseColours({clim:"\
 robust"})),lifetime.listen(this.log,"change",()=>viewer.chooseColours({log_scale:this.log.checked})),lifetime.listen(this.
-opacity,"input",()=>viewer.chooseColours({opacity:this.opacity.valueAsNumber})),this.robust.title="Leave out the least a\
-nd the greatest values.",lifetime.listen(swatches,"click",event=>{let name=event.target.dataset.cmap;name&&viewer.chooseColours(
+opacity,"input",()=>viewer.chooseColours({opacity:this.opacity.valueAsNumber})),this.robust.title="Ignore the lowest and\
+ the highest values.",lifetime.listen(swatches,"click",event=>{let name=event.target.dataset.cmap;name&&viewer.chooseColours(
 {cmap:name})});let row2=(name,...fields)=>dom("div",{class:"row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=
 row2("Range",dom("span",{class:"between"},[...ends2,auto,this.robust])),this.mapRow=row2("Colour map",swatches),this.mapRow.
 classList.add("ranged"),this.opacityRow.classList.add("ranged"),this.element.append(row2("Colour by",scalars),this.mapRow,
@@ -797,8 +797,8 @@ DOT.most);picture.append(shape("circle",{cx,cy,r:most*(.35+.65*weight),fill:colo
 if(place){let[cx,cy]=mapping(place);picture.append(shape("circle",{cx,cy,r:POINT_RADIUS2,class:"point"}))}return picture}
 function samplesOf(samples,point,camera){let bars=samples.map(({weight,colour})=>{let bar=dom("i");return bar.style.cssText=
 `height: ${100*weight}%; background: ${colour}`,bar});return dom("div",{class:"samples"},[enlarged(samples,point,camera),
-dom("div",{class:"bars",title:"Each bar is a sample: its height the weight, its grey the noise it meets."},bars),dom("di\
-v",{class:"ends"},[dom("span",{},["behind"]),dom("span",{},["ahead"])])])}var TITLE="Path through this point",SVG3="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
+dom("div",{class:"bars",title:"Each bar is a sample: its height is the weight, its grey is the noise."},bars),dom("div",
+{class:"ends"},[dom("span",{},["behind"]),dom("span",{},["ahead"])])])}var TITLE="Path through this point",SVG3="http://www.w3.org/2000/svg",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,
 RETRY_MS=40,PLACES_IN_VIEW=200,DEGREE_M=111195,DOT_RADIUS=8;function vectorText(vector,size,digits,flat){return`(${vector.
 slice(0,flat?2:3).map(x=>{let value=Math.abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(
 digits))):numberText(value,digits)}).join(", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
@@ -1128,7 +1128,7 @@ platform)?"⌘":"Ctrl",HINT=`Click, or hold ${KEY}, to zoom with the wheel`,TIME
 -label":"Time"},FORBIDDEN=/[\\/:*?"<>|]+/g,styleSheet=new CSSStyleSheet;styleSheet.replaceSync(styles_default);var Panel=class{viewer;legend=new Legend;axes;axesMenu=dom(
 "select",{},AXES.map(kind=>dom("option",{},[kind])));axesRow=dom("label",{class:"row"},[dom("span",{class:"name"},["Axes"]),
 this.axesMenu]);paceMenu=dom("select",{},PACES.map(pace=>dom("option",{value:`${pace}`},[`${pace}×`])));paceRow=dom("la\
-bel",{class:"row",title:"How fast time goes by."},[dom("span",{class:"name"},["Pace"]),this.paceMenu]);controls;colours;isShown;axesKind=null;isOpen=!1;legendLook="";title=dom(
+bel",{class:"row",title:"Speed of the animation."},[dom("span",{class:"name"},["Pace"]),this.paceMenu]);controls;colours;isShown;axesKind=null;isOpen=!1;legendLook="";title=dom(
 "div",{class:"title"});readout=dom("div",{class:"readout",role:"status"});parameters=dom("div",{class:"parameters"});head=dom(
 "div",{class:"head glass",hidden:""},[this.title,this.parameters,this.readout]);note=dom("div",{class:"note",hidden:"",role:"\
 alert"});doing=dom("span",{role:"status"});count=dom("span",{"aria-hidden":"true"});busy=dom("div",{class:"busy",hidden:""},
@@ -1139,8 +1139,8 @@ this.viewer=viewer;let{root,stage,canvas,options}=viewer;this.isShown=options.co
 lifetime.listen(this.axesMenu,"change",()=>{let kind=this.axesMenu.value;for(let{panel}of viewer.together)panel.chooseAxes(
 kind);options.onAxes?.(kind)}),this.controls=new Controls(viewer),this.colours=new ColourControls(viewer),this.handle=this.
 button("show","Show the bar (h)",()=>this.toggle()),this.handle.classList.add("handle","glass"),this.playButton=this.button(
-"play","Play (space)",()=>viewer.togglePlaying()),this.stepButtons=[this.button("previous","A step back (,)",()=>viewer.
-step(-1)),this.button("next","A step on (.)",()=>viewer.step(1))],viewer.lifetime.listen(this.paceMenu,"change",()=>viewer.
+"play","Play (space)",()=>viewer.togglePlaying()),this.stepButtons=[this.button("previous","Step back (,)",()=>viewer.step(
+-1)),this.button("next","Step forward (.)",()=>viewer.step(1))],viewer.lifetime.listen(this.paceMenu,"change",()=>viewer.
 player.pace=Number(this.paceMenu.value)),viewer.lifetime.listen(this.slider,"input",()=>viewer.scrub(Number(this.slider.
 value)));let toggle=name=>()=>viewer.choose(name,!viewer.settings[name]);this.toggles={lod:this.button("lod","Level of d\
 etail",toggle("lod")),show_level:this.button("levels","Show level",toggle("show_level"))},this.gear=this.button("setting\
@@ -1310,7 +1310,7 @@ b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),wher
 max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
 sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function compiled(tree){if(typeof tree=="number")return()=>tree;
 if(typeof tree=="string")return values=>values[tree];let[name,...parts]=tree,call=OPERATIONS.get(String(name));if(!call)
-throw new Error(`the formula has the operation "${name}", which this client does not know`);let[first,second,...rest]=parts.
+throw new Error(`the formula has the operation "${name}", which this client does not support`);let[first,second,...rest]=parts.
 map(compiled);return second?rest.length?name==="where"?values=>first(values)?second(values):rest[0](values):values=>rest.
 reduce((sum,part)=>call(sum,part(values)),call(first(values),second(values))):values=>call(first(values),second(values)):
 values=>call(first(values))}var Grid=class{header;formula;rates;constructor(header,formula){[this.header,this.formula]=[
@@ -1353,7 +1353,7 @@ window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(shape2[0
 1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,start+shape2[1]),j*shape2[1])}let values=`scalar\
 s/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flow/${step}`,flow),this.named(`${prefix}${values}`,
 {data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,{mesh,pyramid,geometry,slices}=header,{trace}=slices;
-if(!pyramid||!trace)throw new Error("a formula comes without its levels");let[level,...place]=key,cells=pyramid.tileBlocks*
+if(!pyramid||!trace)throw new Error("the levels of the formula are missing");let[level,...place]=key,cells=pyramid.tileBlocks*
 mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-
 1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-
 from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,
@@ -1883,9 +1883,9 @@ this.release(tile,each)}for(let{data}of parts.values())bytes+=BYTES_HELD*data.by
 (this.host.options.source?.memory??BUDGET_BYTES)&&used<this.count&&this.drop(name)}}drop(name){let tile=this.tiles.get(name);
 tile?.scene?.dispose();for(let part of[...tile?.parts.keys()??[]])this.release(tile,part);this.tiles.delete(name)}release(tile,part){
 part!=="cmap"&&this.root.graphics.release(tile?.parts.get(part)),tile?.parts.delete(part)}};var WebGL2Painter=class{scene=null;tiles=null;shown=null;view;renderer;next=[];constructor(view){this.view=view,this.renderer=
-new ProgressiveRenderer(view,this),!view.graphics.gl&&view.panel.fail("This browser has no WebGL2, which the picture is \
-drawn with.","Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}open(header){let{
-view}=this;this.leave(),this.scene=new Scene(view.graphics,header,view.parts),this.tiles=new Tiles(view,this.scene)}leave(){
+new ProgressiveRenderer(view,this),!view.graphics.gl&&view.panel.fail("This browser has no WebGL2, which is needed to dr\
+aw the picture.","Turn on hardware acceleration in its settings, or use a recent Firefox, Chrome or Safari.")}open(header){
+let{view}=this;this.leave(),this.scene=new Scene(view.graphics,header,view.parts),this.tiles=new Tiles(view,this.scene)}leave(){
 this.tiles?.dispose(),this.scene?.dispose(),this.tiles=this.scene=null}dispose(){this.leave(),this.renderer.dispose()}restart(cameraOnly){
 this.renderer.restart(cameraOnly)}resize(width,height){this.renderer.resize(width,height)}refine(){this.renderer.refine()}arrange(shown){
 let scenes2=this.tiles?.arrange(shown)??[];return this.view.root.dataset.tiles=String(this.tiles?.pending??0),scenes2}get smooth(){
@@ -1985,8 +1985,8 @@ tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,un
 frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}advance(now){
 let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;!player.playing||!player.advance(now,isMade)||
 (player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),painter.restart?.(!1),this.
-setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("there is not\
-hing to look at yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},
+setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("no scene is \
+shown yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},
 shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{
 header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){return this.canPick?this.painter.find?.(
 x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
@@ -2138,8 +2138,8 @@ part=""}=element.dataset;return[Number(view),JSON.parse(part),element.textConten
 let place=document.getElementById("flowtex"),status=document.getElementById("status"),loading=document.getElementById("l\
 oading");try{let headers=await unzipped(document.getElementById("headers")?.textContent??"").json(),look=()=>{status.hidden=
 !place.querySelector('[data-failed="true"]'),loading.hidden=!status.hidden,status.textContent="This browser cannot draw \
-the flow, for want of WebGL2; here is a picture of it.",!place.querySelector('.flowtex:not([data-drawn="true"])')&&(watch.
-disconnect(),document.getElementById("preview")?.remove(),loading.remove())},watch=new MutationObserver(look),attributeFilter=[
+the flow because it has no WebGL2; this is a still picture.",!place.querySelector('.flowtex:not([data-drawn="true"])')&&
+(watch.disconnect(),document.getElementById("preview")?.remove(),loading.remove())},watch=new MutationObserver(look),attributeFilter=[
 "data-drawn","data-failed"];watch.observe(place,{subtree:!0,childList:!0,attributeFilter});let scene={headers,parts:partsOfPage()},
 {view,filled}=showPacked(place,scene,openStore,(n,part,parts)=>{let which=headers.length>1?` of view ${n+1}`:"";loading.
 lastElementChild.textContent=`${which}, ${part} of ${parts} parts`}),{root}=view.first;document.addEventListener("keydow\
@@ -2183,21 +2183,21 @@ this.handlers.some(([other])=>other===event)||(this.handlers.push([event,call]),
 this.listen(`change:${name}`,()=>{let value=this.model.get(name);this.sent.get(name)!==JSON.stringify(value)&&take(value),
 this.sent.delete(name)})}connect(){let{viewers,first}=this;this.listen("msg:custom",(message,buffers)=>{hasParts(message)&&
 this.take(opened(message,buffers)),message?.kind==="loaded"&&this.sources[message.view??0]?.end(message),message?.kind===
-"error"&&first.panel.fail("The kernel could not go on.",message.text??"")}),viewers.forEach((_,n)=>this.listen(`change:${HEADERS[n]}`,
-()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",value=>{let camera=cameraOf(value);
-camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.forEach(viewer=>viewer.setTime(
-Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(clock)))),this.follow("playing",
-playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(!!shown)),this.follow("axes",kind=>viewers.
-forEach(({panel})=>panel.chooseAxes(kind)))}resize(){let[width,height]=this.model.get("size")??[0,0],{style,parentElement}=this.
-view;style.width=width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX2}px`,parentElement?.classList.toggle("flowt\
-ex-room",!width)}takeHeader(n){let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;let rows=header.table??
-[],values=rows.map(row2=>[row2.name,model.get(row2.name)??row2.default]),now={shaders:model.get("_shaders")[n],settings:Object.
-fromEntries(values),camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.get("clock")??0,axes:model.
-get("axes")??null};this.viewers[n].setHeader({...header,...now},!0);for(let delivery of this.early.splice(0))this.take(delivery);
-for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.followSetting(name,value)})}take(delivery){
-let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.header?viewer.header.generation??0:-1;if(delivery.
-generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.generation!==generation&&name.includes(
-"/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.lacking.filter(name=>!isOld(
-name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,view:delivery.view})}dispose(){
-for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.adoptedStyleSheets=document.
-adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};document.readyState==="loading"?document.addEventListener("DOMContentLoaded",showLiveViews):showLiveViews();return __toCommonJS(core_exports);})();
+"error"&&first.panel.fail("The kernel could not continue.",message.text??"")}),viewers.forEach((_,n)=>this.listen(`chang\
+e:${HEADERS[n]}`,()=>this.takeHeader(n))),this.listen("change:size",()=>this.resize()),this.follow("camera",value=>{let camera=cameraOf(
+value);camera&&viewers.forEach(viewer=>viewer.setCamera(camera))}),this.follow("time",time=>viewers.forEach(viewer=>viewer.
+setTime(Number(time)))),this.follow("clock",clock=>viewers.forEach(viewer=>viewer.setClock(Number(clock)))),this.follow(
+"playing",playing=>playing?first.play():first.pause()),this.follow("bar",shown=>first.panel.toggle(!!shown)),this.follow(
+"axes",kind=>viewers.forEach(({panel})=>panel.chooseAxes(kind)))}resize(){let[width,height]=this.model.get("size")??[0,0],
+{style,parentElement}=this.view;style.width=width?`${width}px`:"100%",style.height=`${height||HEIGHT_PX2}px`,parentElement?.
+classList.toggle("flowtex-room",!width)}takeHeader(n){let{model}=this,header=model.get(HEADERS[n]);if(!header?.format)return;
+let rows=header.table??[],values=rows.map(row2=>[row2.name,model.get(row2.name)??row2.default]),now={shaders:model.get("\
+_shaders")[n],settings:Object.fromEntries(values),camera:cameraOf(model.get("camera")),time:model.get("time")??0,clock:model.
+get("clock")??0,axes:model.get("axes")??null};this.viewers[n].setHeader({...header,...now},!0);for(let delivery of this.
+early.splice(0))this.take(delivery);for(let{name}of rows)this.follow(name,value=>{for(let viewer of this.viewers)viewer.
+followSetting(name,value)})}take(delivery){let viewer=this.viewers[delivery.view];if(!viewer)return;let generation=viewer.
+header?viewer.header.generation??0:-1;if(delivery.generation>generation)return void this.early.push(delivery);let isOld=name=>delivery.
+generation!==generation&&name.includes("/");for(let part of delivery.parts)isOld(part.name)||viewer.setPart(part);let names=delivery.
+lacking.filter(name=>!isOld(name));discard([delivery]),this.becomeLive(),names.length&&this.model.send({kind:"want",names,
+view:delivery.view})}dispose(){for(let[event,call]of this.handlers)this.model.off(event,call);discard(this.early),document.
+adoptedStyleSheets=document.adoptedStyleSheets.filter(s=>s!==this.sheet),this.view.dispose(),this.view.remove()}};document.readyState==="loading"?document.addEventListener("DOMContentLoaded",showLiveViews):showLiveViews();return __toCommonJS(core_exports);})();

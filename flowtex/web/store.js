@@ -41,7 +41,7 @@ map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.by
 bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+new DataView(file.buffer,file.byteOffset).getUint32(
 0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),first]}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{shape,differences=[0,0],scale=null}=info,
 count=shape.reduce((product,n)=>product*n,1),width=count?planes.length/count:1;if(!(width in UNSIGNED))throw new Error(`\
-the part "${info.name}" is not packed as it tells`);let[line,channels]=shape.length>2?shape.slice(-2):[...shape,1].slice(
+the packing of the part "${info.name}" is invalid`);let[line,channels]=shape.length>2?shape.slice(-2):[...shape,1].slice(
 -2),numbers=new UNSIGNED[width](count);for(let c=0,from=0;c<channels;c+=1)for(let n=c;n<count;n+=channels,from+=1){let bits=0;
 for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row=line*
 channels;for(let order=0;order<differences[0];order+=1)for(let n=row;n<count;n+=1)numbers[n]+=numbers[n-row];for(let order=0;order<
@@ -361,10 +361,10 @@ size=0,reader=stream?.getReader();try{for(;;){let{done=!0,value}=await reader?.r
 value),size+=value.length,grown(size)}}catch(error){throw reader?.cancel().catch(()=>{}),error}let bytes=new Uint8Array(
 size);return pieces.reduce((at,piece)=>(bytes.set(piece,at),at+piece.length),0),bytes}var CheckSum=class _CheckSum{kind="\
 bytes_to_bytes";static fromConfig(){return new _CheckSum}encode(){throw new Error("nothing is written")}decode(bytes){let end=bytes.
-byteLength-SUM_BYTES;if(end<0)throw new Error("there is no check sum");let{buffer,byteOffset}=bytes,told=new DataView(buffer,
-byteOffset+end,SUM_BYTES).getUint32(0,!0),inside=new Uint8Array(buffer,byteOffset,end);if(told!==crc32c(inside))throw new Error(
-"the check sum does not fit");return inside}computeEncodedSize(size){return size+SUM_BYTES}},Gzip=class _Gzip{kind="byte\
-s_to_bytes";most;constructor(most){this.most=most}static fromConfig(_,{shape}){return new _Gzip(Math.min(shape.reduce((size,n)=>size*
+byteLength-SUM_BYTES;if(end<0)throw new Error("the checksum is missing");let{buffer,byteOffset}=bytes,told=new DataView(
+buffer,byteOffset+end,SUM_BYTES).getUint32(0,!0),inside=new Uint8Array(buffer,byteOffset,end);if(told!==crc32c(inside))throw new Error(
+"checksum mismatch");return inside}computeEncodedSize(size){return size+SUM_BYTES}},Gzip=class _Gzip{kind="bytes_to_byte\
+s";most;constructor(most){this.most=most}static fromConfig(_,{shape}){return new _Gzip(Math.min(shape.reduce((size,n)=>size*
 n,NUMBER_BYTES),MOST_CHUNK_BYTES))}encode(){throw new Error("nothing is written")}async decode(bytes){let packed=new Blob(
 [bytes]).stream();return joined(packed.pipeThrough(new DecompressionStream("gzip")),size=>{if(size>this.most)throw new Error(
 `a chunk unpacks to more than ${this.most} bytes`)})}};registry.set("gzip",()=>Promise.resolve(Gzip));registry.set("crc3\
@@ -374,15 +374,15 @@ timer),reject(signal.reason)},timer=setTimeout(()=>{signal.removeEventListener("
 signal.addEventListener("abort",stop,{once:!0});let timer=setTimeout(stop,STALL_MS);try{signal.throwIfAborted();let{status,
 body}=await fetch(url,{signal:controller.signal}),bytes=await joined(status===OK?body:null,()=>{clearTimeout(timer),timer=
 setTimeout(stop,STALL_MS)});return[status,bytes]}finally{controller.abort(),clearTimeout(timer),signal.removeEventListener(
-"abort",stop)}}async function object(url,signal){for(let trial=0;;trial+=1){let said="nobody answers";try{let[status,bytes]=await answer(
-url,signal);if(status===OK)return bytes;if(ABSENT.includes(status))return;if(said=`the server answers ${status}`,status<
-FAULT&&status!==BUSY)throw new StoreError("broken",said)}catch(error){if(signal.throwIfAborted(),error instanceof StoreError)
-throw error}if(trial===PAUSES_MS.length)throw new StoreError("unreachable",said);await paused(PAUSES_MS[trial],signal)}}
-var Objects=class{url;described;shards=new Map;constructor(url,described){this.url=url,this.described=described}get=async(key,options)=>key.
+"abort",stop)}}async function object(url,signal){for(let trial=0;;trial+=1){let said="no server answers";try{let[status,
+bytes]=await answer(url,signal);if(status===OK)return bytes;if(ABSENT.includes(status))return;if(said=`the server answer\
+s ${status}`,status<FAULT&&status!==BUSY)throw new StoreError("broken",said)}catch(error){if(signal.throwIfAborted(),error instanceof
+StoreError)throw error}if(trial===PAUSES_MS.length)throw new StoreError("unreachable",said);await paused(PAUSES_MS[trial],
+signal)}}var Objects=class{url;described;shards=new Map;constructor(url,described){this.url=url,this.described=described}get=async(key,options)=>key.
 endsWith("/zarr.json")?this.description(key):this.object(key,options?.signal);getRange=async(key,range,options)=>{let bytes=this.
 shards.get(key)??this.object(key,options?.signal);this.shards.set(key,bytes);let all=await bytes;return"suffixLength"in range?
 all?.subarray(-range.suffixLength):all?.subarray(range.offset,range.offset+range.length)};async object(key,signal=new AbortController().
-signal){let bytes=await object(this.url+key,signal);if(!bytes)throw new StoreError("missing",`${key} is not there`);return bytes}description(key){
+signal){let bytes=await object(this.url+key,signal);if(!bytes)throw new StoreError("missing",`${key} is missing`);return bytes}description(key){
 let known=this.described.get(key);if(known)return known;let found=object(this.url+key,new AbortController().signal);return this.
 described.set(key,found),found.catch(()=>this.described.delete(key)),found}};function storeError(error){if(error instanceof
 StoreError)return error;let fault=error instanceof NotFoundError&&!error.found?"missing":"broken";return new StoreError(
@@ -390,11 +390,11 @@ fault,error instanceof Error?error.message:String(error))}var Store=class{url;de
 url.replace(/\/+$/,"")}async attributes(){let objects=new Objects(this.url,this.described);return(await open.v3(root(objects),
 {kind:"group"})).attrs}async array(path){let objects=new Objects(this.url,this.described),array=await open.v3(root(objects).
 resolve(path),{kind:"array"});if(!array.is("number"))throw new StoreError("broken",`${path} has no numbers`);return array}};var nameOf=key=>key.join("/");var MOST_LAYERS=64,MOST_LAGS=32,MOST_NODES=4096,MOST_BYTES=2**28,TRACED_FROM=["padded","unit","open","nearest","normal",
-"rays"],REASONS={missing:"it is not in the store, or the store is not open to everyone.",broken:"what the store has of i\
-t is broken.",unreachable:"the store does not answer. It is away, the network is, or pages from elsewhere may not read i\
-t (CORS)."},IDENTITY=["format","fingerprint","parameter","lines"],isCount=(value,most)=>Number.isInteger(value)&&Number(
-value)>0&&Number(value)<=most,areNumbers=(values,count)=>Array.isArray(values)&&values.every(Number.isFinite)&&(count??values.
-length)===values.length,areWhole=(values,count)=>areNumbers(values,count)&&values.every(Number.isInteger);function arePoles({
+"rays"],REASONS={missing:"it is not in the store, or the store is not public.",broken:"its data in the store are corrupt\
+.",unreachable:"the store does not answer. The server or the network may be down, or the server does not allow this page\
+ to read it (CORS)."},IDENTITY=["format","fingerprint","parameter","lines"],isCount=(value,most)=>Number.isInteger(value)&&
+Number(value)>0&&Number(value)<=most,areNumbers=(values,count)=>Array.isArray(values)&&values.every(Number.isFinite)&&(count??
+values.length)===values.length,areWhole=(values,count)=>areNumbers(values,count)&&values.every(Number.isInteger);function arePoles({
 nodes,longest=0,poles=[]}){return Number.isFinite(longest)&&poles.length<=2&&poles.every(({component,line,inward,near,plane})=>[
 0,1].includes(component)&&component===poles[0].component&&line===(inward>0?0:nodes[1-component]-1)&&[1,-1].includes(inward)&&
 isCount(near,MOST_NODES)&&areNumbers(plane,6))}function checkHeader(own,{geometry:whole,slices:all}){let{geometry,slices}=own,
@@ -408,8 +408,8 @@ extra)&&slices.extra.every(n=>Number.isInteger(n)&&n>=0&&n<slices.count)&&areNum
 (!trace||trace.parts.every(part=>TRACED_FROM.includes(part))&&areNumbers(trace.nodes,2)&&trace.nodes.every((n,axis)=>isCount(
 n,MOST_NODES)&&trace.drawn[axis]+shape[axis]<=n)&&areWhole([...trace.first,...trace.drawn],4)&&trace.drawn.every(n=>n>=0)&&
 areNumbers(trace.closed.map(Number),2)&&areNumbers([...trace.offset,...trace.middle,trace.unit,trace.pace,trace.rest],12)&&
-arePoles(trace)&&(!trace.timed||areNumbers([trace.timed.unit,trace.timed.speed],2)))))throw new Error("what is told of a\
- tile does not fit the page")}function sizesOf({geometry,slices}){let{shape,planar}=geometry,{trace,count,channels,extra}=slices,
+arePoles(trace)&&(!trace.timed||areNumbers([trace.timed.unit,trace.timed.speed],2)))))throw new Error("the header of a t\
+ile does not match the page")}function sizesOf({geometry,slices}){let{shape,planar}=geometry,{trace,count,channels,extra}=slices,
 size=(numbers,...more)=>[...numbers,...more].reduce((a,b)=>a*b,1),texels=[geometry.rows.size,geometry.columns.size],nodes=trace?.
 nodes??[],sizes={cells:[Uint8Array,[size(shape.map(n=>n-1))]],normal:[Int16Array,[size(shape,3)]],scalars:[Float32Array,
 [size(shape)]]};if(trace){sizes.unit=[Uint16Array,[size(nodes)]],sizes.padded=[Float32Array,[size(nodes.map(n=>n+2),3)]],
@@ -420,53 +420,53 @@ sizes.open=[Uint8Array,[size(nodes)]],sizes.nearest=[Int16Array,[size(nodes,2)]]
 mal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){let{sizes}=sizesOf(header),blocks=header.geometry.
 shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){let kind=sizes[name.split("/")[0]];if(!(kind?
 data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof Float32Array&&own.length===3&&own[0]===
-blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]))throw new Error(`the part "${name}" of a tile has ano\
-ther size than is told`)}}function speedOf(flow,{geometry,slices},typical){let[rows,columns]=geometry.shape,[channels,{drawn,
-nodes}={drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(rows*columns);for(let n=0;n<data.length;n+=
+blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]))throw new Error(`the part "${name}" of a tile has a w\
+rong size`)}}function speedOf(flow,{geometry,slices},typical){let[rows,columns]=geometry.shape,[channels,{drawn,nodes}={
+drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(rows*columns);for(let n=0;n<data.length;n+=
 1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=typical*fromHalf(Number(flow.data[channels*
 (at+1)-1]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest} speed`}}function explained(error){let known=storeError(
 error);return known.fault==="other"||known.detail!==known.message?known:new StoreError(known.fault,REASONS[known.fault],
 known.message)}var Stream=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(header,base){
-let told=header.store;if(!told)throw new Error("the page does not tell where its store is");this.header=header,this.told=
+let told=header.store;if(!told)throw new Error("the page does not say where its store is");this.header=header,this.told=
 told,this.url=new URL(told.url,base),this.store=new Store(this.url.href)}open(){return this.opening??=this.compare().catch(
 error=>{let fault=explained(error);throw fault.fault==="unreachable"&&(this.opening=null),fault}),this.opening}async compare(){
-let{url}=this.told;if(!/^https?:/.test(this.url.protocol)){let text2=`This page looks for its store at ${url} beside its\
-elf, which a browser does not read where the page is a file: open it from a web server.`;throw new StoreError("other",text2)}
-let own=(await this.store.attributes()).flowtex;if(IDENTITY.every(name=>own?.[name]===this.told[name]))return;let text=`\
-The store at ${url} holds another flow than this page, or one with other paths or of another version: export the page ag\
-ain.`;throw new StoreError("other",text)}load=async(tile,steps,signal,has)=>{let key=tile??[this.told.depth,0,0],name=nameOf(
-key);return this.loaded(signal,async whole=>{let late=steps.filter(step=>!has(`slices/${step}`)&&!has(`flow/${step}`)),known=tile?
-has("header")&&!late.length?this.headers.get(name):void 0:this.header,surface=known===void 0?this.surface(key,whole):{header:known,
-parts:[]},coming=new Map(late.map(step=>[step,this.flow(key,step,whole)])),flows=[...coming.values()],rest=async()=>{let{
-header,parts:parts2}=await surface;if(tile&&this.headers.set(name,header),!header)return parts2;let[values,...slices]=await Promise.
-all([this.values(key,header,steps,has,whole,coming),...flows]);if(checkParts(slices.flat(),header,this.header.mesh.tileCells),
-!slices.every(each=>each.length))throw new Error(`tile ${name} has no flow`);return[...parts2,...slices.flat(),...values]},
-[parts]=await Promise.all([rest(),...flows]);return tile?parts.map(part=>({...part,name:`tile/${name}/${part.name}`})):parts})};async loaded(signal,load){
-let controller=new AbortController;signal.addEventListener("abort",()=>controller.abort(),{once:!0});try{return await this.
-open(),signal.throwIfAborted(),await load(controller.signal)}catch(error){throw signal.throwIfAborted(),explained(error)}finally{
-controller.abort()}}async file(kind,key,at,signal){let array=await this.store.array(`${key[0]}/${kind}`),chunk=async n=>{
-let{data}=await array.getChunk([...at,n],{signal});if(!(data instanceof Uint8Array))throw new Error(`${array.path} has n\
-o bytes`);return data},first=await chunk(0),[infos,start]=infosOfFile(first),size=infos.reduce((sum,{bytes})=>sum+bytes,
-start);if(!isCount(size,MOST_BYTES))throw new Error(`a file of ${array.path} tells another size`);let file=new Uint8Array(
-Math.ceil(size/first.length)*first.length);file.set(first);for(let n=1;n*first.length<size;n+=1)file.set(await chunk(n),
-n*first.length);let parts=new Map;for(let part of partsOfFile(file.buffer)){let[tile,name]=tilePart(part.name)??["",part.
-name];if(tile&&tile!==nameOf(key))throw new Error(`in place of tile ${nameOf(key)} is ${tile}`);parts.set(name,{...part,
-name})}if(new TextDecoder().decode(parts.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${nameOf(key)} i\
-s that of another flow`);return parts.delete("of"),parts}async surface(key,signal){let parts=await this.file("surface",key,
-[key[1],key[2]],signal),header=this.tileHeader(parts.get("header"));if(parts.delete("header"),header){let missing=sizesOf(
-header).needed.filter(name=>!parts.has(name));if(missing.length)throw new Error(`a tile has no ${missing.join(", ")}`);checkParts(
-[...parts.values()],header,this.header.mesh.tileCells)}let text=new TextEncoder().encode(JSON.stringify(header)),told={name:"\
-header",data:text,shape:[text.length],digest:`${this.told.fingerprint} ${nameOf(key)} header`};return{header,parts:[told,
-...parts.values()]}}tileHeader(part){let own=JSON.parse(new TextDecoder().decode(part?.data));if(own===null)return null;
-let{steps,times,timeUnit,dates,pace}=this.header.slices;return checkHeader(own,this.header),{...own,slices:{...own.slices,
-steps,times,timeUnit,dates,pace}}}async flow(key,step,signal){let source=this.told.steps[step];return[...(await this.file(
-"flow",key,[source,key[1],key[2]],signal)).values()].map(part=>{let[kind,own]=part.name.split("/");if(Number(own)!==source)
-throw new Error(`in place of step ${source} is ${part.name}`);return{...part,name:`${kind}/${step}`}})}async values(key,place,steps,has,signal,coming){
-let parts=new Map;for(;;){let{name,steps:count,number}=this.header.scalars,names=(count>1?steps:[0]).map(step=>number?`s\
-calars/${step}/${number}`:`scalars/${step}`),lacking=name===null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.
-length)return[...parts.values()];let found=await Promise.all(lacking.map(async each=>{let step=count>1?stepOf(each):0;if(!number&&
-this.told.derivesSpeed&&place.slices.trace){let[flow]=await(coming.get(step)??this.flow(key,step,signal));return{...speedOf(
-flow,place,this.header.speed.typical),name:each}}let source=count>1?this.told.steps[step]:0,part=(await this.file("value\
-s",key,[source,key[1],key[2],number],signal)).get(`scalars/${source}/${number}`);if(!part)throw new Error(`tile ${nameOf(
-key)} has no values of step ${source}`);return{...part,name:each}}));checkParts(found,place,this.header.mesh.tileCells);
-for(let part of found)parts.set(part.name,part)}}};var open2=header=>new Stream(header,location.href);return __toCommonJS(store_exports);})();
+let{url}=this.told;if(!/^https?:/.test(this.url.protocol)){let text2=`This page reads its store from ${url} in the same \
+folder, which browsers do not allow when the page is opened as a file: open it from a web server.`;throw new StoreError(
+"other",text2)}let own=(await this.store.attributes()).flowtex;if(IDENTITY.every(name=>own?.[name]===this.told[name]))return;
+let text=`The store at ${url} does not match this page: it has another flow, other paths or another version: export the \
+page again.`;throw new StoreError("other",text)}load=async(tile,steps,signal,has)=>{let key=tile??[this.told.depth,0,0],
+name=nameOf(key);return this.loaded(signal,async whole=>{let late=steps.filter(step=>!has(`slices/${step}`)&&!has(`flow/${step}`)),
+known=tile?has("header")&&!late.length?this.headers.get(name):void 0:this.header,surface=known===void 0?this.surface(key,
+whole):{header:known,parts:[]},coming=new Map(late.map(step=>[step,this.flow(key,step,whole)])),flows=[...coming.values()],
+rest=async()=>{let{header,parts:parts2}=await surface;if(tile&&this.headers.set(name,header),!header)return parts2;let[values,
+...slices]=await Promise.all([this.values(key,header,steps,has,whole,coming),...flows]);if(checkParts(slices.flat(),header,
+this.header.mesh.tileCells),!slices.every(each=>each.length))throw new Error(`tile ${name} has no flow`);return[...parts2,
+...slices.flat(),...values]},[parts]=await Promise.all([rest(),...flows]);return tile?parts.map(part=>({...part,name:`ti\
+le/${name}/${part.name}`})):parts})};async loaded(signal,load){let controller=new AbortController;signal.addEventListener(
+"abort",()=>controller.abort(),{once:!0});try{return await this.open(),signal.throwIfAborted(),await load(controller.signal)}catch(error){
+throw signal.throwIfAborted(),explained(error)}finally{controller.abort()}}async file(kind,key,at,signal){let array=await this.
+store.array(`${key[0]}/${kind}`),chunk=async n=>{let{data}=await array.getChunk([...at,n],{signal});if(!(data instanceof
+Uint8Array))throw new Error(`${array.path} is empty`);return data},first=await chunk(0),[infos,start]=infosOfFile(first),
+size=infos.reduce((sum,{bytes})=>sum+bytes,start);if(!isCount(size,MOST_BYTES))throw new Error(`a file of ${array.path} \
+has a wrong size`);let file=new Uint8Array(Math.ceil(size/first.length)*first.length);file.set(first);for(let n=1;n*first.
+length<size;n+=1)file.set(await chunk(n),n*first.length);let parts=new Map;for(let part of partsOfFile(file.buffer)){let[
+tile,name]=tilePart(part.name)??["",part.name];if(tile&&tile!==nameOf(key))throw new Error(`in place of tile ${nameOf(key)}\
+ is ${tile}`);parts.set(name,{...part,name})}if(new TextDecoder().decode(parts.get("of")?.data)!==this.told.fingerprint)
+throw new Error(`tile ${nameOf(key)} belongs to another flow`);return parts.delete("of"),parts}async surface(key,signal){
+let parts=await this.file("surface",key,[key[1],key[2]],signal),header=this.tileHeader(parts.get("header"));if(parts.delete(
+"header"),header){let missing=sizesOf(header).needed.filter(name=>!parts.has(name));if(missing.length)throw new Error(`a\
+ tile has no ${missing.join(", ")}`);checkParts([...parts.values()],header,this.header.mesh.tileCells)}let text=new TextEncoder().
+encode(JSON.stringify(header)),told={name:"header",data:text,shape:[text.length],digest:`${this.told.fingerprint} ${nameOf(
+key)} header`};return{header,parts:[told,...parts.values()]}}tileHeader(part){let own=JSON.parse(new TextDecoder().decode(
+part?.data));if(own===null)return null;let{steps,times,timeUnit,dates,pace}=this.header.slices;return checkHeader(own,this.
+header),{...own,slices:{...own.slices,steps,times,timeUnit,dates,pace}}}async flow(key,step,signal){let source=this.told.
+steps[step];return[...(await this.file("flow",key,[source,key[1],key[2]],signal)).values()].map(part=>{let[kind,own]=part.
+name.split("/");if(Number(own)!==source)throw new Error(`in place of step ${source} is ${part.name}`);return{...part,name:`${kind}\
+/${step}`}})}async values(key,place,steps,has,signal,coming){let parts=new Map;for(;;){let{name,steps:count,number}=this.
+header.scalars,names=(count>1?steps:[0]).map(step=>number?`scalars/${step}/${number}`:`scalars/${step}`),lacking=name===
+null?[]:names.filter(each=>!has(each)&&!parts.has(each));if(!lacking.length)return[...parts.values()];let found=await Promise.
+all(lacking.map(async each=>{let step=count>1?stepOf(each):0;if(!number&&this.told.derivesSpeed&&place.slices.trace){let[
+flow]=await(coming.get(step)??this.flow(key,step,signal));return{...speedOf(flow,place,this.header.speed.typical),name:each}}
+let source=count>1?this.told.steps[step]:0,part=(await this.file("values",key,[source,key[1],key[2],number],signal)).get(
+`scalars/${source}/${number}`);if(!part)throw new Error(`tile ${nameOf(key)} has no values of step ${source}`);return{...part,
+name:each}}));checkParts(found,place,this.header.mesh.tileCells);for(let part of found)parts.set(part.name,part)}}};var open2=header=>new Stream(header,location.href);return __toCommonJS(store_exports);})();
