@@ -567,10 +567,7 @@ class FlowField(FieldConstructors):
             When fewer than two lines would be left, or on a surface of triangles, which has none.
         """
         if self.triangles is not None:
-            msg = (
-                f"{self!r} has no lines of nodes; make the mesh coarser, for example with "
-                "mesh.decimate(0.5)"
-            )
+            msg = f"{self!r} has no lines of nodes; coarsen it, as in mesh.decimate(0.5)"
             raise FieldError(msg)
         axes = zip(self.shape, self.periodic, strict=True)
         return self.at_lines(*(every_line(n, factor, closed=closed) for n, closed in axes))
