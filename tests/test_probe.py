@@ -364,7 +364,7 @@ def test_a_path_around_a_ring_comes_back() -> None:
         (
             (1.0, 3.0),
             Camera((0, -9, 0), (0, 0, 0), (0, 0, 1), parallel=True),
-            "seen edge on",
+            "seen edge-on",
         ),
     ],
 )

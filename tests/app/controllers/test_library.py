@@ -42,7 +42,7 @@ def test_members_of_a_series_are_folded_and_what_cannot_be_shown_says_why(folder
     library = Library.of(folder)
     assert library.names == ("series.pvd",)
     assert library.unshown == {"hull.stl": "it has no vectors, and hull.npy does not exist"}
-    with pytest.raises(FieldError, match="there is no file"):
+    with pytest.raises(FieldError, match="is not among those"):
         library.source("hull.stl")
 
 
@@ -71,7 +71,7 @@ def test_a_page_has_what_it_brought_for_itself(tmp_path: Path) -> None:
     assert one.source("flow.vts") is other.source("flow.vts") is source
     assert one.is_file(name) and one.python(name) is None
     for library in (other, shared):
-        with pytest.raises(FieldError, match="no file"):
+        with pytest.raises(FieldError, match="is not among those"):
             library.source(name)
 
 
@@ -245,5 +245,5 @@ def test_a_formula_that_is_typed_is_a_flow_where_that_is_allowed() -> None:
     with pytest.raises(FieldError, match="missing\n"):
         library.source("y; sin(x")
     for name, other in ((line, Library(flows)), ("../secret", library)):
-        with pytest.raises(FieldError, match="there is no file"):
+        with pytest.raises(FieldError, match="is not among those"):
             other.source(name)
