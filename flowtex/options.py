@@ -99,6 +99,9 @@ class FieldOptions:
         "Name of the velocity, or of its two or three components separated by commas, such as "
         "``u,v,w``; not needed if there is only one candidate.",
     )
+    u: str | None = _option(None, "Name of the first component; a word for ``vectors``.")
+    v: str | None = _option(None, "Name of the second component.")
+    w: str | None = _option(None, "Name of the third component, of a mesh.")
     plane: str | None = _option(None, 'Plane of a structured 3D mesh, such as ``"k=20"``.')
     slice: Any | None = _option(
         None,
@@ -146,6 +149,20 @@ class FieldOptions:
         'The same by index from 0: ``{"number": 2}``.',
         Form(read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True),
     )
+
+    def __post_init__(self) -> None:
+        """Make one of the names of components."""
+        names = [name for name in (self.u, self.v, self.w) if name is not None]
+        if not names:
+            return
+        if self.vectors is not None or self.u is None or self.v is None:
+            given = {k: n for k, n in vars(self).items() if k in ("vectors", *"uvw") and n}
+            words = ", ".join(f"{name}={value!r}" for name, value in given.items())
+            msg = f"{words} is given; expected u and v (and w of a mesh), or vectors alone"
+            raise FieldError(msg)
+        object.__setattr__(self, "vectors", ",".join(names))
+        for name in "uvw":
+            object.__setattr__(self, name, None)
 
     def field(self, mesh: Any, time: float | str | None = None) -> FlowField:
         """Return the field of a mesh or of a file, or a field as it is; of a file at one time."""
@@ -412,7 +429,10 @@ class Options:
         known = (*TABLE, *(name for names in accepted.values() for name in names))
         for name in values:
             if name not in TABLE:
-                msg = f"the setting or argument {name!r} does not exist; {near_names(name, known)}"
+                near = near_names(name, known)
+                msg = f"the setting or argument {name!r} does not exist; {near}"
+                if "sel" in known and not near.startswith("did you mean"):
+                    msg += f". An axis of a dataset is chosen with sel={{{name!r}: {values[name]!r}}}"
                 raise SettingsError(msg)
         return cls(**parts, settings=values)
 

@@ -139,10 +139,7 @@ class FlowtexAccessor:
                 "longitudes and latitudes say where they lie"
             )
             raise flowtex.FieldError(msg)
-        if (u is None) != (v is None):
-            msg = f"u is {u!r} and v is {v!r}; expected the names of both components, or neither"
-            raise flowtex.FieldError(msg)
-        options |= {} if u is None else {"vectors": f"{u},{v}"}
+        options |= {"u": u, "v": v}
         options |= {} if hue is None else {"scalars": hue}
         options |= {"clim": "robust"} if robust else {}
         panels: FacetGrid[xr.Dataset] | None = None

@@ -74,10 +74,25 @@ def test_facets_have_one_range_of_colours(opengl: Any) -> None:
     plt.close("all")
 
 
+def test_what_is_no_dataset_is_told_in_the_words_of_xarray(tmp_path: Path) -> None:
+    import xarray as xr
+
+    ds = flowtex.examples.weather()
+    for thing, kind in ((ds.u, "DataArray"), (xr.DataTree(ds), "DataTree")):
+        with pytest.raises(FieldError, match=f"is a {kind} of xarray's; expected a Dataset with"):
+            flowtex.render(thing)
+    with pytest.raises(
+        SettingsError, match=r"'month' does not exist; .* with sel={'month': 1}"
+    ):
+        flowtex.render(ds, month=1)
+    with pytest.raises(FieldError, match=r"the folder '.*none' does not exist; create"):
+        flowtex.export(ds, tmp_path / "none" / "page.html")
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"u": "u"}, "u is 'u' and v is None; expected the names of both"),
+        ({"u": "u"}, "u='u' is given; expected u and v"),
         ({"transform": 3}, r"transform is 3; expected ccrs.PlateCarree\(\) or none"),
         ({"col": "level", "ax": 1}, "ax is given, and row and col make axes of their own"),
     ],

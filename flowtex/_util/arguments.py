@@ -77,6 +77,16 @@ def checked_path(name: str, path: Any) -> Path:
     return Path(path)
 
 
+def checked_target(path: Any) -> Path:
+    """Return the path of a file that is to be written, into a folder that exists."""
+    target = checked_path("path", path)
+    if not target.parent.is_dir():
+        folder = str(target.parent)
+        msg = f"{target}: the folder {folder!r} does not exist; create it, or choose another"
+        raise FieldError(msg)
+    return target
+
+
 def check_field(field: Any, kind: type) -> None:
     """Refuse what is no field, which is of a class."""
     if not isinstance(field, kind):

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from flowtex._util.arguments import checked_target
 from flowtex._util.extras import install_extra
 from flowtex.cli.options import UsageError, arguments
 from flowtex.options import Options
@@ -28,7 +29,7 @@ def check_picture_file(output: Path) -> None:
         )
         msg = f"{output}: {what}; expected one for pictures: .png, .jpg, .webp or .tiff"
         raise UsageError(msg)
-    _check_folder(output)
+    checked_target(output)
 
 
 def check_page_file(output: Path) -> None:
@@ -36,7 +37,7 @@ def check_page_file(output: Path) -> None:
     if output.suffix.lower() not in (".html", ".htm"):
         msg = f"{output}: expected a name that ends in .html"
         raise UsageError(msg)
-    _check_folder(output)
+    checked_target(output)
 
 
 def check_movie_file(output: Path, size: tuple[int, int], fps: float | None, quality: int) -> None:
@@ -47,16 +48,6 @@ def check_movie_file(output: Path, size: tuple[int, int], fps: float | None, qua
         check_movie(output, size, default_fps(output) if fps is None else fps, quality)
     except ModuleNotFoundError as error:
         raise UsageError(str(error)) from error
-    _check_folder(output)
-
-
-def _check_folder(output: Path) -> None:
-    if not output.parent.is_dir():
-        msg = (
-            f"{output}: the folder {str(output.parent)!r} does not exist; create it, or choose "
-            "another"
-        )
-        raise UsageError(msg)
 
 
 def drawing(*groups: Any) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_path, checked_size, is_number
+from flowtex._util.arguments import checked_path, checked_size, checked_target, is_number
 from flowtex._util.array_types import Bytes
 from flowtex._util.extras import install_extra
 from flowtex._util.progress import Stopped
@@ -209,7 +209,7 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
     ModuleNotFoundError
         When an MP4 is asked for without PyAV; the text names the command that installs it.
     """
-    path = checked_path("path", path)
+    path = checked_target(path)
     suffix = path.suffix.lower()
     width, height = checked_size(size, low=0)
     shown = f"size is {width} x {height}"

@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_path
+from flowtex._util.arguments import checked_target
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
@@ -147,6 +147,7 @@ def export(
     >>> series = flowtex.examples.cylinder_series()
     >>> flowtex.export(series, "wake.html", steps=6, scalars="vorticity")  # doctest: +SKIP
     """
+    path = checked_target(path)
     shown, arguments = browser_options(mesh, **options)
     views = web_views(shown, arguments, steps=steps)
     try:
@@ -171,7 +172,7 @@ def write_page(
     ``store`` and ``announce`` are those of :func:`export`, the options those of
     :func:`page_pieces`.
     """
-    path, link = checked_path("path", path), None if store is None else StoreLink.of(store)
+    path, link = checked_target(path), None if store is None else StoreLink.of(store)
     scenes = page_data(views) if link is None else [linked_data(view) for view in views]
     estimated = estimate(scenes, linked=link is not None)
     if announce is not None:

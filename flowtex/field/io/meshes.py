@@ -268,6 +268,13 @@ def _wrapped(source: Any, label: str) -> Any:
         return source
     if hasattr(source, "IsA") and source.IsA("vtkDataObject"):
         return pv.wrap(source)
+    if (kind := type(source)).__module__.startswith("xarray."):
+        msg = (
+            f"{label} is a {kind.__name__} of xarray's; expected a Dataset with both components of "
+            "the velocity, as xr.Dataset({'u': u, 'v': v}), or tree['group'].to_dataset() of a "
+            "DataTree"
+        )
+        raise FieldError(msg)
     msg = (
         f"{label} has type {type(source).__name__}; expected a PyVista mesh or MultiBlock, a list "
         "of them, or a reader. For arrays use FlowField.from_arrays(points, velocity) or "
