@@ -432,7 +432,9 @@ class Options:
                 near = near_names(name, known)
                 msg = f"the setting or argument {name!r} does not exist; {near}"
                 if "sel" in known and not near.startswith("did you mean"):
-                    msg += f". An axis of a dataset is chosen with sel={{{name!r}: {values[name]!r}}}"
+                    msg += (
+                        f". An axis of a dataset is chosen with sel={{{name!r}: {values[name]!r}}}"
+                    )
                 raise SettingsError(msg)
         return cls(**parts, settings=values)
 

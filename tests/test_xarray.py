@@ -31,9 +31,9 @@ def test_a_dataset_has_the_calls_of_the_package(opengl: Any, tmp_path: Path) -> 
     assert ds.flowtex.widget(globe=True).settings.samples > 0
     with pytest.raises(SettingsError, match="globe"):
         ds.flowtex.render(glob=True)
-    with pytest.raises(FieldError, match="plane is for meshes"):
+    with pytest.raises(FieldError, match="plane applies to meshes"):
         ds.flowtex.render(plane="k=2")
-    with pytest.raises(FieldError, match="globe is for data of the Earth"):
+    with pytest.raises(FieldError, match="globe applies to data of the Earth"):
         flowtex.render(flowtex.examples.double_gyre(), globe=True)
 
 
@@ -81,9 +81,7 @@ def test_what_is_no_dataset_is_told_in_the_words_of_xarray(tmp_path: Path) -> No
     for thing, kind in ((ds.u, "DataArray"), (xr.DataTree(ds), "DataTree")):
         with pytest.raises(FieldError, match=f"is a {kind} of xarray's; expected a Dataset with"):
             flowtex.render(thing)
-    with pytest.raises(
-        SettingsError, match=r"'month' does not exist; .* with sel={'month': 1}"
-    ):
+    with pytest.raises(SettingsError, match=r"'month' does not exist; .* with sel={'month': 1}"):
         flowtex.render(ds, month=1)
     with pytest.raises(FieldError, match=r"the folder '.*none' does not exist; create"):
         flowtex.export(ds, tmp_path / "none" / "page.html")
