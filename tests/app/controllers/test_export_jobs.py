@@ -13,8 +13,10 @@ from PIL import Image, ImageSequence
 pytest.importorskip("trame_rca")
 
 from small_pages import difference, panned, small
+from waiting import wait_until
 
 from flowtex import FieldError
+from flowtex._util.progress import Stopped
 from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.offscreen.encoders import MovieError
@@ -197,6 +199,20 @@ def test_a_cancelled_job_leaves_nothing(
             job.cancel()
         else:
             task.cancel()
+        with pytest.raises(Stopped if way == "cancel" else asyncio.CancelledError):
+            await task
+
+    asyncio.run(stop())
+    assert job.done and not list(tmp_path.iterdir())
+    wait_until(lambda: threading.active_count() <= threads)
+    assert children() <= processes
+
+
+def test_a_file_that_cannot_be_written_is_told(plain: Viewport, tmp_path: Path) -> None:
+    for job in (
+        PictureJob(plain, tmp_path / "none" / "a.png", (20, 20)),
+        MovieJob(plain, tmp_path / "none" / "a.gif", (20, 20), seconds=0.1),
+    ):
         with pytest.raises((FieldError, FileNotFoundError)):
             run(job)
         assert job.done and not job.cancelled
