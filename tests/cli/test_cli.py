@@ -323,7 +323,7 @@ def test_components_are_named_with_commas(run: Run, tmp_path: Path) -> None:
     mesh.save(tmp_path / "flow.vti")
     code, out, _ = run("info", tmp_path / "flow.vti")
     assert "velocity Velocity, u,v" in out and "Velocity = X Velocity, Y Velocity" in out
-    assert "choose another, as in --vectors u,v" in out
+    assert "as in --vectors u,v" in out
     code, out, _ = run("info", tmp_path / "flow.vti", "--vectors", "Y Velocity, u")
     assert code == 0 and "What would be drawn" in out
 
@@ -392,8 +392,8 @@ def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path:
     ("said", "told"),
     [
         (
-            'choose another, as in plane="j=2" (i=0 to 5',
-            "choose another, as in --plane j=2 (i=0 to 5",
+            'choose another as in plane="j=2" (i=0 to 5',
+            "choose another as in --plane j=2 (i=0 to 5",
         ),
         ("a.vts: 2 things:\n  1. plane is 'q'", "a.vts: 2 things:\n  1. --plane is 'q'"),
         ("sign_free is 3", "--sign-free is 3"),

@@ -102,8 +102,8 @@ def choose_plane(dimensions: tuple[int, int, int], plane: str | None) -> Plane:
         plane = _example(dimensions)
         ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
         notify(
-            f'the plane is "{plane}", the middle of {count_nodes(dimensions)}; choose another, as '
-            f'in plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere, as in slice="z"'
+            f'the plane is "{plane}", the middle of {count_nodes(dimensions)}; choose another as '
+            f'in plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere as in slice="z"'
         )
     match = _PLANE.fullmatch(plane)
     if match is None:

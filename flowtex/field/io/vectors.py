@@ -118,8 +118,8 @@ def choose_vectors(mesh: Any, vectors: str | None) -> MeshArray:
         if others and mesh.active_vectors_name != chosen.name:
             listed = ", ".join(map(str, others))
             notify(
-                f'the velocity is "{chosen.name}", by its name; there are {listed} as well: choose '
-                f'another, as in vectors="{others[0].name}"'
+                f'the velocity is "{chosen.name}", chosen by its name; other vectors: {listed}. '
+                f'Choose one of them as in vectors="{others[0].name}"'
             )
         return chosen
     return next(a for a in _meant(mesh, vectors) if _is_vector(a))

@@ -142,7 +142,7 @@ def test_an_array_whose_own_name_has_commas_wins() -> None:
 
 
 def test_of_several_triples_the_one_that_is_named_so_is_the_velocity() -> None:
-    told = r'the velocity is "Velocity", by its name; .*: choose another, as in vectors="u,v,w"'
+    told = r'the velocity is "Velocity", chosen by its name; .* as in vectors="u,v,w"'
     with pytest.warns(Notice, match=told):
         field = FlowField.from_pyvista(mesh((*NAMES, "u", "v", "w")))
     assert np.all(field.velocity == FlowField.from_pyvista(mesh()).velocity)

@@ -676,7 +676,7 @@ def test_of_a_volume_the_middle_is_drawn_with_a_notice() -> None:
 
 
 def test_of_several_vectors_the_one_that_is_named_so_is_the_velocity() -> None:
-    told = r'the velocity is "Velocity", by its name; there are Momentum \(points, 3\) as well'
+    told = r'the velocity is "Velocity", chosen by its name; other vectors: Momentum \(points, 3\)'
     with pytest.warns(Notice, match=told):
         FlowField.from_pyvista(marked())
 
