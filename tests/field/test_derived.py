@@ -219,7 +219,7 @@ def test_what_cannot_be_derived_is_refused() -> None:
         field.derive("ftle")
     with pytest.raises(FieldError, match="horizon is 0 for 'ftle'"):
         field.derive("ftle", horizon=0)
-    with pytest.raises(FieldError, match=r"horizon=1\.0 is given is given for 'shear'; only ftle"):
+    with pytest.raises(FieldError, match=r"horizon=1\.0 is given for 'shear'; only ftle"):
         field.derive("shear", horizon=1.0)
     free = FlowField.from_arrays(field.points, field.velocity, sign_free=True)
     with pytest.raises(FieldError, match="this field is sign-free"):

@@ -116,7 +116,7 @@ def test_what_is_left_out_is_told_with_the_reason(
     plotter.add_mesh(pv.Plane(), texture=PHOTO, name="photo")
     hidden = plotter.add_mesh(pv.Cone(), name="cone")
     hidden.visibility = False
-    told = r"'ball' \(842 vertices, .*'fog' \(vtk.*'photo' \(coloured by a texture\)"
+    told = r"'ball' \(842 vertices exceed .*'fog' \(vtk.*'photo' \(coloured by a texture\)"
     with pytest.warns(UserWarning, match=told) as heard:
         _, _, bodies = plotter.flowtex.for_browser()
     assert "cone" not in str(heard[0].message)

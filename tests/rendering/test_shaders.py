@@ -28,7 +28,7 @@ def test_variants_are_defined_first_and_in_order() -> None:
 def test_an_unknown_variant_is_refused() -> None:
     with pytest.raises(
         shaders.GLSLError,
-        match=r"^unknown variant FLOWTEX_PAPRE; there are FLOWTEX_CELLS, FLOWTEX_MOVING, ",
+        match=r"^unknown variant FLOWTEX_PAPRE; expected FLOWTEX_CELLS, FLOWTEX_MOVING, ",
     ):
         shaders.shader_text("vtk/vertex_dec.glsl", ["FLOWTEX_PAPRE"])
 

@@ -145,7 +145,7 @@ def test_what_tells_forward_from_backward_is_refused() -> None:
     with pytest.raises(ValueError, match="compose is True; expected False or None"):
         trace(field, compose=True)
     plain = replace(field, sign_free=False)
-    with pytest.raises(ValueError, match="both sides"):
+    with pytest.raises(ValueError, match="needs both"):
         SliceStore(field, slices=trace(plain, two_sided=False))
 
 

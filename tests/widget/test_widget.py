@@ -410,7 +410,7 @@ def test_show_displays_once_in_a_notebook(make: Make, monkeypatch: pytest.Monkey
     monkeypatch.setattr(Shell, "execution_count", 4)
     widget._ipython_display_()
     assert len(shown) == 6
-    with pytest.raises(FieldError, match=r"^scalar_bar_args is for windows"):
+    with pytest.raises(FieldError, match=r"^scalar_bar_args applies to windows"):
         flowtex.show(gyre(), scalar_bar_args={"title": "speed"})
     widget.close()
     count = len(shown)
@@ -544,7 +544,7 @@ def test_two_views_are_one_widget(make: Make, monkeypatch: pytest.MonkeyPatch) -
     assert second.samples == 33
     widget.noise = "checkerboard"
     assert second.noise == "spots"
-    with pytest.raises(ValueError, match=r"^beside has plane; both views show one field"):
+    with pytest.raises(ValueError, match=r"^beside has plane, which selects data; both views"):
         make(beside={"plane": "k=2"})
     text = widget.to_html()
     assert text is not None

@@ -223,7 +223,7 @@ async def test_two_units_of_length_are_refused() -> None:
     async with playing(app):
         app.state.send(compare=FILE)
         await until(lambda: app.state.get("problem"))
-        assert app.state.get("problem").startswith("two is in km and one in m; expected one unit")
+        assert app.state.get("problem").startswith("two is in km and one in m; expected the same")
         assert len(app.viewport.panes) == 1
 
 
