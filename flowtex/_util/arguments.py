@@ -100,4 +100,4 @@ def near_names(name: str, known: Iterable[str]) -> str:
     close = difflib.get_close_matches(name, names, n=2)
     if close:
         return f"did you mean {' or '.join(map(repr, close))}?"
-    return f"expected one of: {', '.join(names)}"
+    return f"expected one of: {', '.join(names)}" if names else "expected none: there are no names"
