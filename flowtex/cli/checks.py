@@ -22,11 +22,8 @@ def check_picture_file(output: Path) -> None:
     Image.init()
     suffixes = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
     if output.suffix.lower() not in suffixes:
-        what = (
-            f"{output.suffix!r} is not a format"
-            if output.suffix
-            else ("the file name has no suffix")
-        )
+        suffix = output.suffix
+        what = f"{suffix!r} is not a format" if suffix else "the file name has no suffix"
         msg = f"{output}: {what}; expected one for pictures: .png, .jpg, .webp or .tiff"
         raise UsageError(msg)
     checked_target(output)

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -108,10 +109,16 @@ class _Border:
 
     def __init__(self, ax: Axes, projection: Projection, number: int) -> None:
         self._ax, self._projection, self._number = ax, projection, number
+        self._find = lru_cache(maxsize=1)(self._crossings)  # each tick asks
 
     def crossings(self) -> tuple[Floats, Floats, DegreeText]:
         """Return the places along the border, the degrees there, and what writes them."""
-        limits = np.array([self._ax.get_xlim(), self._ax.get_ylim()])
+        return self._find((self._ax.get_xlim(), self._ax.get_ylim()))
+
+    def _crossings(
+        self, both: tuple[tuple[float, float], tuple[float, float]]
+    ) -> tuple[Floats, Floats, DegreeText]:
+        limits = np.array(both)
         (start, end), (border, other) = limits[self._number], limits[1 - self._number]
         along, inwards = np.linspace(start, end, ALONG), np.linspace(border, other, INWARDS)
         grid = np.zeros((ALONG, INWARDS, 3))

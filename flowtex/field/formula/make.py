@@ -138,7 +138,7 @@ def _known(name: Any) -> tuple[str, tuple[str, str], dict[str, Any]]:
         near = (
             near_names(name, KNOWN)
             if isinstance(name, str)
-            else (f"expected one of: {', '.join(KNOWN)}")
+            else f"expected one of: {', '.join(KNOWN)}"
         )
         msg = (
             f"only one expression is given, {name!r}, and it is not the name of a known formula; "
