@@ -63,7 +63,7 @@ class PointReader:
         grid, or the ``position`` on triangles; with ``path`` the path as well.
         """
         panes = self._viewport.panes
-        if pane not in range(len(panes)):
+        if type(pane) is not int or pane not in range(len(panes)):  # 0.0 is in a range too
             return None
         shown, asked = panes[pane], mapping(at)
         index = self._index(pane, asked)
