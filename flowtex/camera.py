@@ -74,7 +74,7 @@ CAMERA_LIMITS = CameraLimits()
 
 
 class CameraError(FieldError):
-    """Numbers that make no camera, or one that sees nothing.
+    """The values do not describe a camera, or the camera sees nothing.
 
     Examples
     --------
@@ -87,25 +87,25 @@ class CameraError(FieldError):
 
 @dataclass(frozen=True)
 class Camera:
-    """Where a picture is taken from.
+    """The camera of a picture.
 
     Attributes
     ----------
     position, focal_point
-        Where the camera stands and what it looks at, in the mesh's own coordinates.
+        Position of the camera and the point that it looks at, in the mesh's coordinates.
     up
-        Direction that is up in the picture, of any length.
+        Direction that points up in the picture, of any length.
     parallel
-        Whether it has no perspective.
+        Whether the projection is parallel, that is, without perspective.
     parallel_scale
-        Half the height of what a parallel projection shows, in the mesh's units.
+        Half the height of the view in a parallel projection, in the mesh's units.
     view_angle
-        Angle from the lower to the upper border of a view in perspective, in degrees.
+        Angle between the lower and the upper border of a perspective view, in degrees.
 
     Raises
     ------
     CameraError
-        When some are out of their range, or the camera sees nothing; the text has all faults.
+        When values are out of range, or the camera sees nothing; the text lists all faults.
 
     Examples
     --------
@@ -180,15 +180,16 @@ class Camera:
         focus
             Point of the mesh to look at, two or three coordinates; the middle by default.
         toward, up
-            The way from a curved surface to the camera, and what is up there: no parallels. By
-            default a globe is seen from above its data, or the point to look at, with north up.
+            Direction from a curved surface to the camera, and the direction up; they must not be
+            parallel. By default a globe is seen from above its data, or above ``focus``, with north
+            up.
         margin
-            Share of the picture that is left empty at each side, from 0 to less than a half.
+            Share of the picture that stays empty at each side, from 0 to less than 0.5.
 
         Raises
         ------
         FieldError
-            When ``zoom`` is not positive, ``focus`` is no point, or ``margin`` is out of range.
+            When ``zoom`` is not positive, ``focus`` is not a point, or ``margin`` is out of range.
         """
         expected = "a number from 0 to less than 0.5, such as 0.04"
         most = math.nextafter(0.5, 0.0)
@@ -271,14 +272,14 @@ class Camera:
 
     @classmethod
     def from_dict(cls, values: Any, base: Camera | None = None) -> Self:
-        """Return a camera from numbers by name, as :meth:`to_dict` gives them.
+        """Return a camera from values by name, as :meth:`to_dict` returns them.
 
-        They may come from anybody; ``base`` has what they leave out.
+        All values are checked. Missing ones are taken from ``base``.
 
         Raises
         ------
         CameraError
-            When there is a name that no camera has, something is missing, or a value is wrong.
+            When a name is unknown, a value is missing without ``base``, or a value is invalid.
         """
         names = [f.name for f in fields(cls)]
         if not isinstance(values, Mapping) or not set(values) <= set(names):
@@ -293,12 +294,12 @@ class Camera:
 
     @classmethod
     def from_points(cls, points: Any) -> Self:
-        """Return a camera in perspective from position, focal point and direction upwards.
+        """Return a perspective camera from position, focal point and up direction.
 
         Raises
         ------
         CameraError
-            When they are not three points.
+            When ``points`` are not three points.
         """
         try:
             position, focal_point, up = points
@@ -329,7 +330,7 @@ class Camera:
         return cls(position, focal_point, up, kind == "parallel", scale, angle)  # type: ignore[arg-type]
 
     def to_text(self) -> str:
-        """Return all of it as one text without blanks."""
+        """Return all attributes as one text without spaces."""
         numbers = (*self.position, *self.focal_point, *self.up)
         words = map(repr, (*numbers, self.parallel_scale, self.view_angle))
         return ",".join(["parallel" if self.parallel else "perspective", *words])
@@ -340,7 +341,7 @@ class Camera:
 
     @property
     def axes(self) -> Floats:
-        """Unit vectors to the right, up, and into the picture, by row, (3, 3)."""
+        """Unit vectors to the right, up and into the picture, one per row, (3, 3)."""
         ahead = np.subtract(self.focal_point, self.position)
         ahead /= np.linalg.norm(ahead)
         right = np.cross(ahead, self.up)
@@ -361,7 +362,7 @@ class Camera:
 
     @property
     def eye(self) -> Floats:
-        """The eye and 1, or the way to it and 0 where all rays are parallel, (4,)."""
+        """Position of the eye and 1; in a parallel projection the direction to it and 0, (4,)."""
         if self.parallel:
             return np.array([*-self.axes[2], 0.0])
         return np.array([*self.position, 1.0])
@@ -369,17 +370,17 @@ class Camera:
     def matrix(self, aspect: float, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
         """Matrix that takes (x, y, z, 1) to clip space (x, y, z, w), (4, 4).
 
-        x / w and y / w go from -1 to 1 across the picture, to the right and up, as in VTK. There
-        is no near and no far plane: w is the distance in perspective and 1 otherwise, and z / w
-        grows with the distance, without a bound.
+        x / w and y / w run from -1 to 1 across the picture, to the right and up, as in VTK. The
+        matrix has no near or far plane: w is the distance in perspective and 1 otherwise, and z / w
+        increases with the distance without limit.
 
         Parameters
         ----------
         aspect
             Width of the picture over its height.
         origin
-            Point that (x, y, z) is counted from, (3,). One in the middle of the surface keeps
-            the digits of a mesh far from the origin.
+            Point to which (x, y, z) is relative, (3,). A point in the middle of the surface keeps
+            the precision of a mesh far from the origin.
         """
         axes = self.axes
         half = (
@@ -400,7 +401,7 @@ class Camera:
         return result
 
     def project(self, points: ArrayLike, aspect: float) -> Floats:
-        """Return the places in the view, (..., 2), of points of the mesh, (..., 3).
+        """Return the positions in the view, (..., 2), of points of the mesh, (..., 3).
 
         They are NaN for points behind the camera.
         """
@@ -415,7 +416,7 @@ class Camera:
         return np.where(scale > 0, places / np.where(scale > 0, scale, 1.0), np.nan)
 
     def ray(self, x: float, y: float, aspect: float) -> tuple[Floats, Floats]:
-        """Return start and direction, of length one, of what is seen at a place of the view."""
+        """Return the origin and the unit direction of the ray through a point of the view."""
         right, up, ahead = self.axes
         at = np.asarray(self.focal_point) + (right * x * aspect + up * y) * self.height
         start = at - ahead * self.distance if self.parallel else np.asarray(self.position)
@@ -430,14 +431,14 @@ class Camera:
         )
 
     def pan(self, dx: float, dy: float, aspect: float) -> Self:
-        """Return the camera after what is seen has moved by a part of the view."""
+        """Return the camera after a pan by a fraction of the view."""
         right, up, _ = self.axes
         return self.shift((right * dx * aspect + up * dy) * self.height)
 
     def rotate(self, dx: float, dy: float, aspect: float, pivot: ArrayLike | None = None) -> Self:
-        """Return the camera after a turn, as a drag by (dx, dy) asks.
+        """Return the camera after a rotation, as by a drag by (dx, dy).
 
-        It goes around ``pivot``, (3,), by default the focal point.
+        The centre of the rotation is ``pivot``, (3,), by default the focal point.
         """
         around = np.asarray(self.focal_point if pivot is None else pivot, dtype=float)
         aside = -CAMERA_LIMITS.turn * dx * min(aspect, CAMERA_LIMITS.widest_turn)
@@ -471,16 +472,16 @@ class Camera:
         Parameters
         ----------
         factor
-            More than 1 comes closer; what is no positive number changes nothing.
+            More than 1 zooms in; a factor that is not a positive number changes nothing.
         x, y
-            Place in the view that stays.
+            Point in the view that keeps its place.
         aspect
             Width of the picture over its height.
         whole
-            Camera that shows the whole surface, from which zoom counts.
+            Camera that shows the whole surface, which has zoom 1.
         target
-            Point of the surface at (x, y), (3,). The focal point comes to its depth, without a
-            change of what is seen, so that a zoom in perspective never runs into the surface.
+            Point of the surface at (x, y), (3,). The focal point moves to its depth, which does not
+            change the view, so that a perspective camera never enters the surface.
         """
         if not math.isfinite(factor) or factor <= 0:
             return self
@@ -510,7 +511,7 @@ class Camera:
         return replace(self, focal_point=_point(self.position + ahead * depth))
 
     def is_near(self, surface: Surface) -> bool:
-        """Tell whether double precision resolves the surface from this camera."""
+        """Return whether double precision resolves the surface from this camera."""
         eye, focus = np.asarray(self.position), np.asarray(self.focal_point)
         offsets = np.abs([eye - surface.center, focus - surface.center])
         sizes = (float(np.abs(eye - focus).max()), self.parallel_scale)

@@ -40,7 +40,7 @@ _trials: dict[int, Future[OpenGLReport]] = {}
 
 
 class OpenGLMissingError(RuntimeError):
-    """VTK cannot draw here; the text names what to install.
+    """VTK cannot draw on this machine; the text names what to install.
 
     Examples
     --------
@@ -57,10 +57,10 @@ class OpenGLMissingError(RuntimeError):
 class OpenGLReport:
     """The OpenGL that VTK uses.
 
-    ``usable`` says whether a picture was drawn and read back; where not, ``failure`` says what
-    happened and ``remedy`` what to do. ``software`` is true where the processor draws and no
-    graphics card. ``max_texture_size`` is in texels along one side; ``texture_units`` counts the
-    textures that one fragment can read.
+    ``usable`` says whether a picture could be drawn and read back; if not, ``failure`` says why and
+    ``remedy`` what to do. ``software`` is true if the processor draws instead of a graphics card.
+    ``max_texture_size`` is in texels along one side; ``texture_units`` is the number of textures
+    that one fragment can read.
 
     Examples
     --------
@@ -83,12 +83,12 @@ class OpenGLReport:
 
 @dataclass(frozen=True)
 class Check:
-    """One line of the diagnosis: its subject, how it stands, and what puts it right.
+    """One line of the diagnosis: subject, status, result and remedy.
 
     Examples
     --------
     >>> from flowtex.diagnostics import Check
-    >>> Check("OpenGL", "fail", "there is none", "apt-get install libegl1").status
+    >>> Check("OpenGL", "fail", "not found", "apt-get install libegl1").status
     'fail'
     """
 
@@ -134,7 +134,7 @@ def take_report(report: OpenGLReport) -> None:
 
 
 def opengl_report() -> OpenGLReport:
-    """Return what a second process found, which takes about one second; the report is cached.
+    """Return a report on OpenGL. A second process tests it in about a second; the report is cached.
 
     Examples
     --------
@@ -178,12 +178,12 @@ def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenG
 
 
 def require_opengl() -> OpenGLReport:
-    """Return the report of an OpenGL that can be used.
+    """Return the report of OpenGL, or raise an error if it cannot be used.
 
     Raises
     ------
     OpenGLMissingError
-        When VTK cannot draw; the process would crash. The text says what to install.
+        When VTK cannot draw, which would crash the process. The text says what to install.
 
     Examples
     --------
@@ -238,7 +238,7 @@ def install_command(*packages: str) -> str:
 
 
 def diagnose() -> list[Check]:
-    """Check everything that flowtex needs; raises nothing.
+    """Check everything that flowtex needs; never raises.
 
     Examples
     --------

@@ -19,18 +19,19 @@ VTK_ARGUMENTS = ("scalar_bar_args", "reset_camera")
 
 @accepts_options(FieldOptions, Appearance, ViewOptions)
 def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> FlowWidget | None:
-    """Show a flow: in a notebook as a widget, else in a window or on a page in the browser.
+    """Show a flow as a widget in a notebook, otherwise in a window or on a page in the browser.
 
-    A notebook's kernel draws nothing, the browser does. Elsewhere a window is opened, and where
-    there is no display a page is served.
+    In a notebook the browser draws, not the Jupyter kernel. Elsewhere a window opens; without a
+    display, a page is served.
 
     Parameters
     ----------
     mesh
-        What ``plotter.flowtex.add`` takes.
+        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or path
+        of a file.
     size
-        Width and height of the window in pixels; 1024 x 768, and in a notebook as wide as the
-        cell.
+        Width and height of the window in pixels; 1024 x 768 by default, and in a notebook the width
+        of the cell.
     {options}
     **settings
         Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
@@ -38,18 +39,17 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
     Returns
     -------
     FlowWidget or None
-        In a notebook the widget, which is displayed already; else nothing.
+        In a notebook the widget, which is already displayed; otherwise None.
 
     Raises
     ------
     FieldError, SettingsError
-        When the mesh or a setting does not fit.
-        When two views are asked for and there is neither a window nor a notebook.
-        When a notebook is given what only a window has.
+        When the mesh or a setting is invalid, when two views are requested and neither a window nor
+        a notebook is available, or when an argument for windows is used in a notebook.
     OpenGLMissingError
-        When nothing can draw; the text names the command that installs what is missing.
+        When OpenGL is missing; the text names the command that installs it.
     ModuleNotFoundError
-        When a notebook lacks what widgets need; the text names the command that installs it.
+        When a package that widgets need is missing; the text names the command that installs it.
 
     Examples
     --------

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 
 class FieldError(ValueError):
-    """Data or arguments are refused; the text names them, what was expected and the remedy.
+    """Invalid data or arguments; the text names the value, what was expected, and the remedy.
 
-    Every refusal of this package is one, also those with a name of their own.
+    All other errors of this package for invalid input are subclasses of it.
 
     Examples
     --------

@@ -1,9 +1,9 @@
-"""Arguments that every way of drawing a flow takes, each described once.
+"""Arguments of all functions that draw a flow, each described once.
 
 ``plotter.flowtex.add``, :func:`flowtex.render`, :func:`flowtex.show`, :func:`flowtex.movie`,
-:func:`flowtex.web.export`, :class:`flowtex.FlowWidget` and the command line hand the fields of
-three frozen classes on: what of a mesh makes the field, how the surface looks, and from where it
-is seen. Whatever else is given is a setting of :class:`flowtex.Settings`.
+:func:`flowtex.web.export`, :class:`flowtex.FlowWidget` and the command line pass on the fields of
+three frozen classes: the part of a mesh to draw, the appearance of the surface, and the view. All
+other arguments are settings of :class:`flowtex.Settings`.
 
 :func:`accepts_options` puts the names, defaults and texts of the fields into the signature and
 the docstring of a function, so that ``help`` and an editor show them there.
@@ -42,14 +42,14 @@ from flowtex.settings import TABLE, Settings, SettingsError, setting
 if TYPE_CHECKING:
     from flowtex.rendering.webgl.bodies import Bodies
 
-#: Colour of a surface that is coloured by nothing: a grey that can go darker and lighter.
+#: Colour of a surface without scalars: a grey that can become darker and lighter.
 PLAIN_COLOR = "#a0a0a0"
 #: Colour where there is no value, as in PyVista.
 NO_VALUE_COLOR = "darkgray"
-#: Colour of land: calm before a light and a dark background.
+#: Colour of land, unobtrusive on a light and on a dark background.
 LAND_COLOR = "#8f8b82"
 
-#: Arguments that only data of the Earth have, and those that only meshes have.
+#: Arguments for data of the Earth only, and for meshes only.
 OF_EARTH = ("projection", "globe", "level", "sel", "isel")
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free")
 #: The scalar that every flow has, and the range of colours without outliers.
@@ -59,9 +59,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def _option(default: Any, text: str, form: Form | None = PLAIN) -> Any:
-    """Return a field with the text that tells a person what it is for.
+    """Return a field with its explanation for users.
 
-    ``form`` is how its values are written in a shell or a link; ``None`` for what is not.
+    ``form`` is how its values are written in a shell or a link; ``None`` if they cannot be.
     """
     return field(default=default, metadata={"text": text, "form": form})
 
@@ -92,16 +92,16 @@ def _read_differences(words: Sequence[str]) -> dict[str, Any]:
 
 @dataclass(frozen=True, kw_only=True)
 class FieldOptions:
-    """What of a mesh makes the field; the names are those of :meth:`FlowField.from_pyvista`."""
+    """The part of a mesh to draw; the names are those of :meth:`FlowField.from_pyvista`."""
 
     vectors: str | None = _option(
         None,
         "Name of the velocity, or of its two or three components separated by commas, such as "
         "``u,v,w``; not needed if there is only one candidate.",
     )
-    u: str | None = _option(None, "Name of the first component; a word for ``vectors``.")
+    u: str | None = _option(None, "Name of the first component; use it instead of ``vectors``.")
     v: str | None = _option(None, "Name of the second component.")
-    w: str | None = _option(None, "Name of the third component, of a mesh.")
+    w: str | None = _option(None, "Name of the third component; for meshes only.")
     plane: str | None = _option(None, 'Plane of a structured 3D mesh, such as ``"k=20"``.')
     slice: Any | None = _option(
         None,
@@ -109,7 +109,7 @@ class FieldOptions:
         '0,0,2"``; by default the point is the middle.',
     )
     contour: Any | None = _option(
-        None, 'Isosurface of a volume, on which an array has a value: ``"pressure=101325"``.'
+        None, 'Isosurface of a volume, where an array has the given value: ``"pressure=101325"``.'
     )
     block: int | str | None = _option(
         None,
@@ -117,7 +117,7 @@ class FieldOptions:
         Form(read=lambda text: int(text) if text.isdecimal() else text),
     )
     times: Any | None = _option(
-        None, "Times of a list of meshes; their positions by default.", form=None
+        None, "Times of a list of meshes; 0, 1, 2, ... by default.", form=None
     )
     periodic: str | None = _option(
         None,
@@ -151,7 +151,7 @@ class FieldOptions:
     )
 
     def __post_init__(self) -> None:
-        """Make one of the names of components."""
+        """Join the names of components to ``vectors``."""
         names = [name for name in (self.u, self.v, self.w) if name is not None]
         if not names:
             return
@@ -165,7 +165,7 @@ class FieldOptions:
             object.__setattr__(self, name, None)
 
     def field(self, mesh: Any, time: float | str | None = None) -> FlowField:
-        """Return the field of a mesh or of a file, or a field as it is; of a file at one time."""
+        """Return the field of a mesh or of a file (at one time), or a field unchanged."""
         choices = {name: value for name, value in vars(self).items() if value is not None}
         if (stored := self._of_store(mesh, choices, time)) is not None:
             return stored
@@ -251,7 +251,7 @@ class Appearance:
     color: Any = _option(
         PLAIN_COLOR, ("Colour of a plain surface, in any form that PyVista accepts.")
     )
-    opacity: float = _option(1.0, "Opacity: Opacity: 1 is opaque, 0 invisible.", NUMBER)
+    opacity: float = _option(1.0, "Opacity: 1 is opaque, 0 invisible.", NUMBER)
     visible: bool = _option(default=True, text="Whether the surface is drawn.", form=SWITCH)
     lighting: bool | None = _option(
         None,
@@ -289,7 +289,7 @@ class Appearance:
     )
 
     def __post_init__(self) -> None:
-        """Check the values, and have those that stand for others as these."""
+        """Check the values, and replace those that stand for others."""
         faults = []
         if self.scalars is None or self.scalars is True:
             object.__setattr__(self, "scalars", SPEED)
@@ -328,7 +328,7 @@ class Appearance:
 
     @property
     def scalar_name(self) -> str | None:
-        """Name of what the surface is coloured by; ``None`` for a plain one."""
+        """Name of the array that colours the surface; ``None`` for a plain one."""
         return self.scalars if isinstance(self.scalars, str) else None
 
     @property
@@ -340,7 +340,7 @@ class Appearance:
 
 @dataclass(frozen=True, kw_only=True)
 class ViewOptions:
-    """From where a flow is seen, and what stands beside and behind it."""
+    """The view of a flow, a second view beside it, and the background."""
 
     zoom: float = _option(1.0, "Zoom: 1 shows the whole surface, 8 an eighth of its width.")
     focus: tuple[float, ...] | None = _option(
@@ -371,7 +371,7 @@ class ViewOptions:
     )
 
     def __post_init__(self) -> None:
-        """Check what no part of a picture checks later."""
+        """Check values that nothing else checks."""
         if self.background is not None:
             rgb(self.background)
         if not (self.beside is None or isinstance(self.beside, Mapping)):
@@ -380,11 +380,11 @@ class ViewOptions:
 
     @property
     def ground(self) -> Any:
-        """Colour behind the surface where no page is around."""
+        """Colour behind the surface, outside a page."""
         return "white" if self.background is None else self.background
 
     def first_camera(self, surface: Surface, aspect: float = 1.5) -> Camera:
-        """Return the camera that the view begins with, for a picture of some width over height."""
+        """Return the initial camera of a picture with this width over height."""
         whole = Camera.fit(surface, aspect, zoom=self.zoom, focus=self.focus)
         if self.camera is None or isinstance(self.camera, Camera):
             return self.camera or whole
@@ -395,7 +395,7 @@ class ViewOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Arguments of one call, sorted by what they are for; ``bodies`` stand beside the flow."""
+    """Arguments of one call by purpose; ``bodies`` are the other meshes of the scene."""
 
     field: FieldOptions
     appearance: Appearance
@@ -404,7 +404,7 @@ class Options:
     bodies: Bodies | None = None
 
     def make_settings(self, **defaults: Any) -> Settings:
-        """Return all settings; an image has its colours alone, unless it is asked to be mixed."""
+        """Return all settings; an image keeps its own colours unless ``strength`` is given."""
         values = {**defaults, **self.settings}
         if self.appearance.image is not None:
             noise = values.setdefault("noise", "image")

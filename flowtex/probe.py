@@ -38,13 +38,13 @@ POINTS_BETWEEN_SLICES = 12
 
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """How the texture at one point of the surface comes about.
+    """How the texture at one point of the surface is computed.
 
-    The K samples stand in the order in which the flow passes them: from the farthest behind the
-    point to the farthest ahead of it. Those that the path does not reach are left out, so K is
-    less than ``asked`` where it ends. Lags are lengths in the mesh's units for paths by arc
-    length, and times in the field's own unit else; they are positive behind the point, where its
-    particle has been, and negative ahead.
+    The K samples are in the order of the flow: from the farthest upstream of the point to the
+    farthest downstream. Samples beyond the end of the path are left out, so K may be less than
+    ``asked``. Lags are lengths in the mesh's units for paths by arc length, otherwise times in the
+    field's unit; they are positive upstream, where the particle comes from, and negative
+    downstream.
 
     Attributes
     ----------
@@ -53,53 +53,54 @@ class Probe:
     parameter
         What a lag measures: ``"arclength"`` or ``"time"``.
     setting
-        Samples that the setting asks for.
+        The setting ``samples``.
     asked
-        Samples of a path that does not end: as many on both sides of the point, and about twice as
-        many where the grains move.
+        Number of samples of a path that does not end: equally many on both sides of the point, and
+        about twice as many if the grains move.
     lags
         Lags of the samples, (K,), decreasing.
     points
-        Where they are in space, (K, 3), in the mesh's own units. Beyond the seam of a flat map
-        that is one period they go on straight.
+        Positions of the samples in space, (K, 3), in the mesh's units. Beyond the seam of a flat
+        map of one period they continue straight.
     coordinates
-        Where they are in index space, (K, 2) as (j, i), folded back into one period.
+        Positions of the samples in index space, (K, 2) as (j, i), within one period.
     slices
-        Numbers of the two trace slices that each lies between, (K, 2): the nearer in time first,
-        0 for the point itself.
+        Numbers of the two trace slices around each sample, (K, 2): the one of smaller lag first, 0
+        for the point itself.
     shares
-        How far each is from the one slice to the other, (K,), 0 to 1; more for a last sample that
+        Position of each sample between these slices, (K,), 0 to 1; more for a last sample that
         fades out beyond the last slice.
     slice_lags
-        Lags of the trace slices at this point without a sign, (M + 1,), the first one 0.
+        Absolute lags of the trace slices at this point, (M + 1,), the first one 0.
     slice_level
         Mip level of the trace slices.
     weights
-        Share of each sample in the mean, (K,); they sum to one.
+        Weight of each sample in the mean, (K,); their sum is 1.
     noise
-        Noise at each, (K,), of mean zero and deviation one; for a picture in its place
-        red, green and blue times opacity, and opacity, (K, 4).
+        Noise at each sample, (K,), with mean 0 and standard deviation 1; for an image instead of
+        noise, red, green and blue times opacity, and opacity, (K, 4).
     noise_coordinates
-        Places of the samples in the noise texture, (K, 2) as (u, v), 0 to 1 across it; ``None``
-        for noise that has no texture.
+        Positions of the samples in the noise texture, (K, 2) as (u, v), 0 to 1 across it; ``None``
+        for procedural noise.
     level
-        Level of detail: each is twice as coarse as the one before. For noise with a texture, its
+        Level of detail; each level is twice as coarse as the previous one. For a noise texture, its
         mip level.
     pixel
-        Longer side of what a pixel covers on the surface, in the mesh's units.
+        Longer side of the area of a pixel on the surface, in the mesh's units.
     grain
-        Size of a grain of the noise, or of a picture's texel, on the surface, in the same.
+        Size of a grain of the noise, or of a texel of the image, on the surface, in the mesh's
+        units.
     step
-        Lag from the point to the next sample; NaN where nothing moves.
+        Lag from the point to the next sample; NaN where the velocity is zero.
     gain
-        Factor of the mean of the noise, so that contrast is the same everywhere.
+        Factor of the mean of the noise, which makes the contrast the same everywhere.
     value
-        The texture: ``gain * (weights @ noise)``, of mean zero and deviation one over a picture;
-        (4,) for a picture in the place of the noise.
+        The texture: ``gain * (weights @ noise)``, with mean 0 and standard deviation 1 over a
+        picture; (4,) for an image instead of noise.
     path, path_lags
         The whole path, as far as the slices lead, in the order of the samples: points (N, 3) and
-        their lags (N,). Where it ends, the last sample may lie up to a step beyond. Beside a
-        critical point, seen from near, it is no longer than the samples.
+        their lags (N,). If the path ends, the last sample may lie up to a step beyond. In a close
+        view of a critical point it is as long as the samples.
 
     Examples
     --------
@@ -137,7 +138,7 @@ class Probe:
 
     @property
     def greys(self) -> Floats:
-        """The noise as it would be drawn by itself, (K,), from 0, black, to 1, white."""
+        """The noise of the samples as grey values, (K,), from 0, black, to 1, white."""
         if self.noise.ndim == 1:
             return 0.5 + 0.5 * tone(self.noise, 1.0)
         return np.asarray(self.noise[:, :3].mean(axis=-1) + 1.0 - self.noise[:, 3])
@@ -152,31 +153,31 @@ def probe(
     clock: float = 0.0,
     density: float = 1.0,
 ) -> Probe:
-    """Return how the texture at a point of the surface comes about.
+    """Return how the texture at a point of the surface is computed.
 
-    The first call for new textures takes as long as a renderer takes to load them; the next ones
+    The first call for new textures loads them, which takes as long as in a renderer; further calls
     take milliseconds.
 
     Parameters
     ----------
     view
-        The flow, its settings and the time that is shown.
+        The flow, its settings and the time shown.
     at
-        The point as (j, i), in cells; :func:`locate` finds it for a point in space.
+        The point as (j, i), in cells; :func:`locate` returns it for a point in space.
     pixel
-        Width of a pixel on the surface at the point, in the mesh's units, seen straight on; or
-        the camera of a picture, for the pixel of that picture which shows the point.
+        Width of a pixel on the surface at the point, in the mesh's units, in a perpendicular view;
+        or the camera of a picture, for the pixel that shows the point.
     size
         Width and height of the picture in pixels, for a camera.
     clock
         Clock of the streaming of a steady flow, in seconds.
     density
-        Pixels drawn, along a side, for one that the settings speak of.
+        Number of drawn pixels, along a side, per pixel of the settings.
 
     Raises
     ------
     FieldError
-        When the point is not on the surface, or the pixel no length, or the camera does not see
+        When the point is not on the surface, ``pixel`` is not a length, or the camera does not see
         the point.
 
     Examples

@@ -1,8 +1,9 @@
-"""What a picture shows of a flow, measured from its pixels, to compare methods of drawing.
+"""Measures of how well a picture shows a flow, computed from its pixels.
 
-A picture is (H, W), or (H, W, 3) of which the mean of the channels counts, row 0 at the top. The
-flow at each pixel is ``u`` to the right and ``v`` up, of any length. ``mask`` (H, W) says which
-pixels are judged: by default those with a flow, but for a border of :data:`BORDER` pixels.
+They compare methods of drawing. A picture is (H, W), or (H, W, 3), whose channels are averaged,
+with row 0 at the top. The flow at each pixel is ``u`` to the right and ``v`` up, of any length.
+``mask`` (H, W) selects the pixels to measure: by default those with a flow, except for a border of
+:data:`BORDER` pixels.
 
 References
 ----------
@@ -22,21 +23,21 @@ import scipy
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
 
-#: Pixels along the border that are not judged by default.
+#: Width of the border, in pixels, that is not measured by default.
 BORDER = 12
 #: Deviation in pixels of the derivative, and of the window over which directions are averaged.
 EDGE_PIXELS, WINDOW_PIXELS = 1.0, 4.0
-#: Shades wider than this many pixels are no grain.
+#: Shades wider than this many pixels are not grain.
 SHADE_PIXELS = 20.0
-#: Pixels at which grain is measured, and the farthest that is looked.
+#: Number of pixels at which grain is measured, and the largest distance.
 GRAIN_POINTS, MAX_DISTANCE_PIXELS = 20_000, 64
-#: Side in pixels of the window over which a sense is decided, and the percentile of the values
+#: Side in pixels of the window in which the sense is determined, and the percentile of the values
 #: above which a pixel belongs to a stroke.
 SENSE_WINDOW, STROKE_PERCENTILE = 29, 80
 
 
 class Alignment(NamedTuple):
-    """Direction of a texture: its mean angle to the flow in degrees, and how clear it is.
+    """Direction of a texture: its mean angle to the flow in degrees, and its coherence.
 
     Examples
     --------
@@ -50,7 +51,7 @@ class Alignment(NamedTuple):
 
 
 class Grain(NamedTuple):
-    """Distances in pixels, along the flow and across it, at which the correlation is a half.
+    """Distances in pixels, along and across the flow, at which the correlation is 0.5.
 
     Examples
     --------
@@ -74,11 +75,11 @@ def alignment(
     Parameters
     ----------
     picture
-        The picture, (H, W) or (H, W, 3); NaN where there is none.
+        The picture, (H, W) or (H, W, 3); NaN outside the flow.
     u, v
         The flow, (H, W) each.
     mask
-        Pixels that are judged, (H, W).
+        Pixels to measure, (H, W).
     window
         Standard deviation of the window, in pixels.
 
@@ -90,7 +91,7 @@ def alignment(
     Raises
     ------
     FieldError
-        When the arrays do not fit together, or no pixel is judged.
+        When the shapes of the arrays differ, or no pixel is left to measure.
 
     Examples
     --------
@@ -104,7 +105,7 @@ def alignment(
     filled, u, v, mask = _checked(picture, u, v, mask)
     gx = scipy.ndimage.gaussian_filter(filled, EDGE_PIXELS, order=(0, 1))
     gy = scipy.ndimage.gaussian_filter(filled, EDGE_PIXELS, order=(1, 0))
-    # As complex numbers of twice the angle, which do not tell a direction from its opposite.
+    # As complex numbers of twice the angle, which are the same for opposite directions.
     square, product = (
         scipy.ndimage.gaussian_filter(part, window) for part in (gx * gx - gy * gy, gx * gy)
     )
@@ -118,19 +119,19 @@ def alignment(
 
 
 def grain(picture: Any, u: Any, v: Any, mask: Any = None, *, seed: int = 0) -> Grain:
-    """Measure how long and how wide streaks are: along the flow, however it bends, and across it.
+    """Measure the length of streaks along the flow, which may be curved, and their width.
 
     Parameters
     ----------
     picture, u, v, mask
         As for :func:`alignment`.
     seed
-        Chooses the pixels at which the grain is measured.
+        Seed of the choice of pixels at which the grain is measured.
 
     Returns
     -------
     Grain
-        Two distances in pixels, 64 at most.
+        Length and width in pixels, at most 64.
 
     Raises
     ------
@@ -184,16 +185,16 @@ def _half_width(flat: Floats, start: Floats, direction: Floats) -> float:
 
 
 def sense(picture: Any, u: Any, v: Any, mask: Any = None) -> float:
-    """Return the share of the strokes' pixels that show which of two ways the flow goes.
+    """Return the share of the pixels of strokes that show the sense of the flow.
 
-    A stroke with a head brightens slowly towards it and ends there, so along the way of the flow a
-    picture has few large steps downward: in the mean over a window the cube of the derivative is
-    negative. Dense streaks without a head give a half, strokes that point backwards 0.
+    A stroke with a head brightens slowly towards the head and ends there, so along the flow the
+    picture has few but large steps downward: the cube of the derivative, averaged over a window, is
+    negative. Dense streaks without heads give 0.5, strokes that point backward 0.
 
     Parameters
     ----------
     picture, u, v, mask
-        As for :func:`alignment`; strokes are brighter than the ground.
+        As for :func:`alignment`; strokes are brighter than the background.
 
     Returns
     -------
@@ -226,17 +227,17 @@ def sense(picture: Any, u: Any, v: Any, mask: Any = None) -> float:
 
 
 def sticking(first: Any, second: Any, dx: Any, dy: Any, mask: Any = None) -> float:
-    """Return how well a texture is carried along from one picture to the next.
+    """Return how well a texture moves as it should from one picture to the next.
 
     Parameters
     ----------
     first, second
         The pictures, (H, W) or (H, W, 3).
     dx, dy
-        How far what is at each pixel of the second has come, in pixels to the right and down:
-        (H, W), or numbers. They are those of the surface under a moving camera, or of the flow.
+        Displacement of what each pixel of the second picture shows, in pixels to the right and
+        down: (H, W), or numbers. It is that of the surface under a moving camera, or of the flow.
     mask
-        Pixels that are judged, (H, W).
+        Pixels to measure, (H, W).
 
     Returns
     -------
@@ -268,20 +269,19 @@ def sticking(first: Any, second: Any, dx: Any, dy: Any, mask: Any = None) -> flo
 
 
 def aliasing(picture: Any, reference: Any, mask: Any = None) -> float:
-    """Return the error against a picture of many samples a pixel, over that one's deviation.
+    """Return the error relative to a picture with many samples per pixel.
 
     Parameters
     ----------
     picture, reference
-        The picture, and the same view of which every pixel is the mean of many, (H, W) or
-        (H, W, 3).
+        The picture, and the same view whose pixels are the means of many, (H, W) or (H, W, 3).
     mask
-        Pixels that are judged, (H, W).
+        Pixels to measure, (H, W).
 
     Returns
     -------
     float
-        Root mean square error over the deviation of the reference; 0 where they agree.
+        Root mean square error over the standard deviation of the reference; 0 if both agree.
 
     Raises
     ------
@@ -304,23 +304,23 @@ def aliasing(picture: Any, reference: Any, mask: Any = None) -> float:
 
 
 def spacing(points: Any) -> float:
-    """Return how uneven marks such as arrows lie.
+    """Return how unevenly marks such as arrows are spaced.
 
     Parameters
     ----------
     points
-        Places of the marks on the screen, (N, 2), two at least.
+        Positions of the marks on the screen, (N, 2), at least two.
 
     Returns
     -------
     float
-        Deviation of the distances to the nearest other mark, over their mean: 0 for a grid, about
-        0.5 for marks that are set at random.
+        Standard deviation of the distances to the nearest other mark, over their mean: 0 for a
+        grid, about 0.5 for random marks.
 
     Raises
     ------
     FieldError
-        When the points are of another shape, or fewer than two.
+        When the points have another shape, or are fewer than two.
 
     Examples
     --------

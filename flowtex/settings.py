@@ -1,12 +1,12 @@
 """The one table of settings.
 
-Each row of :class:`Settings` holds a setting's name, type, default, range and the sentence that
-tells a person what it does. Command-line flags, shader uniforms, controls and the documentation
-are made from :data:`TABLE`, so a new setting is one row here.
+Each row of :class:`Settings` has a setting's name, type, default, range and one sentence that
+explains it to users. Command-line flags, shader uniforms, controls and the documentation are made
+from :data:`TABLE`, so a new setting is one row here.
 
-``affects`` says what a change costs: ``"uniform"`` a number on the graphics card, ``"shader"`` a
-shader build, ``"textures"`` new textures, ``"trace"`` new traces. A number with a ``switch`` may be
-given as True, which stands for that, or as False, which stands for 0.
+``affects`` is the cost of a change: ``"uniform"`` a number on the graphics card, ``"shader"`` a
+shader build, ``"textures"`` new textures, ``"trace"`` new traces. For a number with a ``switch``,
+True means the value of ``switch`` and False means 0.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from flowtex._util.arguments import is_number, near_names
 from flowtex.errors import FieldError
 
 Affects = Literal["uniform", "shader", "textures", "trace"]
-#: How a panel lets a setting be changed; a "number" is typed.
+#: The control of a setting in a panel; a "number" is typed.
 Control = Literal["checkbox", "choice", "slider", "number"]
-#: A setting, and a value that it has or has not.
+#: A setting, and a value that it must or must not have.
 Condition = tuple[str, Literal["==", "!="], Any]
 
-#: Settings that make a difference only where one of these others has, or has not, a value.
+#: Settings that have an effect only if one of these conditions holds.
 _NEEDS_TEXTURE: Condition = ("noise", "!=", "procedural")
 _NEEDS_DENSE: tuple[Condition] = (("texture", "==", "dense"),)
 _NEEDS_MOTION: tuple[Condition] = (("motion", "!=", "off"),)
@@ -49,12 +49,12 @@ LABELS = {"lod": "Level of detail"}
 SLIDER_RANGE, SLIDER_STEPS = 500, 400
 #: Ratio of the ends of a range beyond which a slider that can goes by the logarithm.
 LOGARITHMIC_RATIO = 60
-#: Words for the two values of a switch; the first are those that are written.
+#: Words for the two values of a switch; the first two are used for output.
 _SWITCH = {"on": True, "off": False, "true": True, "false": False, "yes": True, "no": False}
 
 
 class SettingsError(FieldError):
-    """A setting was given a value, or a name, that it does not have.
+    """A setting has an unknown name or an invalid value.
 
     Examples
     --------
@@ -80,7 +80,7 @@ class Setting:
     switch: float | None = None
 
     def check(self, value: Any) -> Any:
-        """Return the value in the setting's own type; a SettingsError says what was expected."""
+        """Return the value in the setting's type; raise a SettingsError if it is invalid."""
         if self.switch is not None and isinstance(value, bool):
             value = self.switch if value else 0
         if self.kind is bool:
@@ -120,7 +120,7 @@ class Setting:
 
     @property
     def condition(self) -> str:
-        """Where it makes a difference, as a sentence; empty where it always does."""
+        """When the setting has an effect, as a sentence; empty if it always has."""
         needs = [
             f"{TABLE[name].label} is {'not ' if sign == '!=' else ''}{TABLE[name].format(value)}"
             for name, sign, value in NEEDS.get(self.name, ())
@@ -129,7 +129,7 @@ class Setting:
 
     @property
     def control(self) -> Control:
-        """How a panel lets it be changed."""
+        """The control of the setting in a panel."""
         if self.kind is bool:
             return "checkbox"
         if self.choices:
@@ -138,12 +138,12 @@ class Setting:
 
     @property
     def logarithmic(self) -> bool:
-        """Whether a slider by the logarithm serves better than an even one."""
+        """Whether the slider is logarithmic."""
         return bool(self.low and self.high and self.high / self.low > LOGARITHMIC_RATIO)
 
     @property
     def step(self) -> float:
-        """Step of a slider: round, with some hundred in the range, one of them the default."""
+        """Step of a slider: a round number, of which the default is a multiple."""
         if self.kind is int:
             return 1
         low, high = self.low or 0.0, self.high or 1.0
@@ -185,12 +185,12 @@ Observer = Callable[[str, Any], None]
 
 @dataclass
 class Settings:
-    """How a flow texture is drawn; every attribute can be changed live.
+    """The settings of a flow texture; all can be changed while it is shown.
 
     Raises
     ------
     SettingsError
-        When a value is out of its range, or there is no setting of that name.
+        When a value is out of range, or no setting has this name.
 
     Examples
     --------
@@ -371,18 +371,18 @@ class Settings:
                 observer(name, checked)
 
     def update(self, **values: Any) -> None:
-        """Set several at once; nothing is set when one of them is wrong."""
+        """Set several settings; if one value is invalid, none is changed."""
         checked = {name: setting(name).check(value) for name, value in values.items()}
         for name, value in checked.items():
             setattr(self, name, value)
 
     def observe(self, observer: Observer) -> Callable[[], None]:
-        """Call ``observer(name, value)`` after each change; returns what ends it."""
+        """Call ``observer(name, value)`` after each change; the returned function ends this."""
         self._observers.append(observer)
         return lambda: self._observers.remove(observer) if observer in self._observers else None
 
     def copy(self) -> Settings:
-        """Return the same values without the observers."""
+        """Return a copy without the observers."""
         return Settings(**dict(self))
 
     def __iter__(self) -> Iterator[tuple[str, Any]]:

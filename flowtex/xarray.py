@@ -30,7 +30,7 @@ PANEL_SIZE, PANEL_ASPECT = 3.0, 1.6
 
 @xr.register_dataset_accessor("flowtex")  # type: ignore[no-untyped-call]
 class FlowtexAccessor:
-    """The calls of flowtex on a dataset; each takes the arguments of the function of its name.
+    """Functions of flowtex for a dataset; each has the arguments of the function of the same name.
 
     Examples
     --------
@@ -45,27 +45,27 @@ class FlowtexAccessor:
         self._dataset = dataset
 
     def field(self, *names: str, **options: Any) -> FlowField:
-        """Return :meth:`flowtex.FlowField.from_xarray` of the dataset."""
+        """Return the field, as :meth:`flowtex.FlowField.from_xarray` does."""
         return FlowField.from_xarray(self._dataset, *names, **options)
 
     def show(self, **options: Any) -> FlowWidget | None:
-        """Show it, as :func:`flowtex.show` does."""
+        """Show the flow, as :func:`flowtex.show` does."""
         return flowtex.show(self._dataset, **options)
 
     def render(self, **options: Any) -> Any:
-        """Draw it as a picture, as :func:`flowtex.render` does."""
+        """Draw the flow as a picture, as :func:`flowtex.render` does."""
         return flowtex.render(self._dataset, **options)
 
     def movie(self, *file: Any, **options: Any) -> Any:
-        """Write it as a movie, as :func:`flowtex.movie` does."""
+        """Write the flow as a movie, as :func:`flowtex.movie` does."""
         return flowtex.movie(self._dataset, *file, **options)
 
     def export(self, *file: Any, **options: Any) -> Any:
-        """Write it as a page, as :func:`flowtex.export` does."""
+        """Write the flow as a page, as :func:`flowtex.export` does."""
         return flowtex.export(self._dataset, *file, **options)
 
     def axes(self, ax: Axes, **options: Any) -> FlowImage:
-        """Draw it into axes of matplotlib's or cartopy's, as :func:`flowtex.axes` does."""
+        """Draw the flow into axes of matplotlib or cartopy, as :func:`flowtex.axes` does."""
         return flowtex.axes(ax, self._dataset, **options)
 
     def plot(
@@ -90,39 +90,40 @@ class FlowtexAccessor:
         subplot_kws: Mapping[str, Any] | None = None,
         **options: Any,
     ) -> FlowImage | FacetGrid[xr.Dataset]:
-        """Draw it with the words of ``ds.plot.quiver`` and ``ds.plot.streamplot``.
+        """Draw the flow with the arguments of ``ds.plot.quiver`` and ``ds.plot.streamplot``.
 
         Parameters
         ----------
         u, v
-            Names of the components; found by default.
+            Names of the components; recognised by default.
         hue
             Variable to colour by; the speed by default.
         ax
-            Axes of matplotlib's or cartopy's; the present ones by default. Not for facets.
+            Axes of matplotlib or cartopy; the current ones by default. Not for facets.
         row, col, col_wrap
-            Dimensions with a panel for each value, and panels in a row.
+            Dimensions with one panel for each value, and the number of panels in a row.
         transform
-            The coordinates' own projection, of cartopy's: longitudes and latitudes are known
-            without it, and no other one is taken.
+            Accepted for compatibility: ``ccrs.PlateCarree()`` or ``ccrs.Geodetic()``. The
+            projection of longitudes and latitudes is known.
         vmin, vmax, robust
             Range of the colours, the same in all panels.
         add_colorbar, cbar_kwargs
-            Whether there is a colour bar, and what ``figure.colorbar`` takes.
+            Whether to add a colour bar, and arguments of ``figure.colorbar``.
         figsize, size, aspect, subplot_kws
-            As xarray has them.
+            As in xarray.
         **options
             As for :func:`flowtex.axes`, such as ``cmap="magma"`` or ``samples=25``.
 
         Returns
         -------
         FlowImage or xarray.plot.FacetGrid
-            What is on the axes, or the panels.
+            The image on the axes, or the panels.
 
         Raises
         ------
         FieldError
-            As for :func:`flowtex.axes`; when an argument does not fit, such as ``ax`` for facets.
+            As for :func:`flowtex.axes`, or when an argument is not allowed, such as ``ax`` for
+            facets.
 
         Examples
         --------
@@ -181,7 +182,7 @@ class FlowtexAccessor:
         return images[0] if panels is None else panels
 
     def widget(self, **options: Any) -> FlowWidget:
-        """Return a :class:`flowtex.FlowWidget` of it."""
+        """Return a :class:`flowtex.FlowWidget` of the flow."""
         return flowtex.FlowWidget(self._dataset, **options)
 
 
@@ -192,7 +193,7 @@ def _axes(
     aspect: float | None,
     subplot_kws: Mapping[str, Any] | None,
 ) -> Axes:
-    """Return given axes, those of a new figure where its size is given, or the present ones."""
+    """Return the given axes, those of a new figure if its size is given, or the current ones."""
     import matplotlib.pyplot as plt
 
     if ax is not None:
@@ -205,7 +206,7 @@ def _axes(
 
 
 def _is_geodetic(transform: Any) -> bool:
-    """Whether a projection of cartopy's means longitudes and latitudes."""
+    """Whether a cartopy projection describes longitudes and latitudes."""
     name = type(transform).__name__
     turned = getattr(transform, "proj4_params", {}).get("pm", 0)
     return name == "Geodetic" or (name == "PlateCarree" and not float(turned))

@@ -1,4 +1,4 @@
-"""The application behind a page, and serving it on a port of this machine."""
+"""The application behind a page, and its server."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.options import ViewOptions
 
-#: Arguments that choose something in a file or a mesh, and those that make a mesh another field.
+#: Arguments that choose a part of a file or a mesh, and those that change how it is read.
 CHOICE_ARGUMENTS = tuple(f.name for f in fields(Choice))
 FIELD_ARGUMENTS = ("times", "periodic", "sign_free")
 
 
 class FlowApp(NotebookPage):
-    """Flows on a page, with everything that can be done with them.
+    """The page of ``flowtex show``, with one or several flows and all controls.
 
     Parameters
     ----------
     flow
-        The flow, a mesh that makes one, the path of a file or of a folder of files, or a
-        :class:`~flowtex.app.Library` of several.
+        A :class:`~flowtex.FlowField`, a mesh, the path of a file or of a folder, or a
+        :class:`~flowtex.app.Library` of several flows.
     server
-        A trame server; one of its own by default.
+        A trame server; a new one by default.
     **options
         Arguments and settings of ``plotter.flowtex.add``, and ``zoom``, ``focus`` and ``camera``
         as for :func:`flowtex.render`.
@@ -48,16 +48,16 @@ class FlowApp(NotebookPage):
     Attributes
     ----------
     server, layout
-        The trame server, and the page as trame's layout.
+        The trame server, and the layout of the page.
     area, state
-        The view, and what the page knows, under names of this application's own.
+        The view, and the state of the page, whose names are prefixed for this application.
     context, controllers
-        What acts on the view.
+        The parts that act on the view.
 
     Raises
     ------
     FieldError, SettingsError
-        When the mesh or a setting does not fit.
+        When the mesh or a setting is invalid.
 
     Examples
     --------
@@ -89,17 +89,17 @@ class FlowApp(NotebookPage):
 
     @property
     def viewport(self) -> Viewport:
-        """What is drawn."""
+        """The view as it is drawn."""
         return self.area.viewport
 
     @property
     def stream(self) -> FrameStream:
-        """The pictures that go to the page."""
+        """The stream of pictures to the page."""
         return self.area.stream
 
     @property
     def field(self) -> FlowField:
-        """The flow that is shown."""
+        """The flow shown."""
         return self.viewport.field
 
     def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
@@ -124,7 +124,7 @@ class FlowApp(NotebookPage):
         self.area.changed()
 
     def close(self) -> None:
-        """End the tasks and free the graphics card."""
+        """End the tasks and free the graphics memory."""
         self.leave_cell()
         for controller in self.context.controllers:
             controller.close()
@@ -179,45 +179,44 @@ def serve(
 ) -> None:
     """Show a flow on a page, until Ctrl-C.
 
-    Each browser tab that opens the address has a state of its own: camera, settings and time are
-    nobody else's. Fields and their traces are shared, in this one process; the command
-    ``flowtex show`` has a process for each tab.
+    Each browser tab has its own camera, settings and time. Fields and their traces are shared in
+    this process; the command ``flowtex show`` starts a process for each tab.
 
     Parameters
     ----------
     field
-        What :class:`FlowApp` shows: a :class:`~flowtex.FlowField`, a mesh, the path of a file or
-        of a folder; or a function that takes a trame server and returns an application on it,
-        such as a :class:`FlowApp`.
+        A :class:`~flowtex.FlowField`, a mesh, the path of a file or of a folder; or a function that
+        takes a trame server and returns an application on it, such as a :class:`FlowApp`.
     host
-        Address to listen on. With another than this machine's own, everybody on the network who
-        has the page's address can use it.
+        Address to listen on. With any but the default, everybody on the network who knows the
+        page's address can use it.
     port
-        Port to listen on; 0 takes one that is free.
+        Port to listen on; 0 takes a free one.
     allow_host
-        Names under which browsers may ask for the page besides ``localhost`` and ``host``, such as
-        that of a proxy before it; ``"*"`` allows any. Addresses in numbers need no permission.
+        Host names by which browsers may address the page, besides ``localhost`` and ``host``, such
+        as that of a proxy; ``"*"`` allows any. Numeric addresses are always allowed.
     limit
-        Pages at one time, at most; by default what the cores and the free memory have room for.
+        Largest number of open pages; by default as many as cores and memory allow.
     idle
-        Minutes for which a page's state is kept after the page was closed.
+        Minutes during which a closed page can be opened again.
     folder
-        Folder whose files a page may open besides; none by default.
+        Folder of further files that a page may open; none by default.
     open_browser
-        Whether to open the page where there is a browser.
+        Whether to open the page in a browser.
     announce
-        Called with the page's address, which holds its secret; printed by default.
+        Called with the page's address, which contains its secret; by default the address is
+        printed.
     **options
-        Arguments and settings of ``plotter.flowtex.add``; none with a function.
+        Arguments and settings of ``plotter.flowtex.add``; not allowed with a function.
 
     Raises
     ------
     FieldError, SettingsError
-        When the mesh or a setting does not fit, or a name of ``allow_host`` is none.
-        When options are given with a function.
+        When the mesh, a setting or a name in ``allow_host`` is invalid, or options are given with a
+        function.
     ServeError
-        When the port or the host cannot be listened on, or ``port``, ``limit`` or ``idle`` is out
-        of range.
+        When the server cannot listen on the host and port, or ``port``, ``limit`` or ``idle`` is
+        out of range.
 
     Examples
     --------

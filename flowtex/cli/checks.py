@@ -1,4 +1,4 @@
-"""Checks before anything is drawn; each error says how to mend it."""
+"""Checks before anything is drawn; each error names the remedy."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flowtex.textures.images import load_image
 
 
 def check_picture_file(output: Path) -> None:
-    """Refuse a picture that could not be written, before anything is drawn."""
+    """Raise an error if the picture could not be written, before anything is drawn."""
     from PIL import Image
 
     Image.init()
@@ -30,7 +30,7 @@ def check_picture_file(output: Path) -> None:
 
 
 def check_page_file(output: Path) -> None:
-    """Refuse a page that could not be written, before anything is traced."""
+    """Raise an error if the page could not be written, before anything is traced."""
     if output.suffix.lower() not in (".html", ".htm"):
         msg = f"{output}: expected a name that ends in .html"
         raise UsageError(msg)
@@ -38,7 +38,7 @@ def check_page_file(output: Path) -> None:
 
 
 def check_movie_file(output: Path, size: tuple[int, int], fps: float | None, quality: int) -> None:
-    """Refuse a movie that could not be written, before anything is drawn."""
+    """Raise an error if the movie could not be written, before anything is drawn."""
     from flowtex.offscreen.encoders import check_movie, default_fps
 
     try:
@@ -48,7 +48,7 @@ def check_movie_file(output: Path, size: tuple[int, int], fps: float | None, qua
 
 
 def drawing(*groups: Any) -> dict[str, Any]:
-    """Return how flags have a flow drawn; refuse, before a file is read, what does not fit."""
+    """Return the drawing options of flags; raise an error if they conflict."""
     values = arguments(*groups)
     if values.get("noise") == "image" and "image" not in values:
         msg = "--noise is image but no image is given; add --image FILE"

@@ -1,8 +1,8 @@
-"""The program ``flowtex``: its commands, and the exit code of what goes wrong.
+"""The program ``flowtex``: its commands and their exit codes.
 
 Each command imports what it needs when it runs, so that ``flowtex --help`` is instant. An error
-that the user can mend is one paragraph on stderr, and the program ends with code 2, or 1 where
-there is no OpenGL to draw with.
+that the user can correct is one paragraph on stderr, and the program exits with code 2, or with 1
+if OpenGL is missing.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ app = App(
     version=lambda: __import__("flowtex").__version__,
     help_epilogue="Try `flowtex demo`. Add --debug to print the traceback of an error.",
 )
-# These load the examples, so they are imported when they run; their help has to stand here.
+# These load the examples, so they are imported when they run, and their help is here.
 app.command("flowtex.cli.show:demo", help="Show the examples on a page in the browser.")
 app.command("flowtex.cli.show:show", help="Show files or a folder in a window or on a page.")
 for _command in (render, movie, export, formula, info, pyramid, serve):
@@ -47,22 +47,22 @@ for _command in (render, movie, export, formula, info, pyramid, serve):
 
 @app.command
 def doctor() -> int:
-    """Look at what flowtex runs on, and say what is missing."""
+    """Check the system that flowtex runs on, and name what is missing."""
     from flowtex import diagnostics
 
     return diagnostics.main()
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command, by default that of the process, and return the exit code.
+    """Run a command, by default that of the process, and return its exit code.
 
-    It is 0 when all went well, 2 when something was asked for that cannot be, 1 when there is no
-    OpenGL, and for ``doctor`` when something is missing; after Ctrl-C, SIGTERM and SIGHUP it is 128
-    and the number of the signal.
+    It is 0 for success, 2 for an error that the user can correct, and 1 if OpenGL is missing or
+    ``doctor`` finds that something is missing; after Ctrl-C, SIGTERM and SIGHUP it is 128 plus the
+    number of the signal.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="replace")  # Windows writes to files in fewer characters
+        sys.stdout.reconfigure(errors="replace")  # on Windows, files may have a limited encoding
     debug = "--debug" in words
     words = [word for word in words if word != "--debug"]
     print_warning = warnings.showwarning
@@ -91,7 +91,7 @@ def _run(words: Sequence[str]) -> Any:
 
 
 def hosted() -> HostedSession:
-    """Return a session that runs a command, in a process of its own."""
+    """Return a session that runs a command in its own process."""
     from flowtex.app.server.sessions.process import HostedSession
 
     warnings.showwarning = _warn  # type: ignore[assignment]
@@ -99,7 +99,7 @@ def hosted() -> HostedSession:
 
 
 def _unknown(error: UnknownOptionError) -> UsageError:
-    """Return the error for a flag that a command has not, with one that may be meant."""
+    """Return the error for an unknown flag, with a similar one if there is any."""
     flag = (error.token.keyword or error.token.value).partition("=")[0]
     off = "--no-" if flag.startswith("--no-") else "--"
     names = [name for argument in error.argument_collection or () for name in argument.names]
@@ -116,7 +116,7 @@ def _warn(message: Warning | str, *_: Any) -> None:
 
 
 def _exit_code(error: Exception) -> int | None:
-    """Exit code for what the user can mend; ``None`` for a fault of the program."""
+    """Exit code of an error that the user can correct; ``None`` for a defect of the program."""
     from flowtex.diagnostics import OpenGLMissingError
 
     if isinstance(error, OpenGLMissingError):

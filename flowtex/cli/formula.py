@@ -1,4 +1,4 @@
-"""``flowtex formula``: a flow that is typed."""
+"""``flowtex formula``: a flow from a formula."""
 
 from __future__ import annotations
 

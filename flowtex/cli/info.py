@@ -1,4 +1,4 @@
-"""``flowtex info``: what a file holds, and the flow that would be drawn from it."""
+"""``flowtex info``: the contents of a file, and the flow that would be drawn."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MOST_TIMES, MOST_BLOCKS = 8, 40
 
 
 def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
-    """Tell what a file holds, and what would be drawn."""
+    """Describe the contents of a file, and the flow that would be drawn."""
     from rich.text import Text
 
     from flowtex.field.datasets.files import dataset_paths
@@ -79,7 +79,7 @@ def _pairs(title: str = "") -> Table:
 
 
 def _store_table(place: Path) -> Table:
-    """Tell what of a pyramid is in its store."""
+    """Describe the pyramid in a store."""
     from flowtex.pyramid.levels import Levels
 
     about = Levels(place).about
@@ -94,7 +94,7 @@ def _store_table(place: Path) -> Table:
 
 
 def _recognised_table(paths: list[Path]) -> Table:
-    """Tell which velocity, grid and coordinates were recognised, and why."""
+    """Describe the velocity, grid and coordinates that were recognised, with reasons."""
     from flowtex.field.datasets.axes import axis_values
     from flowtex.field.datasets.files import open_datasets
     from flowtex.field.datasets.pairs import find_pairs
@@ -214,7 +214,7 @@ def _field_table(field: FlowField) -> Table:
 
 
 def _lines(field: FlowField) -> str:
-    """Tell what it is drawn along, and why."""
+    """Describe the lines along which the flow is drawn, with the reason."""
     from flowtex.trace import changing_share, chosen_lines
 
     share = f"{changing_share(field):.0%} of the flow changes while a particle moves along a streak"
@@ -222,7 +222,7 @@ def _lines(field: FlowField) -> str:
 
 
 def _megabytes(field: FlowField) -> float:
-    """Size of the slices of one time: single precision, two or three numbers, both sides."""
+    """Size of the slices of one time: single precision, two or three components, both sides."""
     from flowtex.trace import chosen_lines
     from flowtex.trace.lags import choose_lags
 

@@ -1,7 +1,7 @@
-"""Flags of the command line: those of the file, of the picture, of the page, and the settings.
+"""Flags of the command line: of the file, the picture, the page, and the settings.
 
-They follow from the fields of the option classes of :mod:`flowtex.options` and from
-:data:`flowtex.settings.TABLE`; what is here is the shell's own.
+Most are made from the option classes of :mod:`flowtex.options` and from
+:data:`flowtex.settings.TABLE`; this module adds those of the shell only.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ FILE = Annotated[
 
 
 class UsageError(FieldError):
-    """Arguments that cannot be followed; the text says how they can."""
+    """Invalid arguments of a command; the text names the remedy."""
 
 
 def _option_flags(kind: type, group: Group) -> dict[str, Any]:
-    """Return a flag for each field of an option class that can be written."""
+    """Return a flag for each field of an option class that can be written as text."""
     flags = {}
     for option in fields(kind):
         form: Form | None = option.metadata["form"]
@@ -64,7 +64,7 @@ def _option_flags(kind: type, group: Group) -> dict[str, Any]:
 
 
 def _in_shell(text: str) -> str:
-    """Return a text with the values of Python as a shell has them."""
+    """Return a text in which Python values are written as in a shell."""
     text = re.sub(r'``\{"(\w+)": (\w+)\}``', r"``\1=\2``", text)
     text = re.sub(r'``"([^" ]*)"``', lambda match: f"``{match[1] or 'none'}``", text)
     return re.sub(r"``(False|None)``", "``none``", text)
@@ -104,10 +104,10 @@ TIME = Annotated[
 if TYPE_CHECKING:
 
     class FieldFlags:
-        """What of a file makes the flow."""
+        """The part of a file to draw."""
 
     class LookFlags:
-        """Colours, and what of the flow is seen."""
+        """Colours and view."""
 
     class SettingFlags:
         """One flag for each setting."""
@@ -131,7 +131,7 @@ else:
 
 @dataclass(kw_only=True)
 class FrameFlags:
-    """How a picture, or each of a movie, is taken without a window."""
+    """Flags of pictures and movies."""
 
     size: SIZE = "1024x768"
     supersampling: Annotated[
@@ -146,7 +146,7 @@ class FrameFlags:
 
 @dataclass(kw_only=True)
 class AddressFlags:
-    """Where a page is served."""
+    """Address of a page."""
 
     port: Annotated[
         int,
@@ -180,7 +180,7 @@ class AddressFlags:
 
 @dataclass(kw_only=True)
 class ServeFlags(AddressFlags):
-    """Where the page is served, and for how many."""
+    """Address of a page, and the number of its users."""
 
     limit: Annotated[
         int | None,
@@ -199,7 +199,7 @@ class ServeFlags(AddressFlags):
 
 
 def arguments(*groups: Any) -> dict[str, Any]:
-    """Return the flags of some groups that were set, as arguments of Python."""
+    """Return the flags that were set, as arguments of Python functions."""
     options = (f for kind in (FieldOptions, Appearance, ViewOptions) for f in fields(kind))
     forms = {option.name: option.metadata["form"] for option in options}
     forms["time"] = Form(read=number_or_text)
@@ -218,7 +218,7 @@ def arguments(*groups: Any) -> dict[str, Any]:
 
 
 def flag_names() -> list[str]:
-    """Return the names of all flags that are arguments of Python as well."""
+    """Return the names of all flags that are also arguments of Python functions."""
     kinds = (FieldFlags, LookFlags, FrameFlags, ServeFlags, SettingFlags)
     return [f.name for kind in kinds for f in fields(kind)]  # type: ignore[arg-type]
 

@@ -56,7 +56,7 @@ def pyramid(
     ] = None,
     flow: Annotated[FieldFlags | None, FLAT] = None,
 ) -> int:
-    """Build the pyramid of a file in a store; what is there and whole is not made again."""
+    """Build the pyramid of a file in a store; intact parts of an earlier build are kept."""
     from flowtex.pyramid import build
     from flowtex.pyramid.source import source_of
 
@@ -85,7 +85,7 @@ def pyramid(
 
 
 def _verify(files: Sequence[Path]) -> int:
-    """Say what of a store is missing or corrupt; the exit code tells whether something is."""
+    """List the missing and corrupt parts of a store; the exit code is 1 if there are any."""
     from flowtex.pyramid import is_store, verify
     from flowtex.pyramid.places import DamageError
 

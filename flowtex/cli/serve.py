@@ -1,4 +1,4 @@
-"""``flowtex serve``: a pyramid on a page that streams it."""
+"""``flowtex serve``: a page that streams a pyramid."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def serve(
     look: Annotated[LookFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
-    """Serve a pyramid as a page that streams it."""
+    """Serve a page that streams a pyramid."""
     options, at = drawing(look, settings), address or AddressFlags()
     require_app()
     if token is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,}", token):

@@ -103,9 +103,9 @@ def show(
     page: Annotated[ServeFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
-    """Show a file: in a window, or where there is no display on a page.
+    """Show a file in a window, or on a page if there is no display.
 
-    Several files, or a folder, are shown on a page where one can be chosen.
+    Several files, or a folder, are shown on a page with a list of files.
     """
     choice, options, window = arguments(flow), drawing(look, settings), pixels(size)
     check_lines(choice, options)
@@ -160,10 +160,10 @@ def _show_page(
 
 
 def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | None:
-    """Return a library of data of the Earth, whose map and level may be chosen on the page.
+    """Return a library of data of the Earth, whose map and level the page can change.
 
-    These are put into the choice as the page has them. ``None`` is for anything else, and where
-    more is chosen than the page can choose.
+    Map and level are moved to the choice of the page. The result is ``None`` for other data, and if
+    the flags choose more than the page can.
     """
     from flowtex.app import Library
     from flowtex.earth import GLOBE, NAMES
@@ -195,7 +195,7 @@ def _is_folder(path: Path) -> bool:
 
 
 def _belong_together(files: Sequence[Path]) -> bool:
-    """Whether several files are parts of one model's output, or steps of a series."""
+    """Whether several files are parts of one model output, or steps of a series."""
     from flowtex.field.datasets.files import belong_together, dataset_paths
 
     return len(files) > 1 and bool(dataset_paths(files)) and belong_together(files)

@@ -93,7 +93,7 @@ def movie(
     ] = None,
     fps: Annotated[
         float | None,
-        Parameter(group=PICTURE, help="Frames in a second. [default: 30, and 20 in a GIF]"),
+        Parameter(group=PICTURE, help="Frames per second. [default: 30, and 20 in a GIF]"),
     ] = None,
     quality: Annotated[
         int,
@@ -106,7 +106,7 @@ def movie(
     frame: Annotated[FrameFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
-    """Write a file as a movie: a loop without a seam, or all times of a flow that varies."""
+    """Write a file as a movie: a seamless loop, or all times of a time-varying flow."""
     start = time.perf_counter()
     choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_movie_file(output, options["size"], fps, quality)
@@ -153,7 +153,7 @@ def export(
     look: Annotated[LookFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
-    """Write a file as one page that draws in any browser, without a server or a network."""
+    """Write a file as one HTML page that needs neither a server nor a network."""
     start = time.perf_counter()
     choice, options = arguments(flow), drawing(look, settings)
     check_page_file(output)

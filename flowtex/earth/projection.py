@@ -42,49 +42,49 @@ METHODS = {
     "Robinson": "robinson",
     "Equal Earth": "equalearth",
 }
-#: Steps in degrees by which derivatives are taken, and how near to a pole. The pieces of PROJ's
+#: Steps in degrees for derivatives, and the nearest distance to a pole. The pieces of PROJ's
 #: Robinson differ by a metre where they meet: shorter steps turned directions by up to 3 degrees.
 STEP, NEAREST_POLE = 0.02, 0.5
-#: A step to one side that is longer by this factor than that to the other leads across a tear.
+#: A step that is longer than the opposite one by this factor crosses a tear.
 TORN = 100.0
-#: By this share a position is moved to the middle of the map where it has no place on the Earth.
+#: Factor by which a position outside the map is moved towards its middle.
 INSIDE = 1 - 1e-7
 
 
 def place_text(lon: float, lat: float, decimals: int = 2) -> str:
-    """Return a place in words, such as ``"12.35° E, 45.20° N"``."""
+    """Return a position as text, such as ``"12.35° E, 45.20° N"``."""
     parts = ((lon, "E", "W"), (lat, "N", "S"))
     return ", ".join(f"{abs(x):.{decimals}f}° {low if x < 0 else high}" for x, high, low in parts)
 
 
 class ProjectionError(FieldError):
-    """There is no such projection, or a place cannot be mapped by it.
+    """A projection is unknown, or cannot map a position.
 
     Examples
     --------
     >>> from flowtex.earth import Projection
     >>> Projection("flat earth")
     Traceback (most recent call last):
-    flowtex.earth.projection.ProjectionError: the projection 'flat earth' is not known; ...
+    flowtex.earth.projection.ProjectionError: the projection 'flat earth' is unknown; ...
     """
 
 
 @dataclass(frozen=True)
 class Projection:
-    """A map of the Earth in metres.
+    """A projection of the Earth, in metres.
 
     Attributes
     ----------
     name
         ``"globe"``, one of the names ``"platecarree"``, ``"mercator"``, ``"north"`` and
         ``"south"`` (polar stereographic), ``"lambert"``, ``"robinson"`` and ``"equalearth"``, or
-        what PROJ takes, such as ``"EPSG:3413"`` or ``"+proj=laea +lat_0=52 +lon_0=10"``.
+        a PROJ definition, such as ``"EPSG:3413"`` or ``"+proj=laea +lat_0=52 +lon_0=10"``.
     center
-        Longitude and latitude, in degrees, in the middle of the map where ``name`` is one of the
+        Longitude and latitude of the middle of the map, in degrees, if ``name`` is one of the
         names.
     half_height
-        Degrees of latitude from the middle to the edge of what is to be mapped, from which a
-        Lambert projection has its parallels.
+        Half the extent of the map in degrees of latitude, which determines the standard parallels
+        of a Lambert projection.
 
     Raises
     ------
@@ -112,7 +112,7 @@ class Projection:
 
     @classmethod
     def of(cls, written: Any) -> Projection | None:
-        """Return the map that :meth:`written` is of; ``None`` for ``None``."""
+        """Return the projection from the value of :attr:`written`; ``None`` for ``None``."""
         if written is None:
             return None
         name, (lon, lat), half_height = written
@@ -120,24 +120,24 @@ class Projection:
 
     @property
     def written(self) -> list[Any]:
-        """What JSON holds of it."""
+        """The attributes as a list for JSON."""
         return [self.name, list(self.center), self.half_height]
 
     @property
     def is_globe(self) -> bool:
-        """Whether this is the sphere."""
+        """Whether this is the globe."""
         return self.name == GLOBE
 
     @property
     def family(self) -> str:
-        """The name of a map of the same kind, as that of ``"EPSG:3857"`` is ``"mercator"``."""
+        """The name of the map of the same kind: ``"mercator"`` for ``"EPSG:3857"``."""
         if self.is_globe or self.name in NAMES:
             return self.name
         return METHODS.get(self._operation.method_name, self.name)
 
     @property
     def origin(self) -> float | None:
-        """Longitude in degrees in the middle of the map, where what PROJ takes has one."""
+        """Central longitude in degrees, if a PROJ definition has one."""
         if self.is_globe or self.name in NAMES:
             return None
         named = (p for p in self._operation.params if p.name.startswith(("Longitude of", "lon_0")))
@@ -156,7 +156,7 @@ class Projection:
         pyproj = import_extra("pyproj", "xarray")
         text = self.name
         if text in NAMES:
-            # Longitudes are counted from the middle, where half a turn is the edge of the map.
+            # Longitudes are relative to the middle, so that 180 degrees is the edge of the map.
             lat, half = self.center[1], self.half_height
             text = f"{NAMES[text]} +lon_0=0 +R={EARTH_RADIUS:.12g} +units=m"
             if self.name == "platecarree":
@@ -186,7 +186,7 @@ class Projection:
 
     @cached_property
     def _transforms(self) -> tuple[Any, Any]:
-        """Transforms that turn longitudes around, and that go on beyond the edge of a map."""
+        """Transforms that wrap longitudes, and that continue beyond the edge of a map."""
         make = import_extra("pyproj", "xarray").Transformer.from_crs
         both = (
             make(self._crs.geodetic_crs, self._crs, always_xy=True, force_over=over)
@@ -197,8 +197,8 @@ class Projection:
     def positions(self, lon: Floats, lat: Floats, *, beyond: bool = False) -> Floats:
         """Return positions in metres, (..., 3), of longitudes and latitudes in degrees.
 
-        They are NaN where the projection has none. ``beyond`` says whether longitudes beyond the
-        edge of a map that has a name lie beyond it, or come back on its other side.
+        They are NaN where the projection is undefined. With ``beyond``, longitudes beyond the edge
+        of a named map continue beyond it; otherwise they return on the other side.
         """
         if self.is_globe:
             a, b = np.radians(lon), np.radians(lat)
@@ -212,7 +212,7 @@ class Projection:
         return points
 
     def vectors(self, lon: Floats, lat: Floats, east: Floats, north: Floats) -> Floats:
-        """Return vectors (..., 3) of components eastward and northward, (..., J, I), in m/s.
+        """Return vectors (..., 3) from eastward and northward components, (..., J, I), in m/s.
 
         ``lon`` and ``lat`` are (J, I), in degrees.
         """
@@ -220,9 +220,9 @@ class Projection:
         return np.asarray(east[..., None] * to_east + north[..., None] * to_north)
 
     def components(self, lon: Floats, lat: Floats, vectors: Floats) -> tuple[Floats, Floats]:
-        """Return the components eastward and northward of vectors (..., 3), in m/s.
+        """Return the eastward and northward components of vectors (..., 3), in m/s.
 
-        They are the inverse of :meth:`vectors`.
+        This is the inverse of :meth:`vectors`.
         """
         to_east, to_north = self._directions(lon, lat)
 
@@ -253,14 +253,14 @@ class Projection:
         return east, north
 
     def lonlat(self, positions: Floats) -> tuple[Floats, Floats]:
-        """Return longitude and latitude in degrees of positions (..., 3); NaN beside the map."""
+        """Return longitude and latitude in degrees of positions (..., 3); NaN outside the map."""
         x, y, z = np.moveaxis(np.asarray(positions, dtype=float), -1, 0)
         if self.is_globe:
             return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
         inverse = partial(self._transforms[0].transform, direction="INVERSE", errcheck=False)
         lon, lat = inverse(x, y)
         known = np.isfinite(lon) & np.isfinite(lat)
-        if not known.all():  # some lie on the outline, and by rounding beside it
+        if not known.all():  # some lie on the outline, and by rounding outside it
             inner = inverse(INSIDE * x, INSIDE * y)
             lon, lat = (
                 np.where(known, one, two) for one, two in zip((lon, lat), inner, strict=True)
@@ -270,17 +270,17 @@ class Projection:
         return (lon + self._origin + 180.0) % 360.0 - 180.0, lat
 
     def scale(self, position: Floats) -> float:
-        """Return metres of the map for a metre on the Earth at a position, (3,)."""
+        """Return the scale of the map, in metres per metre on the Earth, at a position, (3,)."""
         return 1.0 if self.is_globe else float(self.scales(*self.lonlat(position)))
 
     def scales(self, lon: Floats, lat: Floats) -> Floats:
-        """Return the same, the mean of both ways, at longitudes and latitudes in degrees, (...)."""
+        """Return the scale, averaged over directions, at longitudes and latitudes, (...)."""
         east, north = self._directions(np.asarray(lon, dtype=float), np.asarray(lat, dtype=float))
         return np.asarray(np.sqrt(np.linalg.norm(np.cross(east, north), axis=-1)))
 
 
 def _mean(one: Floats, other: Floats) -> Floats:
-    """Return the mean of two vectors, (..., 3), or one where the other leads across a tear."""
+    """Return the mean of two vectors, (..., 3), or one of them where the other crosses a tear."""
     a, b = (np.linalg.norm(v, axis=-1)[..., None] for v in (one, other))
     with np.errstate(invalid="ignore"):
         alone = np.where((a > TORN * b) | ~np.isfinite(a), other, one)

@@ -1,8 +1,8 @@
-"""Flows to try flowtex on: computed by code in this package, or loaded from well-known files.
+"""Example flows: computed by this package, or loaded from well-known files.
 
-Each comes three ways: ``name()`` is one ``pyvista.StructuredGrid`` with the point array
-``velocity``, ``name_series()`` a list of them, one for each instant of a time-varying flow, and
-``name_field()`` the :class:`~flowtex.FlowField` behind both, which needs no PyVista.
+Each has up to three functions: ``name()`` returns a ``pyvista.StructuredGrid`` with the point array
+``velocity``, ``name_series()`` a list of them, one for each time of a time-varying flow, and
+``name_field()`` a :class:`~flowtex.FlowField`, which does not need PyVista.
 
     cylinder     time-varying   O-grid          viscous vortex shedding, Reynolds number 100
     vortex       time-varying   Cartesian       two-dimensional turbulence, periodic both ways
@@ -11,11 +11,11 @@ Each comes three ways: ``name()`` is one ``pyvista.StructuredGrid`` with the poi
     delta_wing   steady         curved surface  a winged body, 52 x 62 nodes
     liquid_oxygen_post  steady  plane of a 3D grid   a file of NASA's, not shipped
 
-Two datasets of xarray's are like those that models write, and need the extra ``xarray``:
-``ocean()`` has eight days of currents with a coast, ``weather()`` winds all over the Earth.
+Two xarray datasets resemble the output of models, and need the extra ``xarray``: ``ocean()`` has
+eight days of currents with a coast, ``weather()`` global winds.
 
-What takes long to compute is shipped as a file; in a checkout ``tools/example_data/build.py``
-computes those files again.
+Flows that take long to compute are included as files; in a clone ``tools/example_data/build.py``
+computes them again.
 """
 
 from __future__ import annotations

@@ -24,20 +24,20 @@ def double_gyre_velocity(
     epsilon: float = EPSILON,
     period: float = PERIOD,
 ) -> Floats:
-    """Exact velocity of the double gyre at any point and time.
+    """Return the exact velocity of the double gyre at any points and time.
 
     Parameters
     ----------
     points : array_like, shape (..., 2) or (..., 3)
         Positions in [0, 2] x [0, 1]; a third coordinate is not used.
     time : float, default: 0.0
-        Time at which the velocity is wanted.
+        Time of the velocity.
     amplitude : float, default: 0.1
         A, the strength of the two cells.
     epsilon : float, default: 0.25
-        How far the border between the cells swings; 0 makes the flow steady.
+        Amplitude of the oscillation of the border between the cells; 0 makes the flow steady.
     period : float, default: 10.0
-        Time of one swing to and fro.
+        Period of the oscillation.
 
     Returns
     -------

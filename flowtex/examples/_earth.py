@@ -62,16 +62,17 @@ VORTICES = (
 
 
 def ocean() -> xr.Dataset:
-    """Eight days of currents in the Northwest Atlantic: a stream that meanders, and its rings.
+    """Return eight days of synthetic currents in the Northwest Atlantic.
 
-    The Gulf Stream leaves the coast at Cape Hatteras; rings and smaller eddies go west, as Rossby
-    waves do, by some 4 km a day.
+    A meandering Gulf Stream leaves the coast at Cape Hatteras; rings and smaller eddies move west,
+    like Rossby waves, by about 4 km a day.
 
     Returns
     -------
     xarray.Dataset
-        ``uo`` and ``vo`` in m/s, eastward and northward, and ``zos``, the height of the sea in m,
-        with which they are in balance; (time, latitude, longitude) = (8, 109, 217), NaN on land.
+        ``uo`` and ``vo`` in m/s, eastward and northward, and ``zos``, the sea surface height in m,
+        with which they are in geostrophic balance; (time, latitude, longitude) = (8, 109, 217), NaN
+        on land.
 
     Raises
     ------
@@ -114,13 +115,13 @@ def ocean() -> xr.Dataset:
 
 
 def weather() -> xr.Dataset:
-    """Winds all over the Earth at three levels: jets, planetary waves, lows and highs.
+    """Return synthetic global winds at three levels: jets, planetary waves, lows and highs.
 
     Returns
     -------
     xarray.Dataset
         ``u`` and ``v`` in m/s, eastward and northward, (level, latitude, longitude) =
-        (3, 91, 180), at 850, 500 and 250 hPa. They have no divergence, and are smooth across the
+        (3, 91, 180), at 850, 500 and 250 hPa. They are free of divergence, and smooth across the
         date line and the poles.
 
     Raises

@@ -14,7 +14,7 @@ from flowtex.field import FlowField
 
 
 def cylinder_field() -> FlowField:
-    """One period of vortex shedding behind a circular cylinder, Reynolds number 100.
+    """Return one period of vortex shedding behind a circular cylinder, Reynolds number 100.
 
     A solution of the two-dimensional Navier-Stokes equations in vorticity and streamfunction,
     with Fourier modes around the cylinder and fourth-order differences outwards.
@@ -22,19 +22,19 @@ def cylinder_field() -> FlowField:
     Returns
     -------
     FlowField
-        31 instants, the last one period after the first, on an O-grid of 65 circles (j, from
-        the wall outwards to a radius of 15) and 161 nodes around (i, anticlockwise from
-        straight downstream, so that the wake crosses the seam where the first and last column
-        coincide). Lengths in diameters, speeds in free-stream speeds, scalar ``vorticity``.
+        31 times, the last one period after the first, on an O-grid of 65 circles (j, from the wall
+        outwards to a radius of 15) and 161 nodes around (i, anticlockwise from straight downstream,
+        so that the wake crosses the seam where the first and last column coincide). Lengths are in
+        diameters, speeds in free-stream speeds; the scalar is ``vorticity``.
 
     Raises
     ------
     FileNotFoundError
-        When the installation lacks the example's file.
+        When the data file of the example is missing.
 
     Notes
     -----
-    Velocities are rounded to 16 bits: by at most 3e-5 free-stream speeds.
+    Velocities are rounded to 16 bits, with an error of at most 3e-5 free-stream speeds.
 
     Examples
     --------
@@ -56,24 +56,23 @@ def cylinder_field() -> FlowField:
 
 
 def vortex_field() -> FlowField:
-    """Vortices of decaying two-dimensional turbulence in a periodic box.
+    """Return vortices of decaying two-dimensional turbulence in a periodic box.
 
-    A solution of the Navier-Stokes equations by a dealiased pseudo-spectral method, in the form
-    of the vortex data set of Li and Shen: a time-varying Cartesian grid of 100 x 100 nodes over
-    31 time steps.
+    A solution of the Navier-Stokes equations by a dealiased pseudo-spectral method, with the shape
+    of the vortex dataset of Li and Shen: a Cartesian grid of 100 x 100 nodes and 31 time steps.
 
     Returns
     -------
     FlowField
-        31 instants, 0.04 apart, on [0, 1] x [0, 1], periodic along both axes: the last row and
-        column repeat the first. The root-mean-square speed was 1 before the vortices formed;
-        a particle in a vortex travels a twentieth of the box from one instant to the next.
-        Scalar ``vorticity``. All units are arbitrary.
+        31 times, 0.04 apart, on [0, 1] x [0, 1], periodic along both axes: the last row and column
+        repeat the first. The root-mean-square speed was 1 before the vortices formed; a particle in
+        a vortex travels a twentieth of the box in one step. The scalar is ``vorticity``. All units
+        are arbitrary.
 
     Raises
     ------
     FileNotFoundError
-        When the installation lacks the example's file.
+        When the data file of the example is missing.
 
     Examples
     --------
@@ -97,12 +96,12 @@ def double_gyre_field(
     time_varying: bool = False,  # noqa: FBT001, FBT002 - the one choice, and clear by its name
     shape: tuple[int, int] = (101, 201),
 ) -> FlowField:
-    """Double gyre of Shadden, Lekien and Marsden, exact at the nodes.
+    """Return the double gyre of Shadden, Lekien and Marsden, exact at the nodes.
 
     Parameters
     ----------
     time_varying : bool, default: False
-        Whether the border between the gyres swings: 41 instants over one period of 10 units of
+        Whether the border between the gyres oscillates: 41 times over one period of 10 units of
         time, the last equal to the first. Otherwise the flow is steady (epsilon = 0).
     shape : tuple of int, default: (101, 201)
         Number of nodes (J, I) on [0, 2] x [0, 1].
@@ -110,7 +109,7 @@ def double_gyre_field(
     Returns
     -------
     FlowField
-        With the scalar ``vorticity``; all units are arbitrary.
+        The scalar is ``vorticity``; all units are arbitrary.
 
     Examples
     --------
@@ -137,7 +136,7 @@ def double_gyre_at(times: Floats, points: Floats, epsilon: float) -> FlowField:
 
 
 def airfoil_field(shape: tuple[int, int] = (65, 193), extent: float = 2.5) -> FlowField:
-    """Steady lifting flow around a cambered Joukowski airfoil, exact at the nodes.
+    """Return the steady flow around a cambered Joukowski airfoil, exact at the nodes.
 
     Parameters
     ----------
@@ -145,18 +144,18 @@ def airfoil_field(shape: tuple[int, int] = (65, 193), extent: float = 2.5) -> Fl
         Number of nodes (J, I) of the O-grid: rings from the wall outwards, and nodes from the
         trailing edge clockwise, the last of which coincides with the first.
     extent : float, default: 2.5
-        Distance of the outermost ring from the airfoil's middle, in chords.
+        Distance of the outermost ring from the middle of the airfoil, in chords.
 
     Returns
     -------
     FlowField
-        Lengths in chords, speeds in free-stream speeds; the stream comes 8 degrees from below.
-        The scalar ``pressure`` is the pressure coefficient, 1 where the flow stands still.
+        Lengths are in chords and speeds in free-stream speeds; the angle of attack is 8 degrees.
+        The scalar ``pressure`` is the pressure coefficient, 1 at stagnation points.
 
     Notes
     -----
-    The flow is inviscid: it slides along the wall, and leaves the cusped trailing edge smoothly
-    (the Kutta condition). Cells differ in area by more than a hundred thousand to one.
+    The flow is inviscid: it slips along the wall, and leaves the cusped trailing edge smoothly (the
+    Kutta condition). The areas of cells differ by a factor of more than 100,000.
 
     Examples
     --------
@@ -179,10 +178,10 @@ def airfoil_field(shape: tuple[int, int] = (65, 193), extent: float = 2.5) -> Fl
 
 
 def delta_wing_field(shape: tuple[int, int] = (52, 62)) -> FlowField:
-    """Steady flow over the upper side of a winged body, in the manner of a shuttle orbiter.
+    """Return the steady flow over the upper side of a winged body like a shuttle orbiter.
 
-    A curved surface and a flow along it in closed form, in place of the shuttle data set of Li
-    and Shen, which was not published, with as many nodes.
+    A curved surface and a flow along it in closed form. It replaces the shuttle dataset of Li and
+    Shen, which was not published, and has the same number of nodes.
 
     Parameters
     ----------
@@ -192,14 +191,14 @@ def delta_wing_field(shape: tuple[int, int] = (52, 62)) -> FlowField:
     Returns
     -------
     FlowField
-        Lengths in body lengths, with x along the body, z upwards and the stream 12 degrees from
-        below; speeds in free-stream speeds. Scalar ``height``.
+        Lengths are in body lengths, with x along the body and z upward, and speeds in free-stream
+        speeds; the angle of attack is 12 degrees. The scalar is ``height``.
 
     Notes
     -----
-    The flow parts on one line of each wing and meets on another, as beneath the vortices of a
-    real one, but is made up: it solves no equation of motion. Cells differ in area by more than
-    a hundred to one.
+    The flow separates along one line of each wing and attaches along another, as beneath the
+    vortices of a real wing, but it is synthetic: it does not solve an equation of motion. The areas
+    of cells differ by a factor of more than 100.
 
     Examples
     --------
@@ -221,28 +220,28 @@ def delta_wing_field(shape: tuple[int, int] = (52, 62)) -> FlowField:
 
 
 def liquid_oxygen_post_field(folder: str | Path | None = None, plane: str = "k=20") -> FlowField:
-    """Flow around NASA's liquid-oxygen post, one plane of a curvilinear grid.
+    """Return the flow around NASA's liquid-oxygen post on one plane of a curvilinear grid.
 
     Parameters
     ----------
     folder : str or Path, optional
-        Folder with ``postxyz.bin`` and ``postq.bin``. By default PyVista downloads them from
-        its collection of data, once, into its own cache.
+        Folder with ``postxyz.bin`` and ``postq.bin``. By default PyVista downloads them once into
+        its cache.
     plane : str, default: "k=20"
-        Plane of the 38 x 76 x 38 nodes. On k-planes i runs outwards and j around the post, with
-        coinciding first and last nodes; k = 0 is a wall where nothing moves.
+        Plane of the 38 x 76 x 38 nodes. On k-planes i runs outwards and j around the post, and the
+        first and last nodes coincide; k = 0 is a wall, where the velocity is zero.
 
     Returns
     -------
     FlowField
-        In the units of the file, with its scalars.
+        The field in the units of the file, with its scalars.
 
     Raises
     ------
     FileNotFoundError
-        When the folder lacks one of the files, or they cannot be downloaded.
+        When a file is missing in the folder, or cannot be downloaded.
     FieldError
-        When there is no such plane, or nothing moves on it.
+        When the plane does not exist, or its velocity is zero everywhere.
 
     Examples
     --------

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def cylinder() -> pv.StructuredGrid:
-    """Vortex shedding behind a cylinder, the last of :func:`~flowtex.examples.cylinder_field`.
+    """Return vortex shedding behind a cylinder at the last time.
 
     Returns
     -------
@@ -44,12 +44,12 @@ def cylinder() -> pv.StructuredGrid:
 
 
 def cylinder_series() -> list[pv.StructuredGrid]:
-    """One period of vortex shedding behind a cylinder, as :func:`~flowtex.examples.cylinder_field`.
+    """Return one period of vortex shedding, :func:`~flowtex.examples.cylinder_field`.
 
     Returns
     -------
     list of pyvista.StructuredGrid
-        31 instants as from :func:`~flowtex.examples.cylinder`, the last one period after the first.
+        31 times, as from :func:`~flowtex.examples.cylinder`, the last one period after the first.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def cylinder_series() -> list[pv.StructuredGrid]:
 
 
 def vortex() -> pv.StructuredGrid:
-    """Vortices of turbulence, the last instant of :func:`~flowtex.examples.vortex_field`.
+    """Return vortices of turbulence, :func:`~flowtex.examples.vortex_field`, at the last time.
 
     Returns
     -------
@@ -80,12 +80,12 @@ def vortex() -> pv.StructuredGrid:
 
 
 def vortex_series() -> list[pv.StructuredGrid]:
-    """Vortices of two-dimensional turbulence, as :func:`~flowtex.examples.vortex_field`.
+    """Return vortices of turbulence, :func:`~flowtex.examples.vortex_field`, at all times.
 
     Returns
     -------
     list of pyvista.StructuredGrid
-        31 instants as from :func:`~flowtex.examples.vortex`.
+        31 times, as from :func:`~flowtex.examples.vortex`.
 
     Examples
     --------
@@ -97,12 +97,12 @@ def vortex_series() -> list[pv.StructuredGrid]:
 
 
 def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
-    """Double gyre at one time of its period of 10.
+    """Return the double gyre at one time of its period of 10.
 
     Parameters
     ----------
     time : float, default: 0.0
-        Any time; at 0 the two gyres are of one size, as in the steady flow.
+        Any time; at 0 the two gyres have the same size, as in the steady flow.
 
     Returns
     -------
@@ -127,12 +127,12 @@ def double_gyre(time: float = 0.0) -> pv.StructuredGrid:
 
 
 def double_gyre_series() -> list[pv.StructuredGrid]:
-    """One period of the double gyre.
+    """Return one period of the double gyre.
 
     Returns
     -------
     list of pyvista.StructuredGrid
-        41 instants as from :func:`~flowtex.examples.double_gyre`, with ``TimeValue`` from 0 to 10.
+        41 times, as from :func:`~flowtex.examples.double_gyre`, with ``TimeValue`` from 0 to 10.
 
     Examples
     --------
@@ -144,7 +144,7 @@ def double_gyre_series() -> list[pv.StructuredGrid]:
 
 
 def airfoil() -> pv.StructuredGrid:
-    """Lifting flow around a Joukowski airfoil, as :func:`~flowtex.examples.airfoil_field`.
+    """Return the flow around a Joukowski airfoil, :func:`~flowtex.examples.airfoil_field`.
 
     Returns
     -------
@@ -161,7 +161,7 @@ def airfoil() -> pv.StructuredGrid:
 
 
 def delta_wing() -> pv.StructuredGrid:
-    """Flow over the upper side of a winged body, as :func:`~flowtex.examples.delta_wing_field`.
+    """Return the flow over a winged body, :func:`~flowtex.examples.delta_wing_field`.
 
     Returns
     -------
@@ -178,7 +178,7 @@ def delta_wing() -> pv.StructuredGrid:
 
 
 def liquid_oxygen_post(folder: str | Path | None = None, plane: str = "k=20") -> pv.StructuredGrid:
-    """Flow around NASA's liquid-oxygen post, as :func:`~flowtex.examples.liquid_oxygen_post_field`.
+    """Return the flow around NASA's liquid-oxygen post on one plane.
 
     Returns
     -------
@@ -194,20 +194,20 @@ def liquid_oxygen_post(folder: str | Path | None = None, plane: str = "k=20") ->
 
 
 def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:
-    """One instant of a field as a mesh.
+    """Return one time step of a field as a mesh.
 
     Parameters
     ----------
     field : FlowField
         Surface and velocity.
     step : int, default: -1
-        Which instant; the default is the last.
+        Index of the time step; the last by default.
 
     Returns
     -------
     pyvista.StructuredGrid
         I x J x 1 nodes with the point array ``velocity``, the field's scalars, and the field
-        data ``TimeValue`` where the field varies in time. Nodes without data are hidden.
+        data ``TimeValue`` if the field is time-varying. Nodes without data are hidden.
 
     Examples
     --------
@@ -232,7 +232,7 @@ def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:
 
 
 def to_series(field: FlowField) -> list[pv.StructuredGrid]:
-    """Every instant of a field as a mesh.
+    """Return every time step of a field as a mesh.
 
     Returns
     -------

@@ -63,10 +63,9 @@ class FlowField(FieldConstructors):
     """Velocity on a surface, steady or time-varying.
 
     Make one with :meth:`from_arrays`, :meth:`from_triangles`, :meth:`from_pyvista`,
-    :meth:`from_xarray` or :meth:`from_file`. The nodes of a structured surface are (J, I); those
-    of triangles are one row, (1, N). Where an axis
-    is periodic, the last line of nodes is the first one again; a mesh that stops one cell short
-    of that gets the line appended, in every array.
+    :meth:`from_xarray` or :meth:`from_file`. The nodes of a structured surface have the shape (J,
+    I); those of triangles are one row, (1, N). Along a periodic axis the last line of nodes repeats
+    the first; if a mesh ends one cell earlier, the line is appended to every array.
 
     Attributes
     ----------
@@ -74,34 +73,34 @@ class FlowField(FieldConstructors):
         Node positions, (J, I, 3), in the mesh's own units.
     velocity
         Velocity, (T, J, I, 3) with T = 1 when steady, in the mesh's units per unit of time;
-        zero at nodes that are not valid. Long series of data sets are read step by step.
+        zero at nodes that are not valid. Long series of datasets are read step by step.
     times
         Time of each step, (T,), strictly increasing.
     valid
-        Nodes that carry data, (J, I): neither blanked nor masked nor NaN.
+        Nodes that have data, (J, I): neither blanked nor masked nor NaN.
     periodic
         Whether the (j, i) axis closes on itself.
     scalars
         Other nodal arrays, name to (T or 1, J, I).
     name, length_unit, time_unit
-        Words for captions; empty when unknown.
+        Text for captions; empty when unknown.
     has_position
-        Nodes whose own position is known, (J, I); the others, blanked ones, have the position
-        of the nearest node. ``None`` stands for all.
+        Nodes whose position is known, (J, I); the others are blanked and have the position of the
+        nearest known node. ``None`` means all.
     sign_free
-        Whether v and -v mean the same, as in a field of polarisation or principal directions.
+        Whether v and -v mean the same, as in a field of polarisations or principal directions.
     units
         Unit of each scalar, where it is known.
     long_names
-        Words for scalars, where there are other ones than their names.
+        Descriptions of scalars for legends, where they differ from their names.
     start
-        The date at time 0, a ``datetime`` or one of cftime's, where times count from one.
+        The date at time 0, a ``datetime`` or a date of cftime, if the times count from a date.
     projection
-        How positions follow from longitude and latitude, for a field of the Earth.
+        The map from longitude and latitude to positions, for a field of the Earth.
     triangles
-        Numbers of the nodes at the corners of triangles, (M, 3); ``None`` on a structured surface.
+        Indices of the nodes at the corners of triangles, (M, 3); ``None`` on a structured surface.
     formula
-        What the field was computed from, where :func:`flowtex.formula` made it.
+        The formula, if :func:`flowtex.formula` made the field.
 
     Examples
     --------
@@ -133,7 +132,7 @@ class FlowField(FieldConstructors):
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:
-        """Make a field of what a source gives.
+        """Make a field from a source.
 
         Examples
         --------
@@ -178,36 +177,36 @@ class FlowField(FieldConstructors):
             coordinates: ``(x, y)`` of a rectilinear grid, (I,) and (J,), or two or three arrays
             (J, I).
         velocity
-            Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a field that varies
-            in time, in units of length per unit of time. NaN and masked entries blank a node.
-            Steps that are read late (``LazySteps``) stay so, on the nodes that the first one has.
+            Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a time-varying field, in
+            units of length per unit of time. NaN and masked entries blank a node. Steps that are
+            read lazily (``LazySteps``) stay lazy; the first one determines the valid nodes.
         times
-            Time of each step, (T,), strictly increasing, in any unit of time. Steps are
-            numbered 0, 1, 2, ... when it is left out. Dates (``datetime64``, or cftime's) become
-            seconds since the first, and the unit of time ``"s"``; they are told as dates.
+            Time of each step, (T,), strictly increasing, in any unit of time; 0, 1, 2, ... by
+            default. Dates (``datetime64``, or cftime's) become seconds since the first, with the
+            unit of time ``"s"``; pictures and messages show them as dates.
         valid
-            Nodes that carry data, (J, I). All of them by default.
+            Nodes that have data, (J, I). All by default.
         periodic
-            Axes that close on themselves: ``""``, ``"i"``, ``"j"`` or ``"ij"``. By default it
-            is detected: coinciding first and last lines of nodes, a ring that stops one cell
-            short, and global longitude on a flat map.
+            Axes that close on themselves: ``""``, ``"i"``, ``"j"`` or ``"ij"``. By default they are
+            detected: first and last lines of nodes that coincide, a ring that ends one cell short,
+            and global longitude on a flat map.
         scalars
-            Further nodal arrays, name to (J, I) or (T, J, I), to colour by. What is beyond 1e100
-            becomes NaN, as nothing is known there.
+            Further nodal arrays, name to (J, I) or (T, J, I), to colour by. Values beyond 1e100
+            become NaN.
         name, length_unit, time_unit
-            Words for captions.
+            Text for captions.
         sign_free
-            Whether v and -v mean the same. Such a field is steady; it is drawn to both sides,
-            with no kernel and no motion that tells forward from backward. Vectors are turned
-            over where that makes neighbours agree.
+            Whether v and -v mean the same. Such a field is steady; it is drawn to both sides, and
+            kernels and motions that distinguish forward from backward are not available. Vectors
+            are reversed where that makes neighbours agree.
         units
-            Unit of each scalar by its name, for legends; that of the speed follows from those of
-            length and time.
+            Unit of each scalar by its name, for legends; the unit of the speed follows from those
+            of length and time.
         long_names
-            Words for scalars, where there are other ones than their names.
+            Descriptions of scalars for legends, where they differ from their names.
         projection
-            How points followed from longitude and latitude, for a field of the Earth: what tells
-            the place of a point, and draws coastlines.
+            The map from longitude and latitude to the points, for a field of the Earth. It is used
+            for coordinates of points and for coastlines.
 
         Returns
         -------
@@ -216,12 +215,12 @@ class FlowField(FieldConstructors):
         Raises
         ------
         FieldError
-            When the arrays do not make a field. The error lists all faults.
+            When the arrays do not describe a field. The error lists all faults.
 
         Warns
         -----
         UserWarning
-            When the velocity is zero everywhere: the picture is then plain noise.
+            When the velocity is zero everywhere, so that the picture is plain noise.
 
         Notes
         -----
@@ -294,34 +293,35 @@ class FlowField(FieldConstructors):
         points
             Node positions, (N, 2) or (N, 3), in any unit of length.
         triangles
-            Numbers of the nodes at the corners of each triangle, (M, 3). They may face either way,
-            have borders, come in several parts, and share an edge with more than one other.
+            Indices of the nodes at the corners of each triangle, (M, 3). Triangles may face either
+            way and share an edge with several others; the surface may have borders and several
+            parts.
         velocity
-            Velocity at the nodes, (N, 2 or 3), or (T, N, 2 or 3) for a field that varies in time,
-            in units of length per unit of time. NaN and masked entries blank a node. What of it
-            is normal to the surface is not drawn (:attr:`normal_share`). It may be read late.
+            Velocity at the nodes, (N, 2 or 3), or (T, N, 2 or 3) for a time-varying field, in units
+            of length per unit of time. NaN and masked entries blank a node. The component normal to
+            the surface is not drawn (:attr:`normal_share`). The velocity may be lazy.
         times, name, length_unit, time_unit, units, long_names, projection
             As for :meth:`from_arrays`.
         valid
-            Nodes that carry data, (N,). All of them by default.
+            Nodes that have data, (N,). All by default.
         scalars
             Further nodal arrays, name to (N,) or (T, N), to colour by.
 
         Returns
         -------
         FlowField
-            Its nodes are those that triangles use; nodes of borders that lie at one place are one,
-            with the mean of what they have.
+            Its nodes are those that triangles use; border nodes at the same position are merged,
+            with the mean of their values.
 
         Raises
         ------
         FieldError
-            When the arrays do not make a field. The error lists all faults.
+            When the arrays do not describe a field. The error lists all faults.
 
         Warns
         -----
         UserWarning
-            When triangles without area, or there twice, are left out, or the velocity is zero
+            When triangles without area or repeated triangles are left out, or the velocity is zero
             everywhere.
 
         Examples
@@ -363,14 +363,14 @@ class FlowField(FieldConstructors):
 
     @property
     def size_text(self) -> str:
-        """How many nodes there are, in words, such as ``"120 x 70 nodes (I x J)"``."""
+        """Number of nodes as text, such as ``"120 x 70 nodes (I x J)"``."""
         if self.triangles is not None:
             return f"{self.shape[1]:,} nodes, {self.short_size}"
         return f"{self.shape[1]} x {self.shape[0]} nodes (I x J)"
 
     @property
     def short_size(self) -> str:
-        """The same for captions, such as ``"120 × 70 nodes"``."""
+        """Number of nodes as text for captions, such as ``"120 × 70 nodes"``."""
         if self.triangles is not None:
             count = len(self.triangles)
             return "1 triangle" if count == 1 else f"{count:,} triangles"
@@ -379,13 +379,13 @@ class FlowField(FieldConstructors):
 
     @property
     def nbytes(self) -> int:
-        """Size of the arrays in memory."""
+        """Size of the arrays in memory, in bytes."""
         arrays = (self.points, self.velocity, self.valid, *self.scalars.values())
         return sum(array.nbytes for array in arrays)
 
     @property
     def steady(self) -> bool:
-        """Whether there is one time step only."""
+        """Whether the field has a single time step."""
         return len(self.times) == 1
 
     @cached_property
@@ -424,28 +424,28 @@ class FlowField(FieldConstructors):
 
     @property
     def normal_share(self) -> float:
-        """Share of the flow that is normal to the surface and cannot be drawn on it, 0 to 1."""
+        """Share of the flow that is normal to the surface, and so is not drawn, 0 to 1."""
         return self.index_velocity.normal_share
 
     @property
     def leaves_surface(self) -> bool:
-        """Whether so much of the flow is normal to the surface that the speed is told apart."""
+        """Whether a notable part of the flow is normal to the surface; see :attr:`speed_label`."""
         return self.normal_share > NOTABLE_SHARE
 
     @property
     def speed_label(self) -> str:
-        """Words for :attr:`speed`; the array of a file may have the short one."""
+        """Text for :attr:`speed` in legends; an array of a file may already be named ``speed``."""
         apart = self.leaves_surface or "speed" in self.scalars
         return "speed in the surface" if apart else "speed"
 
     def label_of(self, name: str) -> str:
-        """Return the words for a scalar, or for the speed, in a legend."""
+        """Return the text for a scalar, or for the speed, in a legend."""
         if name == "speed" and name not in self.scalars:
             return self.speed_label
         return self.long_names.get(name, name)
 
     def unit_of(self, name: str) -> str:
-        """Return the unit of a scalar, or of the speed; empty when it is not known."""
+        """Return the unit of a scalar, or of the speed; empty if unknown."""
         if name in self.units or name != "speed" or name in self.scalars:
             return self.units.get(name, "")
         return speed_unit(self.length_unit, self.time_unit)
@@ -460,11 +460,11 @@ class FlowField(FieldConstructors):
             from the positive side of a flat surface. ``"divergence"``. ``"shear"``: the magnitude
             of the rate of strain without divergence, sqrt((du/dx - dv/dy)^2 + (dv/dx + du/dy)^2).
             ``"okubo_weiss"``: the square of the shear less that of the vorticity, negative in
-            vortices. ``"ftle"``: the finite-time Lyapunov exponent, the rate at which particles
-            that begin beside a node separate, along the direction in which they separate most.
+            vortices. ``"ftle"``: the finite-time Lyapunov exponent, the largest rate at which
+            particles that start near a node separate.
         horizon
-            How long particles are followed for ``"ftle"``, in the unit of time; negative follows
-            them backward.
+            How long particles are followed for ``"ftle"``, in the unit of time; backward if
+            negative.
 
         Returns
         -------
@@ -475,7 +475,7 @@ class FlowField(FieldConstructors):
         Raises
         ------
         FieldError
-            When the name is not one of these, the horizon does not fit, or vectors have no sign.
+            When the name is unknown, the horizon is invalid, or the field is sign-free.
 
         Notes
         -----
@@ -497,7 +497,7 @@ class FlowField(FieldConstructors):
         return derived_steps(name, self.surface, self.projection, self.velocity)
 
     def with_derived(self, name: str, *, horizon: float | None = None) -> FlowField:
-        """Return the field with what :meth:`derive` computes among its scalars.
+        """Return the field with the result of :meth:`derive` among its scalars.
 
         Examples
         --------
@@ -516,16 +516,16 @@ class FlowField(FieldConstructors):
         return flow
 
     def forget(self) -> None:
-        """Drop what was derived from the arrays and can be computed again."""
+        """Free derived data, which are computed again when they are needed."""
         for name in (*_SHARED, "typical"):
             self.__dict__.pop(name, None)
 
     def at_step(self, step: int) -> FlowField:
-        """Return one time step, as for :meth:`step_number`, as a steady field."""
+        """Return one time step as a steady field; negative numbers count from the end."""
         return self.at_steps([self.step_number(step)])
 
     def at_steps(self, steps: Sequence[int]) -> FlowField:
-        """Return some of the time steps, by increasing numbers from 0, in memory."""
+        """Return some time steps, given by increasing indices from 0, in memory."""
         first, last = steps[0], steps[-1] + 1
         if len(steps) == len(self.times) and not isinstance(self.velocity, LazySteps):
             return self
@@ -545,12 +545,12 @@ class FlowField(FieldConstructors):
         return self.at_steps(typical_steps(len(self.times)))
 
     def step_number(self, step: int) -> int:
-        """Return the number of a time step from 0, where negative ones count from the end.
+        """Return the index of a time step from 0; negative numbers count from the end.
 
         Raises
         ------
         FieldError
-            When there is no such step.
+            When the step does not exist.
         """
         count = len(self.times)
         if not (is_number(step) and -count <= step < count and int(step) == step):
@@ -564,7 +564,7 @@ class FlowField(FieldConstructors):
         Raises
         ------
         FieldError
-            When fewer than two lines would be left, or on a surface of triangles, which has none.
+            When fewer than two lines would be left, or the surface consists of triangles.
         """
         if self.triangles is not None:
             msg = f"{self!r} has no lines of nodes; coarsen it, as in mesh.decimate(0.5)"
@@ -573,9 +573,9 @@ class FlowField(FieldConstructors):
         return self.at_lines(*(every_line(n, factor, closed=closed) for n, closed in axes))
 
     def at_lines(self, rows: Indices, columns: Indices) -> FlowField:
-        """Return the field on some of its lines of nodes, whose numbers along j and i increase.
+        """Return the field on some of its lines of nodes, by increasing indices along j and i.
 
-        An axis that closes on itself keeps its first and its last line.
+        A periodic axis keeps its first and its last line.
         """
         at = np.ix_(rows, columns)
         return replace(

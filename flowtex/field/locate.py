@@ -193,11 +193,11 @@ def locate(
 ) -> tuple[float, float] | None:
     """Return (j, i), in cells, of a point (3,), or (2,) with z = 0, in the mesh's own coordinates.
 
-    ``None`` where no surface is drawn within ``tolerance`` sizes of the nearest cell: another
-    program's triangles may cut a curved cell the other way. The surface consists of triangles as
-    renderers draw it, so points of a picture are exact. The first call for a field builds a tree of
-    its nodes; the next ones take about a millisecond. Raises a FieldError when the point is not two
-    or three finite numbers.
+    The result is ``None`` if the surface is farther than ``tolerance`` times the size of the
+    nearest cell; another program may divide a curved cell into other triangles. The surface
+    consists of the triangles that renderers draw, so points of a picture are exact. The first call
+    for a field builds a tree of its nodes; further calls take about a millisecond. Raises a
+    FieldError if the point is not two or three finite numbers.
 
     Examples
     --------

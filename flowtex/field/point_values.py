@@ -23,9 +23,9 @@ class PointValues:
     """The values of a field at one point of the surface and one time.
 
     ``index`` is (j, i) in cells, ``position`` (3,) in the mesh's units, ``velocity`` (3,) in the
-    mesh's units per unit of time, and ``speed`` its length along the surface, which is what colours
-    show, and ``speed_label`` words for it. ``lonlat`` are longitude and latitude in degrees, and
-    ``eastward`` and ``northward`` the velocity on the Earth, of a field with a projection.
+    mesh's units per unit of time, and ``speed`` its magnitude along the surface, which the colours
+    show, and ``speed_label`` its name. For a field with a projection, ``lonlat`` are longitude and
+    latitude in degrees, and ``eastward`` and ``northward`` the velocity on the Earth.
 
     Examples
     --------
@@ -51,29 +51,29 @@ class PointValues:
 
     @property
     def speed_unit(self) -> str:
-        """Word for the unit of speed; empty when one of the units is unknown."""
+        """Unit of the speed; empty if the unit of length or of time is unknown."""
         return speed_unit(self.length_unit, self.time_unit)
 
 
 def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> PointValues:
     """Return the values of a field at a point of its surface.
 
-    They are linear in the triangles that the surface is drawn with, and in time, as the colours
-    of a picture are.
+    They are linear in the triangles of the drawn surface, and in time, as are the colours of a
+    picture.
 
     Parameters
     ----------
     field
         The flow.
     index
-        (j, i) in cells; :func:`~flowtex.probe.locate` finds it for a point in space.
+        (j, i) in cells; :func:`~flowtex.probe.locate` returns it for a point in space.
     time
-        Time in the field's own unit; the last one by default. A steady field has one time.
+        Time in the field's unit; the last one by default.
 
     Raises
     ------
     FieldError
-        When the point is not on the surface or the time not within the field's times.
+        When the point is not on the surface, or the time is outside the field's times.
 
     Examples
     --------

@@ -44,7 +44,7 @@ PALETTE_PICTURES, PALETTE_SIDE = 8, 256
 
 
 class MovieError(FieldError):
-    """A movie cannot be made so; the text says why and what to do.
+    """A movie cannot be written; the text gives the reason and the remedy.
 
     Examples
     --------

@@ -52,26 +52,26 @@ def extent(
     margin: float = CAMERA_LIMITS.margin,
     **options: Any,
 ) -> Extent:
-    """Return the rectangle that :func:`flowtex.render` shows with the same arguments.
+    """Return the rectangle that :func:`flowtex.render` shows for the same arguments.
 
-    With it ``plt.imshow(picture, extent=...)`` puts each pixel where it lies in the data.
+    ``plt.imshow(picture, extent=...)`` then shows each pixel at its coordinates.
 
     Parameters
     ----------
     mesh
-        What ``plotter.flowtex.add`` takes; its surface is flat.
+        As for :func:`flowtex.render`; its surface must be flat.
     size, margin
         As for :func:`flowtex.render`.
     {options}
     **settings
-        Any setting of :class:`~flowtex.Settings`; they make no difference.
+        Any setting of :class:`~flowtex.Settings`; they have no effect.
 
     Returns
     -------
     tuple of float
         Left, right, bottom and top in the mesh's units: x and y of a plane of constant z, x and z
-        of one of constant y, y and z of one of constant x. Of another plane, lengths along the
-        picture's sides from where the mesh has its origin.
+        of one of constant y, y and z of one of constant x. For any other plane, lengths along the
+        picture's sides from the origin of the mesh.
 
     Raises
     ------
@@ -118,19 +118,19 @@ def axes(
 ) -> FlowImage:
     """Draw a flat flow into matplotlib axes, in data coordinates.
 
-    It is drawn anew for each look at it, in the pixels that the axes have by then, so the texture
-    is as sharp after a zoom, in a larger window, and in a file of more dots per inch.
+    The flow is redrawn at the resolution of the axes whenever these are drawn, so the texture stays
+    sharp after a zoom, in a larger window, and in a file with more dots per inch.
 
     Parameters
     ----------
     ax
-        Rectilinear axes with linear scales, or the axes of a map that cartopy makes
-        (``projection=ccrs.Robinson()``). Their limits become those of the surface, unless they
-        have been set; the aspect of rectilinear ones becomes equal. Data on longitudes and
-        latitudes are drawn in degrees, or in the projection that ``projection`` names, whose
-        meridians and parallels are the ticks; cartopy's axes have a projection of their own.
+        Rectilinear axes with linear scales, or map axes of cartopy
+        (``projection=ccrs.Robinson()``). Their limits become those of the surface, unless they have
+        been set, and the aspect of rectilinear axes becomes equal. Data on longitudes and latitudes
+        are drawn in degrees, or in the projection of the argument ``projection``, with meridians
+        and parallels as ticks; axes of cartopy already have a projection.
     mesh
-        What ``plotter.flowtex.add`` takes; its surface is flat.
+        As for :func:`flowtex.render`; its surface must be flat.
     time, clock, supersampling
         As for :func:`flowtex.render`.
     {options}
@@ -140,15 +140,14 @@ def axes(
     Returns
     -------
     FlowImage
-        The image on the axes; ``plt.colorbar`` takes it.
+        The image on the axes, which ``plt.colorbar`` accepts.
 
     Raises
     ------
     FieldError, SettingsError, OpenGLMissingError
         As for :func:`flowtex.render`.
-        When ``ax`` are no such axes.
-        When the surface is curved.
-        When the axes are of a map, and the data are not of the Earth.
+        When ``ax`` are other axes, the surface is curved, or data on axes of a map are not of the
+        Earth.
 
     Examples
     --------
@@ -180,9 +179,10 @@ def axes(
 
 
 class FlowImage(AxesImage):
-    """A flow on matplotlib axes, drawn anew for what they show; :func:`flowtex.axes` makes it.
+    """A flow on matplotlib axes, redrawn for the limits that they show.
 
-    Its colour map and its norm are those of the picture, for a colour bar.
+    :func:`flowtex.axes` returns it. It has the colour map and the norm of the picture, for a colour
+    bar.
 
     Examples
     --------
@@ -233,13 +233,13 @@ class FlowImage(AxesImage):
 
     @property
     def colour_label(self) -> str:
-        """Words and unit of the colours, for a colour bar; empty where the flow has one colour."""
+        """Name and unit of the scalars, for a colour bar; empty if the flow has one colour."""
         name = self._scene.scalar_name
         return "" if name is None else self._scene.title_of(name)
 
     @property
     def time(self) -> float:
-        """Time that is shown, in the field's own unit; set it to show another one."""
+        """The time shown, in the field's unit; set it to show another one."""
         return self._scene.time
 
     @time.setter
@@ -259,7 +259,7 @@ class FlowImage(AxesImage):
         self.stale = True
 
     def frame_axes(self) -> None:
-        """Set limits, aspect and ticks of the axes, but for limits that have been set."""
+        """Set aspect and ticks of the axes, and limits that have not been set."""
         ax: Any = self.axes
         left, right, bottom, top = self.get_extent()
         if is_geo(ax):
@@ -298,7 +298,7 @@ class FlowImage(AxesImage):
         magnification: float = 1.0,
         unsampled: bool = False,  # noqa: FBT001, FBT002
     ) -> tuple[Any, float, float, Any]:
-        """Return the pixels of the axes and where they begin, for matplotlib."""
+        """Return the pixels of the axes and their position, for matplotlib."""
         del renderer, unsampled
         box = self.axes.bbox
         # Whole pixels, of which matplotlib cuts those at the border.

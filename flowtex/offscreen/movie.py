@@ -134,7 +134,7 @@ def _is_periodic(field: FlowField) -> bool:
 
 @dataclass(frozen=True)
 class Movie:
-    """What was written.
+    """A movie that was written.
 
     Attributes
     ----------
@@ -145,13 +145,13 @@ class Movie:
     size
         Width and height in pixels.
     frames
-        Number of pictures.
+        Number of frames.
     fps
-        Pictures in a second.
+        Frames per second.
     seconds
-        How long it is.
+        Duration.
     closed
-        Whether the first picture follows upon the last one without a seam.
+        Whether the first frame follows the last one without a seam.
 
     Examples
     --------
@@ -186,34 +186,35 @@ def movie(
     cancelled: Callable[[], bool] = lambda: False,
     **options: Any,
 ) -> Movie:
-    """Write a flow as a movie: a seamless loop of a steady one, or all times of one that varies.
+    """Write a flow as a movie: a seamless loop, or all times of a time-varying flow.
 
     Parameters
     ----------
     mesh
-        What ``plotter.flowtex.add`` takes.
+        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or path
+        of a file.
     path
-        File to write: ``.mp4``, ``.gif`` or ``.webp``. One that is there already is replaced,
-        once the new one is whole.
+        File to write: ``.mp4``, ``.gif`` or ``.webp``. An existing file is replaced when the new
+        one is complete.
     size
         Width and height in pixels; even numbers for an MP4.
     seconds
-        How long the movie is, 0.1 to 600. A steady flow begins again after as long; by default
-        that is the setting ``period``. A field that varies in time takes a quarter of a second
-        for a step by default, but at least 5 and at most 30 seconds.
+        Duration of the movie, 0.1 to 600. A steady flow repeats after this time; the default is the
+        setting ``period``. The default for a time-varying field is a quarter of a second per step,
+        but at least 5 and at most 30 seconds.
     fps
-        Pictures in a second; 30 by default, and 20 in a GIF.
+        Frames per second; 30 by default, and 20 in a GIF.
     quality
-        1 to 100: the more, the truer and the larger the file.
+        Quality of the compression, 1 to 100; higher values give larger files.
     supersampling, annotations
         As for :func:`flowtex.render`.
     progress
         Whether to show a progress bar when it takes longer than a second.
     cancelled
-        Asked before each picture; once it is true nothing is left behind.
+        Called before each frame; if it returns True, the movie is cancelled and no file is written.
     {options}
     **settings
-        Any setting of :class:`~flowtex.Settings`. ``motion`` is ``"speed"`` unless it is given.
+        Any setting of :class:`~flowtex.Settings`. ``motion`` is ``"speed"`` by default.
 
     Returns
     -------
@@ -224,13 +225,13 @@ def movie(
     FieldError, SettingsError, OpenGLMissingError
         As for :func:`flowtex.render`.
     MovieError
-        When there is no such format, a number is out of range, or the flow would stand still.
+        When the format is unknown, a number is out of range, or the picture would not move.
     ModuleNotFoundError
-        When an MP4 is asked for without PyAV; the text names the command that installs it.
+        When PyAV is missing and the file is an MP4; the text names the command that installs it.
     OSError
-        When the file cannot be written; what was there before is left as it was.
+        When the file cannot be written; an existing file stays unchanged.
     Stopped
-        When it was cancelled.
+        When ``cancelled`` returned True.
 
     Examples
     --------
@@ -263,7 +264,7 @@ def frames(
     annotations: bool = False,
     **options: Any,
 ) -> Iterator[Bytes]:
-    """Give the pictures of a movie, (height, width, 3) uint8, each drawn when it is asked for.
+    """Yield the frames of a movie, (height, width, 3) uint8, each drawn when it is requested.
 
     Parameters and errors are those of :func:`flowtex.movie`.
 

@@ -37,26 +37,28 @@ def render(
     Parameters
     ----------
     mesh
-        What ``plotter.flowtex.add`` takes.
+        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or path
+        of a file.
     size
         Width and height in pixels; each of two views has half the width.
     time
-        Time to show of a field that varies in time, or a date such as ``"2000-01-02 12:00"`` where
-        its times are dates; its first step by default.
+        Time to show of a time-varying field, or a date such as ``"2000-01-02 12:00"`` if its times
+        are dates; the first step by default.
     clock
-        Moment of the streaming of a steady flow, in seconds (see the setting ``motion``).
+        Time in the animation of a steady flow, in seconds (see the setting ``motion``).
     supersampling
-        Times that the picture is drawn larger along each side and averaged, 1 to 8: 2 takes four
-        times as long and smooths what is finer than a pixel. Grains keep their size.
+        Factor by which the picture is drawn larger along each side and then averaged, 1 to 8. A
+        factor of 2 takes four times as long and smooths details finer than a pixel. Grains keep
+        their size.
     margin
-        Share of the picture that is left empty at each side of the whole surface, from 0 to less
-        than a half. :func:`flowtex.extent` tells what rectangle a flat picture shows.
+        Share of the picture that stays empty at each side of the whole surface, from 0 to less than
+        0.5. :func:`flowtex.extent` returns the rectangle that a flat picture shows.
     annotations
-        Whether legend, scale bar, time and the field's name are written on the picture, each where
-        it makes sense and has room.
+        Whether legend, scale bar, time and the field's name are drawn on the picture, each if it
+        applies and has room.
     scalar_bar_args
-        As for ``plotter.add_mesh``. There is such a bar only with ``show_scalar_bar=True``,
-        and with annotations there is none.
+        As for ``plotter.add_mesh``. This bar is drawn only with ``show_scalar_bar=True`` and
+        without annotations.
     {options}
     **settings
         Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
@@ -72,7 +74,7 @@ def render(
         When the mesh or a setting does not fit.
         When the picture would be too large to draw, or the margin is out of range.
     OpenGLMissingError
-        When nothing can draw; the text names the command that installs what is missing.
+        When OpenGL is missing; the text names the command that installs it.
 
     Examples
     --------

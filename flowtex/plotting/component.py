@@ -62,14 +62,14 @@ class FlowtexComponent:
         Parameters
         ----------
         mesh
-            A mesh of PyVista's, a list of them in time, the path of a file of one, or a
-            :class:`~flowtex.FlowField`.
+            PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or
+            path of a file.
         {options}
         scalar_bar_args
             As for ``plotter.add_mesh``.
         reset_camera
-            Whether to move the camera so that everything is seen; by default when this is
-            the first mesh.
+            Whether to move the camera so that it shows everything; by default for the first mesh
+            only.
         **settings
             Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
 
@@ -80,11 +80,11 @@ class FlowtexComponent:
         Raises
         ------
         FieldError
-            When the mesh does not make a field.
+            When the mesh does not contain a flow.
         SettingsError
             When a setting is unknown or out of range.
         ImageError
-            When the image cannot be read or used; a kind of SettingsError.
+            When the image cannot be read or used; a subclass of SettingsError.
 
         Examples
         --------
@@ -104,7 +104,7 @@ class FlowtexComponent:
         scalar_bar_args: Mapping[str, Any] | None = None,
         reset_camera: bool | None = None,
     ) -> FlowHandle:
-        """Draw a scene; :meth:`add` has the parameters."""
+        """Draw a scene; the parameters are those of :meth:`add`."""
         first = not self._plotter.renderer.actors
         handle = FlowHandle(self._plotter, scene, self._forget, scalar_bar_args)
         self._handles.append(handle)
@@ -113,9 +113,10 @@ class FlowtexComponent:
         return handle
 
     def for_browser(self) -> tuple[FlowField, dict[str, Any], Bodies]:
-        """Return the first flow, arguments by which it looks the same, and what stands beside it.
+        """Return the first flow, its arguments, and the other meshes of the plotter.
 
-        What a browser is not handed is warned of. Raises a FieldError where there is no flow.
+        A warning lists what the browser cannot draw. Raises a FieldError if the plotter has no
+        flow.
         """
         if not self._handles:
             msg = (
@@ -136,7 +137,7 @@ class FlowtexComponent:
         return shown.field, self._look_of(shown), bodies
 
     def _look_of(self, handle: FlowHandle) -> dict[str, Any]:
-        """Return the arguments of a view that looks the same."""
+        """Return arguments that give a view the same appearance."""
         mapper, prop, image = handle.actor.mapper, handle.actor.prop, handle.scene.image
         name = handle.scene.scalar_name
         colours: dict[str, Any] = {"scalars": False, "color": prop.color}
@@ -155,7 +156,7 @@ class FlowtexComponent:
         }
 
     def __iter__(self) -> Iterator[FlowHandle]:
-        """Give the handles that have not been removed."""
+        """Yield the handles that have not been removed."""
         return iter(tuple(self._handles))
 
     def __len__(self) -> int:

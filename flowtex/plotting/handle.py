@@ -42,7 +42,7 @@ class FlowHandle(AppearanceAttributes):
     actor
         PyVista's actor, for its position and the like.
     scene
-        The arrays behind the picture.
+        The field, its appearance and its textures.
 
     Examples
     --------
@@ -98,7 +98,7 @@ class FlowHandle(AppearanceAttributes):
 
     @property
     def time(self) -> float:
-        """Time that is shown, in the field's own unit."""
+        """The time shown, in the field's unit."""
         return self.scene.time
 
     @time.setter
@@ -107,7 +107,7 @@ class FlowHandle(AppearanceAttributes):
 
     @property
     def clock(self) -> float:
-        """Clock of the animation in seconds; set it to draw the frame of any moment."""
+        """Clock of the animation in seconds; set it to draw any frame."""
         return self._surface.view.clock
 
     @clock.setter
@@ -119,10 +119,10 @@ class FlowHandle(AppearanceAttributes):
 
     @property
     def density(self) -> float:
-        """Pixels drawn, along a side, for one that the settings speak of; 1 on a plain screen.
+        """Number of drawn pixels, along a side, per pixel of the settings; 1 on an ordinary screen.
 
-        Twice the density shows the same in twice as many pixels, as fine screens, print and
-        supersampling want it.
+        A density of 2 draws the same picture with twice as many pixels along each side, for
+        high-resolution screens, print and supersampling.
         """
         return self._surface.view.density
 
@@ -141,46 +141,45 @@ class FlowHandle(AppearanceAttributes):
         return self._plotter is None
 
     def load_in_background(self, notify: Callable[[], None]) -> None:
-        """Draw with the tiles that are there; ``notify`` is called in a thread when there are more.
+        """Draw with the tiles that are ready; ``notify`` is called in a thread when more are.
 
-        Of a large surface only what is seen is traced, in tiles. By default a picture waits for
-        those that it needs.
+        Only the visible tiles of a large surface are traced. By default a picture waits for the
+        tiles that it needs.
         """
         self._surface.load_in_background(notify)
         self._structure.load_in_background(notify)
 
     @property
     def meshes(self) -> list[Any]:
-        """PyVista's meshes of the last picture, one but for large surfaces."""
+        """PyVista meshes of the last picture; several if the surface is large."""
         return self._surface.meshes
 
     def draw_for(self, height: int | None) -> None:
-        """Choose tiles as for a picture of so many pixels, of which the next ones are drafts."""
+        """Choose tiles for a picture of this size; the next pictures are drafts of it."""
         self._surface.full_height = height
 
     @property
     def busy(self) -> bool:
-        """Whether tiles of the last picture, or its structure, are on their way."""
+        """Whether tiles or the structure of the last picture are still being computed."""
         return self._surface.busy or self._structure.busy
 
     def set_surface(self, mesh: Any, **options: Any) -> None:
-        """Draw the flow on another surface from now on, such as a cutting plane that has moved.
+        """Draw the flow on another surface, such as a cutting plane that has moved.
 
-        Settings and appearance stay, and the time where the new flow has it.
+        Settings and appearance stay, and the time if the new flow has it.
 
         Parameters
         ----------
         mesh
             As for ``plotter.flowtex.add``.
         **options
-            What of the mesh makes the field, such as ``slice="x=0.5"``: those arguments of
-            ``plotter.flowtex.add``.
+            The part of the mesh to draw, such as ``slice="x=0.5"``, as for ``plotter.flowtex.add``.
 
         Raises
         ------
         FieldError
-            When the mesh does not make a field; nothing is changed then, nor by the next one.
-            When it lacks the scalar that the surface is coloured by.
+            When the mesh does not contain a flow, or lacks the scalar that colours the surface;
+            nothing is changed then.
         """
         field = FieldOptions(**options).field(mesh)
         old = self.scene
@@ -207,13 +206,13 @@ class FlowHandle(AppearanceAttributes):
         self._draw()
 
     def set_image(self, image: Any) -> None:
-        """Advect another image, one that the argument ``image`` takes."""
+        """Advect another image, given as for the argument ``image``."""
         self.scene.set_image(image)
 
     def remove(self, *, render: bool = True) -> None:
-        """Take the texture, its scalar bar and everything on the graphics card away.
+        """Remove the texture and its scalar bar, and free the graphics memory.
 
-        The plotter is drawn without it at once where ``render`` says so.
+        With ``render`` the plotter is redrawn at once.
         """
         if self._plotter is None:
             return

@@ -1,4 +1,4 @@
-"""Pyramids in stores: fields larger than a machine, built once and drawn from anywhere."""
+"""Pyramids in stores: fields larger than memory, built once and drawn from anywhere."""
 
 from __future__ import annotations
 

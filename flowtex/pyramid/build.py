@@ -1,4 +1,4 @@
-"""Building a pyramid: levels one after the other, then tiles, in threads or by a Dask cluster."""
+"""Building a pyramid: levels one after the other, then tiles, in threads or on a Dask cluster."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ IDENTITY = (
 
 @dataclass(frozen=True)
 class Built:
-    """What was built.
+    """The result of a build.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ class Built:
     depth
         Its coarsest level.
     made, kept
-        Shards of nodes and tiles that were made, and that were there already.
+        Numbers of shards that were built, and that already existed.
 
     Examples
     --------
@@ -107,30 +107,30 @@ def build(
     progress: bool = True,
     **options: Any,
 ) -> Built:
-    """Build the pyramid of a field in a store, from which any part of it is drawn at once.
+    """Build the pyramid of a field in a store, from which any part can be drawn quickly.
 
     Parameters
     ----------
     source
-        A field, a dataset of xarray's, or a file as for :meth:`flowtex.FlowField.from_file`.
+        A field, an xarray dataset, or a file as for :meth:`flowtex.FlowField.from_file`.
     store
         A local folder such as ``"flow.zarr"``, or a URL such as ``"s3://bucket/flow.zarr"``;
         endpoint and credentials come from the environment.
     parameter, lines
         As in :class:`~flowtex.Settings`.
     scheduler
-        A client of Dask's, or the address of a scheduler such as ``"tcp://host:8786"``; threads
-        of this process by default. Its workers must reach the store, and the data.
+        A Dask client, or the address of a scheduler such as ``"tcp://host:8786"``; threads of this
+        process by default. The workers must have access to the store and the data.
     memory
-        What threads may take of the memory, in bytes or such as ``"2GB"``; fewer of them run where
-        it is little. By default there is one for each core.
+        Memory limit of the threads, in bytes or such as ``"2GB"``; a low limit reduces their
+        number. By default one thread runs for each core.
     fresh
-        Whether a pyramid that is there is removed first.
+        Whether an existing pyramid is removed first.
     progress
-        Whether a bar is shown.
+        Whether to show a progress bar.
     **options
-        How a dataset or a file becomes a field: as for :meth:`flowtex.FlowField.from_xarray` or
-        :meth:`flowtex.FlowField.from_file`, such as ``u``, ``v``, ``globe`` or ``level``.
+        Arguments of :meth:`flowtex.FlowField.from_xarray` or :meth:`flowtex.FlowField.from_file`,
+        such as ``u``, ``v``, ``globe`` or ``level``.
 
     Returns
     -------
@@ -139,29 +139,29 @@ def build(
     Raises
     ------
     FieldError
-        When the source makes no field, is one of triangles or without a sign, or has a scalar whose
-        name is not a valid name of a Zarr array.
+        When the source does not contain a field, is on triangles or sign-free, or has a scalar
+        whose name is not valid for a Zarr array.
     PyramidError
-        When the place holds other data, the pyramid of another field or of an earlier state of this
-        one, or is being built already; or when tasks have failed, and a second call makes what is
-        missing.
+        When the store contains other data, the pyramid of another field or of an earlier version of
+        this one, or another build is writing it; or when tasks have failed. A second call then
+        builds the missing parts.
 
     Notes
     -----
-    What is there already is not made again, so a build that was ended at any moment goes on where
-    it was. It reads all that is there, and makes again what is missing or corrupt.
+    A build continues where an interrupted one stopped: it checks the existing parts, and builds
+    only those that are missing or corrupt.
 
-    A store knows its source by the paths, sizes and times of change of the files. Where these
-    differ, and of a dataset or a field that was given, what was read is read again and held against
-    the digest that the store keeps of each part.
+    A store identifies its source by the paths, sizes and modification times of the files. If these
+    differ, or if the source is a dataset or a field in memory, the data are read again and compared
+    with the checksums of all parts in the store.
 
-    Of a dataset on lines of longitude and latitude, or of x and y, each task reads a region, if it
-    is drawn on a globe, plate carree or Mercator's map. Neither this process nor a worker then
-    holds more of it than that, and lines of coordinates. Chunks of the data should not be much
-    larger than a region, 512 by 1,024 nodes of a time step. Of anything else a time step has to fit
-    into the memory of this process. A task takes 1.5 GB at most; a worker of a cluster needs
-    that for each of its threads, and 0.5 GB for itself. Dask pauses one that has taken four fifths
-    of its memory, so it should be given 2.5 GB for one thread.
+    Each task reads one region, of 512 by 1,024 nodes of a time step, if the source is a dataset on
+    one-dimensional coordinates that is drawn on a globe, a plate carree or a Mercator map. Neither
+    this process nor a worker then has more of it in memory, and the chunks of the data should not
+    be much larger than a region. From any other source, a time step must fit into the memory of
+    this process. A task needs up to 1.5 GB; a worker of a cluster needs this for each of its
+    threads, and 0.5 GB more. Dask pauses a worker that uses 80 % of its memory, so give a worker
+    with one thread 2.5 GB.
 
     Examples
     --------
@@ -204,28 +204,28 @@ def build(
 
 
 def verify(store: str | Path, *, progress: bool = True) -> list[str]:
-    """Read all of a pyramid, and return what of it is missing or corrupt.
+    """Read the whole pyramid, and return its missing and corrupt parts.
 
-    Every object is unpacked and held against its check sum, its size, and what it tells of its
-    place; parts of levels against the digest of their values.
+    Every object is decompressed and compared with its checksum, its size and its position; parts of
+    levels also with the checksum of their values.
 
     Parameters
     ----------
     store
         A folder or a URL, as for :func:`flowtex.pyramid.open_store`.
     progress
-        Whether a bar is shown.
+        Whether to show a progress bar.
 
     Returns
     -------
     list of str
-        A sentence for each part or tile that is missing or corrupt. A build of the same source
-        makes them again.
+        A sentence for each part or tile that is missing or corrupt. A build from the same source
+        restores them.
 
     Raises
     ------
     PyramidError
-        When there is no pyramid, or its place cannot be read.
+        When the store contains no pyramid, or cannot be read.
 
     Examples
     --------

@@ -45,7 +45,7 @@ _CREDENTIALS = (
 
 
 class PyramidError(FieldError):
-    """A store of a pyramid that cannot be read, or written.
+    """The store of a pyramid cannot be read or written.
 
     Examples
     --------
@@ -172,12 +172,13 @@ def listed(names: Callable[[str], AsyncIterator[str]], prefix: str = "") -> list
 
 
 def is_store(place: Any) -> bool:
-    """Whether there is a pyramid at a place; without Zarr for a local one.
+    """Return whether a folder or URL contains a pyramid; a local one is checked without Zarr.
 
     Raises
     ------
     PyramidError
-        When it is a URL of another kind, has credentials with it, or does not answer.
+        When the kind of URL is not supported, it contains credentials, or the server does not
+        answer.
 
     Examples
     --------

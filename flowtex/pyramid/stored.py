@@ -26,17 +26,18 @@ from flowtex.tiles.pyramid import averaged
 def open_store(store: str | Path, **options: Any) -> FlowField:
     """Open a pyramid in a store as a field.
 
-    Drawing it reads the tiles that are in view, as ``flowtex.render``, ``flowtex.show`` and the
-    widget do. The field's own arrays are those of the coarsest level.
+    ``flowtex.render``, ``flowtex.show`` and the widget read only the tiles in view. The arrays of
+    the field are those of the coarsest level.
 
     Parameters
     ----------
     store
         A local folder, or a URL: ``s3://bucket/path`` and other object storage, or ``https://``.
-        Endpoint and credentials come from the environment. Others may have written it: a multiscale
-        group of xarray datasets, as ndpyramid and topozarr write them, or a Zarr dataset.
+        Endpoint and credentials come from the environment. It may also be written by other
+        programs: a multiscale group of xarray datasets, as of ndpyramid and topozarr, or a Zarr
+        dataset.
     **options
-        What is drawn of a store of others: as for :meth:`flowtex.FlowField.from_xarray`, such as
+        For stores of other programs: arguments of :meth:`flowtex.FlowField.from_xarray`, such as
         ``u``, ``v``, ``globe`` or ``level``.
 
     Returns
@@ -46,14 +47,14 @@ def open_store(store: str | Path, **options: Any) -> FlowField:
     Raises
     ------
     FieldError
-        When there is no pyramid, or it cannot be read.
+        When the store contains no pyramid, or cannot be read.
     ModuleNotFoundError
-        When what reads it is missing; the text names the extra.
+        When a package that reads the store is missing; the text names the extra.
 
     Warns
     -----
     Notice
-        When large chunks, or the want of coarse levels, make a store of others slow.
+        When large chunks or missing coarse levels make the store of another program slow.
 
     Examples
     --------

@@ -25,7 +25,7 @@ SHAPES = "(H, W) for grey, (H, W, 3) for colours, or (H, W, 4) with opacity"
 
 
 class ImageError(SettingsError):
-    """An image cannot take the place of the noise; the text says what was expected.
+    """An image cannot be used instead of the noise; the text says what was expected.
 
     Examples
     --------

@@ -44,30 +44,31 @@ class TraceSlices:
     """Displacements in index space along the paths through the nodes.
 
     On a surface of triangles, whose nodes are one row, displacements and ``nodes`` are vectors in
-    space, (..., 1, N, 3): a displacement is the chord from the node to the particle. Rates are
-    along the two tangents of the surface there, which are orthonormal.
+    space, (..., 1, N, 3): a displacement is the chord from the node to the particle. Rates have
+    components along two orthonormal tangents of the surface.
 
     Attributes
     ----------
     lags
         Lags of the slices, (M,), positive and increasing, in multiples of ``unit``.
     unit
-        One unit of lag at each node, (J, I): a length for paths by arc length, a time else.
+        One unit of lag at each node, (J, I): a length for paths by arc length, otherwise a time.
     displacement
         Backward slices, (T, M, J, I, 2), components (a - i, b - j) in cells, one set for each
-        destination time. Beyond a path's reach they go on straight, or stay where it is as long as
-        was asked for.
+        destination time. Beyond a path's reach they continue straight, or stay constant if the path
+        has the requested length.
     forward
         Forward slices, the same shape, or ``None``.
     rate, forward_rate
-        Derivative of the displacement by lag at lag zero, (T, J, I, 2), in cells per ``unit``.
+        Derivative of the displacement with respect to lag at lag zero, (T, J, I, 2), in cells per
+        ``unit``.
     reach, forward_reach
-        Lag, in multiples of ``unit``, at which a path has left the domain, met a blanked cell
-        or stopped, (T, J, I); infinite where it goes on beyond the last slice.
+        Lag, in multiples of ``unit``, at which a path leaves the domain, meets a blanked cell or
+        stops, (T, J, I); infinite where it continues beyond the last slice.
     nodes
         Position of each entry in index space, (J, I, 2) as (i, j).
     times
-        Destination times, (T,), in the field's own unit.
+        Destination times, (T,), in the field's unit.
     parameter
         What a lag measures: ``"arclength"`` or ``"time"``.
 
@@ -96,7 +97,7 @@ class TraceSlices:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Number of entries (J, I)."""
+        """Shape of the slices, (J, I)."""
         return self.unit.shape[0], self.unit.shape[1]
 
     @property
@@ -106,7 +107,7 @@ class TraceSlices:
 
     @property
     def nbytes(self) -> int:
-        """Bytes that the arrays take."""
+        """Size of the arrays in bytes."""
         arrays = (getattr(self, name) for name in self.__dataclass_fields__)
         return sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
 
@@ -121,7 +122,7 @@ class TraceSlices:
         return replace(self, **parts)
 
     def up_to(self, lags: int) -> TraceSlices:
-        """Return the slices of so many lags, the shortest, as if no more had been traced."""
+        """Return the slices of the ``lags`` shortest lags, as if no more had been traced."""
         parts: dict[str, Any] = {}
         for moved, reach in (("displacement", "reach"), ("forward", "forward_reach")):
             if (far := getattr(self, reach)) is not None:
@@ -130,7 +131,7 @@ class TraceSlices:
         return replace(self, lags=self.lags[:lags], **parts)
 
     def part(self, rows: slice, columns: slice | Indices) -> TraceSlices:
-        """Return the slices of some rows and columns of entries."""
+        """Return some rows and columns of the slices."""
         parts: dict[str, Any] = {
             name: data[(slice(None),) * axis + (rows, columns)]
             for name, axis in NODE_AXES.items()
@@ -139,18 +140,18 @@ class TraceSlices:
         return replace(self, **parts)
 
     def positions(self, lag: float, *, step: int = 0, forward: bool = False) -> Floats:
-        """Positions of the particles at a lag.
+        """Return the positions of the particles at a lag.
 
-        Between two slices the mean velocity since lag zero is interpolated linearly, which is
-        what the shader does; on triangles it is the same up to the first slice. A path that has
-        ended is held where it ended.
+        Between two slices the mean velocity since lag zero is interpolated linearly, as in the
+        shader; on triangles it is constant up to the first slice. A path that has ended stays at
+        its end.
 
         Parameters
         ----------
         lag
             Lag in multiples of ``unit``, from 0 to the last of ``lags``.
         step
-            Which destination time.
+            Index of the destination time.
         forward
             Whether to follow the paths forward.
 
@@ -162,7 +163,7 @@ class TraceSlices:
         Raises
         ------
         FieldError
-            When the lag lies beyond the last slice, or there are no forward slices.
+            When the lag lies beyond the last slice, or forward slices were not traced.
         """
         last = self.lags[-1]
         expected = f"0 to {last:g}, the lag of the last slice"
@@ -191,14 +192,13 @@ class TraceSlices:
     def downsample(self, factor: int) -> TraceSlices:
         """Average blocks of ``factor`` x ``factor`` entries, as a mip level does.
 
-        The entries that are left stand at the middle of their blocks (see ``nodes``), and
-        displacements stay in the cells of the original grid. Lines that do not fill a block
-        are dropped.
+        The new entries lie at the centres of their blocks (see ``nodes``), and displacements stay
+        in cells of the original grid. Lines that do not fill a block are dropped.
 
         Raises
         ------
         FieldError
-            When no block fits.
+            When the slices are smaller than one block.
         """
         most = min(self.shape)
         expected = f"1 to {most}, the shorter side"
@@ -224,7 +224,7 @@ class TraceSlices:
         Raises
         ------
         FieldError
-            When the file is not one of these; nothing in it is ever executed.
+            When the file does not contain slices. Nothing in the file is executed.
         """
         place = checked_path("path", path)
         expected = (

@@ -54,7 +54,7 @@ def trace(
     longest: float = np.inf,
     progress: bool = True,
 ) -> TraceSlices:
-    """Follow the path through every node, and return where it is at a handful of lags.
+    """Follow the path through every node, and return its positions at several lags.
 
     Paper section 3.1: from every node a particle is followed backward from the destination time
     Td, and its positions at the release times Td - lag make the trace slices. A steady field is
@@ -70,30 +70,30 @@ def trace(
         they double from a quarter of a cell to a quarter of the surface.
     unit
         One unit of lag at each node, (J, I), or one number. By default the local cell size for
-        paths by arc length, one unit of time else.
+        paths by arc length, otherwise one unit of time.
     parameter
         ``"arclength"`` or ``"time"``; a time-varying field is always followed by time.
     two_sided
-        Whether paths are followed forward too. In a field without a sign they always are.
+        Whether paths are followed forward too. In a sign-free field they always are.
     tolerance
         Error allowed in one step of the integration, in cells.
     steps
         Destination times to trace, as indices into ``field.times``; all by default.
     compose
-        Whether long lags are put together from short ones (see ``flowtex/trace/compose.py``)
-        instead of being integrated. By default they are when the lags are chosen automatically.
-        In a field that varies this takes equal time steps, of which all are traced; otherwise
-        all lags are integrated, as they are in a field without a sign. On triangles it takes a
-        steady field, lags that double, and one unit for all nodes.
+        Whether long lags are composed from short ones (see ``flowtex/trace/compose.py``) instead of
+        being integrated. By default they are if the lags are chosen automatically. A time-varying
+        field must have equal time steps, all of which are traced; otherwise, and in a sign-free
+        field, all lags are integrated. Composition on triangles requires a steady field, lags that
+        double, and one unit for all nodes.
     nodes
-        Nodes whose paths are wanted, (J, I), all by default. Where paths are integrated only these
-        are followed, and the others are treated as blanked ones. To compose takes those around
-        them too, and theirs end where no path of a wanted one needs them. On triangles the others
-        have displacements and reach zero, as blanked ones have, where paths are integrated.
+        Nodes to trace, (J, I), all by default. If paths are integrated, only these nodes are
+        followed, and the others are treated as blanked; on triangles their displacements and reach
+        are zero. Composition also needs the nodes around them, whose paths end where no requested
+        path needs them.
     longest
-        Length in the mesh's units that a path by arc length has to have. Where cells are large the
-        last lags lead farther; paths that are composed end, and stay, with the first lag that is as
-        long.
+        Required length of a path by arc length, in the mesh's units. Where cells are large the last
+        lags lead farther; composed paths end at the first lag of this length, and stay constant
+        from there.
     progress
         Whether to show a progress bar when the work takes longer than a second.
 
@@ -105,10 +105,9 @@ def trace(
     ------
     FieldError
         When the lags are not positive and increasing, or too large for single precision,
-        ``parameter`` is unknown, the unit or the tolerance is not positive, or ``nodes`` has
-        another shape than the field; or a field without a sign is to be followed to one side, or
-        composed.
-        When there is no such time step.
+        ``parameter`` is unknown, the unit or the tolerance is not positive, ``nodes`` does not have
+        the field's shape, a sign-free field is followed to one side only or composed, or a time
+        step does not exist.
 
     Examples
     --------

@@ -55,7 +55,7 @@ PREVIEW = (480, 300)
 
 @dataclass(frozen=True)
 class Page:
-    """What was written.
+    """A page that was written.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Page:
     nbytes
         Its size.
     estimated
-        The size that was estimated beforehand.
+        The size that was estimated before writing, in bytes.
     steps
         Number of time steps in it.
 
@@ -94,35 +94,36 @@ def export(
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
-    """Write a flow as one file that needs no server and no network.
+    """Write a flow as one file that needs neither a server nor a network.
 
-    The file is an HTML page or, if its name ends on ``.mjs`` or ``.js``, a module that other pages
+    The file is an HTML page or, if its name ends in ``.mjs`` or ``.js``, a module that other pages
     import. The module exports ``mount(element, settings, height)``, and the ``render`` of an
     anywidget module, which MyST's directive ``{{anywidget}}`` calls.
 
-    With ``store`` the file has no more than the coarsest level of a pyramid, and reads tiles and
-    time steps from where the pyramid lies: from a bucket, or from any web server.
+    With ``store`` the file contains only the coarsest level of a pyramid, and reads tiles and time
+    steps from the pyramid in a bucket or on any web server.
 
     Parameters
     ----------
     mesh
-        What ``plotter.flowtex.add`` takes, or a plotter that has a flow texture: the page then
-        looks as the plotter does, with the other meshes and the labels on it.
+        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, path of a
+        file, or a plotter with a flow texture, whose page also shows its other meshes and its
+        labels.
     path
-        File to write, such as ``"page.html"`` or ``"flow.mjs"``; one that is there already is
-        replaced, once the new one is whole.
+        File to write, such as ``"page.html"`` or ``"flow.mjs"``; an existing file is replaced when
+        the new one is complete.
     steps
-        Number of time steps to keep, evenly chosen with the first and the last among them; all
-        of them by default. One step alone is drawn as a steady flow.
+        Number of time steps to keep, evenly spaced, including the first and the last; all by
+        default. A single step is drawn as a steady flow.
     title
         Title of the page; the name of the field by default.
     store
-        Address at which browsers find the store that ``mesh`` names, such as
-        ``"https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"``, or from the page on,
-        ``"./flow.zarr"``. Whoever opens the page has to be allowed to read it.
+        Address at which browsers find the store ``mesh``, such as
+        ``"https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"``, or relative to the page,
+        ``"./flow.zarr"``. Everybody who opens the page must have permission to read it.
     axes
-        What stands at the borders of the picture: ``"ticks"`` of the coordinates, a ``"scale"``
-        bar, or ``"none"``; by default ticks where the surface is flat or a map.
+        Axes of the picture: ``"ticks"`` with coordinates, a ``"scale"`` bar, or ``"none"``; by
+        default ticks if the surface is flat or a map.
     announce
         Called with the estimated size in bytes and the number of steps before the work begins.
     {options}
@@ -136,10 +137,9 @@ def export(
     Raises
     ------
     FieldError, SettingsError
-        When the mesh, the store or a setting does not fit.
-        When ``steps`` is not positive.
+        When the mesh, the store or a setting is invalid, or ``steps`` is not positive.
     OSError
-        When the file cannot be written; what was there before is left as it was.
+        When the file cannot be written; an existing file stays unchanged.
 
     Examples
     --------

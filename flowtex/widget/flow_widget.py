@@ -39,10 +39,10 @@ from flowtex.widget.views import HEADERS, Views
 
 
 class Host:
-    """The session in which it was made, as that of calls from any thread.
+    """The session in which a widget was made, for calls from any thread.
 
-    Solara and Shiny know by the context of a call which session it is for, and Shiny sends nothing
-    before its next flush.
+    Solara and Shiny identify the session of a call by its context, and Shiny sends nothing before
+    its next flush.
     """
 
     def __init__(self) -> None:
@@ -52,7 +52,7 @@ class Host:
             self._loop = asyncio.get_running_loop()
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> None:
-        """Call a function in the session, and have sent what it sends."""
+        """Call a function in the session, and flush what it sends."""
         # A context cannot be entered twice at one time.
         self._context.copy().run(function, *arguments)
         reactive = sys.modules.get("shiny.reactive")
@@ -79,31 +79,30 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     Attributes
     ----------
     field
-        The flow; ``widget.field = mesh`` shows another one, of what the widget can be made of, with
-        the same settings and from the same camera.
+        The flow; ``widget.field = mesh`` shows another one with the same settings and camera.
     {appearance}
-        Arguments that the widget was made with, live.
+        Arguments of the constructor, which can be changed.
     camera
-        Where it is seen from: ``position``, ``focal_point``, ``up`` (three numbers each, in the
-        mesh's own coordinates), ``parallel``, ``parallel_scale`` and ``view_angle`` (degrees).
-        A dict with some of them changes those.
+        The camera: ``position``, ``focal_point``, ``up`` (three numbers each, in the mesh's
+        coordinates), ``parallel``, ``parallel_scale`` and ``view_angle`` (degrees). A dict with
+        some of these changes only them.
     time
-        Time that is shown of a field that varies, in the field's own unit.
+        The time shown of a time-varying field, in the field's unit.
     clock
         Clock of the streaming of a steady flow, in seconds.
     playing
-        Whether time, or the clock, goes on.
+        Whether the animation runs.
     point
-        What was clicked last: ``position``, ``index`` (i, j) and ``values``; ``None`` before. On a
-        surface of triangles j is the number of one and the share of its second corner, i that of
-        its third.
+        The point clicked last: ``position``, ``index`` (i, j) and ``values``; ``None`` before the
+        first click. On a surface of triangles, j is the index of the triangle plus the barycentric
+        coordinate of its second corner, and i the barycentric coordinate of its third.
     size
-        Width and height in pixels of the page; a width of 0 fills the cell.
+        Width and height in CSS pixels; a width of 0 fills the cell.
     bar
         Whether the bar of controls is shown on the picture.
     axes
-        What stands at the borders of the picture: ``"ticks"`` of the coordinates, a ``"scale"``
-        bar, or ``"none"``; ``None`` for ticks where the surface is flat or a map.
+        Axes of the picture: ``"ticks"`` with coordinates, a ``"scale"`` bar, or ``"none"``;
+        ``None`` means ticks if the surface is flat or a map.
 
     Examples
     --------
@@ -148,8 +147,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         Parameters
         ----------
         mesh
-            What ``plotter.flowtex.add`` takes, or a plotter that has a flow texture: the widget
-            then looks as the plotter does, with the other meshes and the labels on it.
+            PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, path
+            of a file, or a plotter with a flow texture, whose widget also shows its other meshes
+            and its labels.
         size, bar, axes
             As the attributes of these names.
         {options}
@@ -195,12 +195,12 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     @property
     def scene(self) -> Scene:
-        """The arrays behind the picture."""
+        """The field, its appearance and its textures."""
         return self._views.first
 
     @property
     def field(self) -> FlowField:
-        """The flow. Another one, or what makes one, takes its place: camera and settings stay."""
+        """The flow. Assign another flow or mesh to show it with the same camera and settings."""
         return self.scene.field
 
     @field.setter
@@ -210,7 +210,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         self._frame = None
 
     def set_image(self, image: Any) -> None:
-        """Advect another image, one that the argument ``image`` takes."""
+        """Advect another image, given as for the argument ``image``."""
         self._views.set_image(load_image(image))
 
     def controls(self) -> Any:
@@ -220,12 +220,12 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         return panel
 
     def to_html(self, path: str | Path | None = None, *, title: str | None = None) -> str | None:
-        """Write what is shown as a page that needs no server; :func:`flowtex.export`.
+        """Write the current view as a page that needs no server, as :func:`flowtex.export` does.
 
         Parameters
         ----------
         path
-            File to write; without one the page is returned as text.
+            File to write; without a path the page is returned as text.
         title
             Title of the page; the name of the field by default.
         """
@@ -238,10 +238,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         return None
 
     def as_html(self) -> str:
-        """Return what is shown as a frame of HTML, live where no kernel runs.
+        """Return the current view as an HTML frame, which works without a Jupyter kernel.
 
-        It holds all that :meth:`to_html` writes, so saved notebooks and reports that keep HTML keep
-        the view: ``IPython.display.HTML(widget.as_html())``.
+        The frame contains the page of :meth:`to_html`, so saved notebooks and reports that keep
+        HTML keep the view: ``IPython.display.HTML(widget.as_html())``.
         """
         width, height = self.size
         style = f"width: {f'{width}px' if width else '100%'}; height: {height}px; border: 0"
@@ -252,7 +252,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         )
 
     def close(self) -> None:
-        """Take the widget out of the page and let go of everything."""
+        """Remove the widget from the page and free its memory."""
         if "_views" in vars(self):  # a widget whose making failed is closed too
             for end in self._ends:
                 end()
@@ -298,7 +298,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         return {**point, "index": None if at is None else at[::-1]}
 
     def set_state(self, sync_data: dict[str, Any]) -> None:
-        """Take what the browser has set; what does not fit is set back there."""
+        """Set the values sent by the browser; invalid ones are reset there."""
         for name, value in sync_data.items():
             with self._state_lock:
                 try:
@@ -307,8 +307,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
                     self.send_state(name)
 
     def _announce(self, number: int, header: dict[str, Any]) -> None:
-        # Not while the browser's values are being taken in, which would hold it back until
-        # after the arrays that belong to it.
+        # Not while the browser's values are being set, which would delay it until after the arrays
+        # that belong to it.
         with self._state_lock:
             shaders = list(self._shaders)
             shaders[number] = header["shaders"]
@@ -324,7 +324,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             self._views.handle_message(content)
 
     def _picture(self, timeout_s: float) -> bytes | None:
-        """Return the browser's own last frame, or the small picture that stands in for it."""
+        """Return the browser's last frame, or a small picture in its place."""
         if self._frame is not None:
             return self._frame
         return self._views.picture(PREVIEW, dict(self.camera), timeout_s)

@@ -66,7 +66,7 @@ Look = tuple[float, tuple[float, ...] | None]
 
 @dataclass(frozen=True)
 class Choice:
-    """What is shown of a file; empty for what is chosen without a word.
+    """The part of a file to show; empty values are chosen automatically.
 
     Examples
     --------
@@ -109,27 +109,27 @@ def _at_home(
 
 
 class Library:
-    """Names of flows, and how each is opened.
+    """The flows that a page can open, by name.
 
     Parameters
     ----------
     openers
-        What opens each, by name.
+        Functions that open the flows, by name.
     folder
-        A folder that is searched for more.
+        A folder that is searched for further flows.
     python
-        Expressions of Python that make the fields, by name, as far as they are known.
+        Python expressions that make the fields, by name, where they are known.
     looks
-        How far in, and on what point, some of them are first seen; the others as a whole.
+        Initial zoom and focus of flows, by name; the others are first shown as a whole.
     typed
-        Whether formulas may be typed, which make flows whose names they are.
+        Whether users may type formulas, which are the names of their flows.
     shared
-        A library whose flows are offered, and stay open there, besides those of this one.
+        A library whose flows are offered besides those of this one, and stay open there.
 
     Raises
     ------
     FieldError
-        When there is nothing to open.
+        When there are no flows to open.
 
     Examples
     --------
@@ -175,13 +175,13 @@ class Library:
             raise FieldError(msg)
 
     def branch(self) -> Library:
-        """Return a library of the same flows, to which a page adds others for itself."""
+        """Return a library of the same flows, to which a page can add its own."""
         return Library({}, shared=self)
 
     def add(self, name: str, path: Path) -> str:
-        """Add a file; return the name under which it can be opened.
+        """Add a file; return the name by which it can be opened.
 
-        A library is shared by all pages, its branches are not.
+        All pages share a library, but not its branches.
         """
         name = _free(name, self.names)
         self._named[name] = _Files((path,))
@@ -189,16 +189,16 @@ class Library:
 
     @classmethod
     def of(cls, *flows: Any, folder: str | Path | None = None, **options: Any) -> Library:
-        """Make a library of fields, meshes, paths of files, or one folder.
+        """Make a library of fields, meshes, files, or one folder.
 
-        Paths in a list are those of files that belong together.
+        A list of paths is one flow whose files belong together.
 
         ``options`` are arguments of :meth:`flowtex.FlowField.from_pyvista` for meshes.
 
         Raises
         ------
         FieldError
-            When a path leads nowhere, or a mesh makes no field.
+            When a path does not exist, or a mesh does not contain a flow.
         """
         if len(flows) == 1 and isinstance(flows[0], Library):
             return flows[0]
@@ -216,7 +216,7 @@ class Library:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of all that can be opened; a folder is searched anew."""
+        """Names of all flows; the folder is searched again."""
         openers = dict(self._named)
         if self._folder is not None:
             found = find_files(self._folder)
@@ -227,17 +227,17 @@ class Library:
 
     @property
     def unshown(self) -> Mapping[str, str]:
-        """Files that were found and cannot be shown, and why."""
+        """Files of the folder that cannot be shown, with the reasons."""
         return self._shared.unshown if self._shared else self._unshown
 
     @_at_home
     def source(self, name: str) -> Source:
-        """Open one, or return it when it is open; a file that has changed is opened anew.
+        """Return a source, and open it if it is not open or its file has changed.
 
         Raises
         ------
         FieldError
-            When there is none of that name, or it cannot be read.
+            When the name is unknown, or the source cannot be read.
         """
         opener = self._opener(name)
         with self._opening.setdefault(name, threading.Lock()):
@@ -261,17 +261,17 @@ class Library:
 
     @_at_home
     def is_file(self, name: str) -> bool:
-        """Whether a name is that of a file."""
+        """Whether a name belongs to a file."""
         return not self._is_line(name) and isinstance(self._named.get(name, _Files(())), _Files)
 
     @_at_home
     def look(self, name: str) -> Look:
-        """Return how far in, and on what point of the mesh, a flow is first seen."""
+        """Return the initial zoom and focus of a flow."""
         return self._looks.get(name, (1.0, None))
 
     @_at_home
     def python(self, name: str) -> str | None:
-        """Return the expression that makes a flow, or ``None`` for what comes from a file."""
+        """Return the expression that makes a flow, or ``None`` for a file."""
         if self.is_file(name):
             return None
         if self._is_line(name):
@@ -279,7 +279,7 @@ class Library:
         return self._python.get(name, "...  # the mesh or the field that was given")
 
     def complete(self, name: str, choice: Choice) -> Choice:
-        """Fill in what is not chosen: the middle plane, and the first array of vectors."""
+        """Complete a choice with the middle plane and the first array of vectors."""
         source = self.source(name)
         block = choice.block or (source.blocks[0] if source.blocks else "")
         part = source.part(block or None)
@@ -288,7 +288,7 @@ class Library:
         return Choice(vectors, plane, block)
 
     def nearest(self, name: str, choice: Choice) -> Choice:
-        """Fill in a choice, of which a file takes what it has."""
+        """Complete a choice, of which only the parts that the file has are used."""
         source = self.source(name)
         block = choice.block if choice.block in source.blocks else ""
         part = source.part(block or (source.blocks[0] if source.blocks else None))
@@ -298,12 +298,12 @@ class Library:
 
     @_at_home
     def field(self, name: str, choice: Choice) -> FlowField:
-        """Make a flow, or return it when it is at hand; nothing is traced.
+        """Return a flow, and make it if necessary; nothing is traced.
 
         Raises
         ------
         FieldError
-            When there is no such file, or what is chosen of it makes no flow.
+            When the file does not exist, or the choice does not contain a flow.
         """
         flow = self._flows.peek((name, choice))
         if flow is not None and flow.identity == _identity(self._opener(name)):
@@ -320,12 +320,12 @@ class Library:
 
     @_at_home
     def trace(self, name: str, choice: Choice, field: FlowField, settings: Settings) -> TracedFlow:
-        """Trace what the first picture of a flow needs, and let it stay open.
+        """Trace what the first picture of a flow needs, and keep the flow open.
 
         Raises
         ------
         Stopped
-            When the page wants something else meanwhile.
+            When the page has requested something else meanwhile.
         """
         flow = self._flows.peek((name, choice))
         if flow is None or flow.field is not field:

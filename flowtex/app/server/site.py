@@ -65,7 +65,7 @@ _log = logging.getLogger(__name__)
 
 
 class ServeError(FieldError):
-    """The page cannot be served; the text says why and what to do.
+    """The page cannot be served; the text gives the reason and the remedy.
 
     Examples
     --------

@@ -35,16 +35,16 @@ from flowtex.settings import Settings
 
 
 class FlowArea(AppearanceAttributes):
-    """A flow as a part of a page, with its controls.
+    """A view of a flow as part of a trame page, with its controls.
 
     Parameters
     ----------
     flow
-        The flow, or a mesh that makes one.
+        A :class:`~flowtex.FlowField` or a mesh.
     server
         The trame server of the page.
     state
-        Where the names of its state are; a place of its own by default.
+        The state of the page; new names by default.
     **options
         Arguments and settings of ``plotter.flowtex.add``, and ``zoom`` and ``focus`` as for
         :func:`flowtex.render`.
@@ -52,18 +52,18 @@ class FlowArea(AppearanceAttributes):
     Attributes
     ----------
     viewport, stream, player
-        What is drawn, the pictures that go to the page, and the time.
+        The view as it is drawn, the stream of pictures to the page, and the animation.
     element, points
-        What the page is handed, and reads.
+        The element on the page, and the values at points.
     scalars, cmap, clim, log_scale, color, opacity, visible, lighting
-        Arguments of ``plotter.flowtex.add``, live.
+        Arguments of ``plotter.flowtex.add``, which can be changed.
     appearance_changed
-        Signal after a change of these.
+        Signal that is sent after a change of these.
 
     Raises
     ------
     FieldError, SettingsError
-        When the mesh or a setting does not fit.
+        When the mesh or a setting is invalid.
 
     Examples
     --------
@@ -104,12 +104,12 @@ class FlowArea(AppearanceAttributes):
 
     @property
     def scene(self) -> Scene:
-        """The arrays behind the picture."""
+        """The field, its appearance and its textures."""
         return self.viewport.scene
 
     @property
     def field(self) -> FlowField:
-        """The flow. Another one, or a mesh that makes one, takes its place: the camera stays."""
+        """The flow. Assign another flow or mesh to show it with the same camera."""
         return self.viewport.field
 
     @field.setter
@@ -119,11 +119,11 @@ class FlowArea(AppearanceAttributes):
 
     @property
     def settings(self) -> Settings:
-        """Every setting, live."""
+        """All settings, which can be changed."""
         return self.viewport.settings
 
     def ui(self, **attributes: Any) -> Any:
-        """Put the view into the open layout; ``attributes`` are those of the element."""
+        """Add the view to the open layout; ``attributes`` are those of the element."""
         element, server = self.element, self.server
         server.enable_module(trame_rca.module)
         told = ("camera", "time", "clock", "playing", "setting", "colours")
@@ -152,20 +152,19 @@ class FlowArea(AppearanceAttributes):
         keep_view
             Whether the camera stays where it is.
         keep_range
-            Whether the ends of the colour map that were chosen stay, and the time that is shown.
+            Whether a chosen colour range and the time shown stay.
         """
         self.viewport.show(field, keep_view=keep_view, keep_range=keep_range)
         self._watch()
         self.changed()
 
     def compare(self, changes: dict[str, Any] | None) -> None:
-        """Show a second pane that differs, or one pane again for ``None``.
+        """Show a second pane with the given differences, or a single pane for ``None``.
 
         Parameters
         ----------
         changes
-            Settings, and of ``scalars``, ``time`` and ``field``: what the second pane is coloured
-            by, the time that it shows, and another flow.
+            Settings, and ``scalars``, ``time`` and ``field`` of the second pane, where they differ.
         """
         at_home = self.viewport.at_home
         self.viewport.compare(changes)
@@ -174,7 +173,7 @@ class FlowArea(AppearanceAttributes):
         self.changed()
 
     def look(self, camera: Any) -> None:
-        """Look from a camera, if it sees something."""
+        """Set the camera, unless it sees nothing."""
         if self.element.take_camera(camera):
             self.element.repeat()
 
@@ -184,17 +183,17 @@ class FlowArea(AppearanceAttributes):
         self.moved()
 
     def changed(self) -> None:
-        """Draw what has changed, and tell the page."""
+        """Draw after a change, and notify the page."""
         self.element.follow()
         self.stream.changed()
 
     def moved(self) -> None:
-        """Draw from where the camera is now, and tell the page."""
+        """Draw after the camera has moved, and notify the page."""
         self.element.follow()
         self.stream.moved()
 
     def close(self) -> None:
-        """End the tasks and free the graphics card."""
+        """End the tasks and free the graphics memory."""
         self.stream.close()
         for task in self._tasks:
             task.cancel()

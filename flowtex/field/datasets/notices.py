@@ -6,7 +6,7 @@ from flowtex._util import notices
 
 
 class DatasetNotice(notices.Notice):
-    """Something of a dataset was chosen without being asked for.
+    """flowtex chose something in a dataset, such as a level.
 
     Examples
     --------

@@ -40,7 +40,7 @@ COMPONENTS = 3
 
 @dataclass(frozen=True)
 class Parameter:
-    """The value of a parameter, and the ends of its slider.
+    """The value of a parameter, and the range of its slider.
 
     Examples
     --------
@@ -55,7 +55,7 @@ class Parameter:
 
     @classmethod
     def of(cls, name: str, given: Any) -> Parameter:
-        """Return a parameter of a value, or of value, low and high."""
+        """Return the parameter of a value, or of value, low and high."""
         try:
             value, *ends = map(float, (given,) if is_number(given) else given)
             low, high = ends or (sorted((0.0, 2 * value)) if value else (-1.0, 1.0))
@@ -108,14 +108,14 @@ class Expression:
 
 @dataclass(frozen=True, eq=False)
 class Formula:
-    """What a field was computed from.
+    """The formula of a field.
 
     Attributes
     ----------
     expressions
         The rates of the two coordinates, or the three components of the velocity in space.
     ranges
-        Ends of the two coordinates: of ``x`` and ``y``, on a surface of ``u`` and ``v``.
+        Ranges of the two coordinates: ``x`` and ``y``, or ``u`` and ``v`` on a surface.
     surface
         The three expressions of a surface in space; empty on the plane.
     parameters
@@ -144,7 +144,7 @@ class Formula:
         *,
         timed: bool,
     ) -> Formula:
-        """Read the arguments of :func:`flowtex.formula`; a FieldError tells what is wrong."""
+        """Read the arguments of :func:`flowtex.formula`; raise a FieldError if they are invalid."""
         places, own = _surface(surface)
         if len(expressions) not in ((2, 3) if places else (2,)):
             expected = (
@@ -173,7 +173,7 @@ class Formula:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """The expressions as they were written."""
+        """The expressions as text."""
         return tuple(each.text for each in self.expressions)
 
     @property
@@ -184,7 +184,7 @@ class Formula:
         return ", ".join(f"{n}' = {text}" for n, text in zip(self.ranges, self.texts, strict=True))
 
     def coordinates(self, shape: tuple[int, int]) -> tuple[Floats, Floats]:
-        """Return the coordinates of nodes (J, I), evenly spaced."""
+        """Return evenly spaced coordinates of nodes, (J, I)."""
         lines = [
             np.linspace(*ends, n) for ends, n in zip(self.ranges.values(), shape[::-1], strict=True)
         ]
@@ -192,7 +192,7 @@ class Formula:
         return u, v
 
     def points(self, u: Floats, v: Floats) -> Floats:
-        """Return the positions (J, I, 2 or 3) of coordinates (J, I)."""
+        """Return the positions (J, I, 2 or 3) at coordinates (J, I)."""
         if not self.surface:
             return np.stack([u, v], axis=-1)
         return _values(self.surface, self._named(u, v))

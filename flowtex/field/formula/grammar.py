@@ -78,7 +78,7 @@ _PRINTED = str.maketrans({"\u2212": "-", "\u00b7": "*", "\u00d7": "*"})
 
 
 class FormulaError(FieldError):
-    """A formula that cannot be read; the text points at the place.
+    """A formula cannot be read; the text points at the position.
 
     Examples
     --------

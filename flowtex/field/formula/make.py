@@ -43,47 +43,47 @@ def formula(
     ----------
     expressions
         The rates of x and y, such as ``"y", "-sin(x) - b*y"``. On a surface, the rates of u and v,
-        or three, the velocity along x, y and z, of which the part along the surface is drawn. Each
-        is a text, an expression of sympy's, or a function of NumPy arrays that takes some of the
-        names, such as ``lambda x, y: -np.sin(x)``. Or the name of a known formula alone:
-        ``"pendulum"``, ``"van_der_pol"``, ``"lotka_volterra"``, ``"duffing"``, ``"dipole"``,
-        ``"saddle_node"``.
+        or the three components of the velocity along x, y and z, of which the part along the
+        surface is drawn. Each is a string, a sympy expression, or a function of NumPy arrays whose
+        arguments are some of the names, such as ``lambda x, y: -np.sin(x)``. Or the name of a known
+        formula: ``"pendulum"``, ``"van_der_pol"``, ``"lotka_volterra"``, ``"duffing"``,
+        ``"dipole"``, ``"saddle_node"``.
     x, y
-        Ends of the plane that is drawn, (-5, 5) by default.
+        Range of the plane to draw, (-5, 5) by default.
     u, v
-        Ends of the coordinates of a surface.
+        Range of the coordinates of a surface.
     surface
         ``"sphere"``, whose u and v are longitude and latitude, ``"torus"``, ``"cylinder"``, or
         three expressions of u and v, the position along x, y and z.
     times
-        Times of the steps, (T,), where the formula has the time ``t``.
+        Times of the steps, (T,), if the formula contains the time ``t``.
     resolution
         Nodes along the longer side of the grid on which the formula is computed: 257, on a surface
         129 by default.
     name
-        Word for captions; the expressions by default.
+        Name for captions; the expressions by default.
     parameters
-        Value of each other name in the expressions; or value, low and high, which a slider has.
+        Value of each other name in the expressions; or value, low and high for a slider.
 
     Returns
     -------
     FlowField
-        Whose ``formula`` keeps expressions, ranges and parameters. Nodes where the formula has no
-        value, such as ``1/x`` at 0, are blank.
+        Its attribute ``formula`` has the expressions, ranges and parameters. Nodes where the
+        formula is undefined, such as ``1/x`` at 0, are blank.
 
     Raises
     ------
     FormulaError
-        When an expression is none; the text points at the place.
+        When an expression cannot be read; the text points at the position.
     FieldError
-        When ranges, parameters or times do not fit.
+        When ranges, parameters or times are invalid.
 
     Notes
     -----
-    A text is read by a grammar and never run as code. It has ``+ - * / ^`` (or ``**``), numbers,
-    names, ``pi`` and ``e``; the functions sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh,
-    exp, log (ln), log2, log10, sqrt, abs, sign, floor, ceil, hypot, mod, min and max; and
-    ``where(x < 0, a, b)`` with ``<``, ``>``, ``<=``, ``>=``.
+    Strings are parsed by a grammar and never run as code. It has ``+ - * / ^`` (or ``**``),
+    numbers, names, ``pi`` and ``e``; the functions sin, cos, tan, asin, acos, atan, atan2, sinh,
+    cosh, tanh, exp, log (ln), log2, log10, sqrt, abs, sign, floor, ceil, hypot, mod, min and max;
+    and ``where(x < 0, a, b)`` with ``<``, ``>``, ``<=``, ``>=``.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""How a field is made of a mesh, of a file and of datasets."""
+"""Constructors of a field from meshes, files and datasets."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 class FieldConstructors:
-    """Class methods that read something and make a field of what it gives."""
+    """Class methods that make a field from a mesh, a file or a dataset."""
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> Self:
-        """Return the field of what a source gives."""
+        """Return the field of the arrays of a source."""
         raise NotImplementedError
 
     @classmethod
@@ -43,63 +43,64 @@ class FieldConstructors:
         ----------
         mesh
             A StructuredGrid, RectilinearGrid or ImageData, drawn in rows and columns; or a
-            PolyData or an UnstructuredGrid, whose surface is drawn as triangles. Of a volume that
-            is the outer surface, unless it is cut. A MultiBlock with one structured block, or one
-            volume, stands for that block; the surfaces of others are drawn together. A list or
-            tuple of meshes, a MultiBlock of several with the same nodes, and a PyVista reader with
-            time values are time steps.
+            PolyData or an UnstructuredGrid, whose surface is drawn as triangles. Of a volume this
+            is the outer surface, unless ``slice`` or ``contour`` cuts it. A MultiBlock with one
+            structured block, or one volume, is treated as that block; otherwise the surfaces of its
+            blocks are drawn together. The time steps of a series are a list or tuple of meshes, a
+            MultiBlock of meshes with the same nodes, or a PyVista reader with time values.
         vectors
             Name of the velocity on points or cells, with 2 or 3 components. By default the only
-            array that can be the velocity, or the one that the mesh marks as its active vectors.
-            Two or three arrays of one component are named with commas between, as in
-            ``"u,v,w"``, and found where there is no array of vectors, if their names differ in the
-            component alone, such as ``X Velocity``, ``Y Velocity`` and ``Z Velocity``.
+            array that can be the velocity, or the active vectors of the mesh. Components in
+            separate arrays are named with commas between, as in ``"u,v,w"``. They are found
+            automatically if the mesh has no array of vectors and their names differ only in the
+            component, such as ``X Velocity``, ``Y Velocity`` and ``Z Velocity``.
         plane
-            Surface to draw from a mesh of three dimensions: ``"k=20"``, ``"j=0"`` or ``"i=-1"``,
-            counted from the end when negative. On a k-plane the surface's (i, j) are the mesh's
-            (i, j), on a j-plane (i, k), on an i-plane (j, k). A mesh with one flat index
-            direction needs none, and follows the same table.
+            Index plane to draw of a three-dimensional structured mesh: ``"k=20"``, ``"j=0"`` or
+            ``"i=-1"``, where negative numbers count from the end. On a k-plane the surface's (i, j)
+            are the mesh's (i, j), on a j-plane (i, k), on an i-plane (j, k). A mesh that is one
+            node thick along an axis needs no plane; its (i, j) follow the same rule.
         slice
             Plane through a volume of any kind, drawn as triangles: ``"x=0.5"``, a normal such as
-            ``"1,1,0"``, one with a point as in ``"1,1,0 through 0.5,0.5,0.2"``, or a pair of both.
-            It goes through the middle of the mesh where there is no point, and through all volumes
-            of a MultiBlock where no block is chosen.
+            ``"1,1,0"``, a normal and a point as in ``"1,1,0 through 0.5,0.5,0.2"``, or a pair of
+            normal and point. Without a point the plane goes through the middle of the mesh; without
+            ``block`` it cuts all volumes of a MultiBlock.
         contour
-            An array and its value, ``"pressure=101325"``: the surface in a volume where it has it.
+            An array and a value, ``"pressure=101325"``: the isosurface in a volume.
         times
             Time of each step, (T,). By default the reader's time values, or ``TimeValue`` in the
             field data of every step, or 0, 1, 2, ...
         periodic, name, sign_free
-            As for :meth:`from_arrays`, of structured meshes alone.
+            As for :meth:`from_arrays`; ``periodic`` and ``sign_free`` are for structured meshes
+            only.
         block
-            Number or path of the block to draw of a MultiBlock, such as ``"Base/Zone 1"``. Numbers
-            count the meshes with cells from 0.
+            Number or path of the block of a MultiBlock to draw, such as ``"Base/Zone 1"``. Numbers
+            count from 0 and include only blocks with cells.
 
         Returns
         -------
         FlowField
-            Positions in the mesh's units. Arrays with one component become ``scalars``; those on
-            cells, and vectors on cells, become means of the visible cells around each node, on
-            triangles by their areas. In a volume that is cut they are interpolated.
+            Positions are in the mesh's units. Arrays with one component become ``scalars``. Data on
+            cells are averaged over the visible cells around each node, on triangles weighted by
+            area. On a cut through a volume, arrays are interpolated.
 
         Raises
         ------
         FieldError
-            When the mesh has no surface, when the plane or the vectors have to be chosen or do not
-            exist, when the steps of a series differ in their nodes, and for what
-            :meth:`from_arrays` and :meth:`from_triangles` refuse.
+            When the mesh has no surface, the plane or the vectors are missing or ambiguous, the
+            steps of a series differ in their nodes, or :meth:`from_arrays` or
+            :meth:`from_triangles` raises it.
 
         Warns
         -----
         Notice
-            When something was taken without being asked for, such as the outer surface of a
-            volume, and when most of the flow points out of a surface of triangles.
+            When flowtex made a choice, such as the outer surface of a volume, or when most of the
+            flow is normal to a surface of triangles.
 
         Notes
         -----
-        Hidden are points and cells that VTK's ghost arrays hide, points with ``IBlank`` 0
-        (PLOT3D), and points that a sampling filter marked in ``vtkValidPointMask``. The mesh is
-        not changed.
+        Points and cells that VTK's ghost arrays hide, points with ``IBlank`` 0 (PLOT3D), and points
+        that a sampling filter marked in ``vtkValidPointMask`` are not drawn. The mesh is not
+        changed.
 
         Examples
         --------
@@ -143,23 +144,23 @@ class FieldConstructors:
         Parameters
         ----------
         path
-            A mesh in any format that PyVista reads, or a PLOT3D grid or solution. The
-            other one of the two is found beside it by its name: ``postxyz.bin`` and
-            ``postq.bin``, ``wing.xyz`` (or ``.x``, ``.g``) and ``wing.q``. An OBJ, PLY or STL has
-            its vectors beside it as well: ``hull.npy`` for ``hull.stl``, (N, 3) for its points or
-            triangles, or (T, N, 3), in the order of the file. Or data of the Earth:
-            NetCDF, a Zarr store, GRIB, or the JSON of wind maps; of these several at once, as the
-            parts of a model's output or the steps of a series.
+            A mesh in any format that PyVista reads, or a PLOT3D grid or solution, whose counterpart
+            is found by its name in the same folder: ``postxyz.bin`` and ``postq.bin``, ``wing.xyz``
+            (or ``.x``, ``.g``) and ``wing.q``. For an OBJ, PLY or STL the vectors are in a file
+            with the same name, ``hull.npy`` for ``hull.stl``: (N, 3) for its points or triangles,
+            or (T, N, 3), in the order of the file. Or data of the Earth: NetCDF, a Zarr store,
+            GRIB, or the JSON of wind maps. Several such files, the parts of a model's output or the
+            steps of a series, are given as a list.
         vectors
-            Name of the velocity, as for :meth:`from_pyvista`. A PLOT3D solution gives
-            ``Velocity``, made from its density and momentum.
+            Name of the velocity, as for :meth:`from_pyvista`. For a PLOT3D solution it is
+            ``Velocity``, computed from density and momentum.
         plane, slice, contour, periodic, sign_free
             As for :meth:`from_pyvista`.
         time
-            Draw this one of the times in the file, as a steady field. All of them by default.
+            One time of the file, drawn as a steady field. All times by default.
         block
-            Number or path of the block to draw, such as ``"Base/Zone 1"``, where the file has
-            several meshes. Numbers count those with cells from 0.
+            Number or path of the block to draw, such as ``"Base/Zone 1"``, if the file has several.
+            Numbers count from 0 and include only blocks with cells.
         projection, globe, level, sel, isel
             As for :meth:`from_xarray`, for data of the Earth.
 
@@ -171,8 +172,8 @@ class FieldConstructors:
         Raises
         ------
         FieldError
-            When the file is missing, empty, not readable, of an unknown or broken format, or does
-            not hold a flow; the text starts with the path.
+            When the file is missing, empty, unreadable, corrupt or of an unknown format, or does
+            not contain a flow; the text starts with the path.
 
         Examples
         --------
@@ -204,50 +205,50 @@ class FieldConstructors:
         isel: Mapping[str, Any] | None = None,
         **selection: Any,
     ) -> Self:
-        """Make a field from a dataset of xarray's, as ocean and weather models write them.
+        """Make a field from an xarray dataset, such as the output of an ocean or weather model.
 
         Parameters
         ----------
         data
-            A Dataset, or several that belong together, such as NEMO's files of U, of V and of
-            coordinates. Nothing but coordinates and one step is read at once; further steps are
+            A Dataset, or a list of several that belong together, such as NEMO's files of U, of V
+            and of coordinates. Only coordinates and one step are read at first; further steps are
             read when they are drawn.
         u, v
-            Names of the components. By default the only pair that is likely to be the velocity,
-            by CF's standard names, long names and names.
+            Names of the components. By default the only pair that is recognised as the velocity by
+            CF standard names, long names or names.
         projection
             A flat map, or ``"globe"``; see :class:`flowtex.earth.Projection`. By default plate
-            carree around the middle of the data, and a polar one near a pole.
+            carree around the middle of the data, or a polar projection near a pole.
         globe
-            Whether it is put on a sphere: the same as ``projection="globe"``.
+            Whether to draw on a sphere; the same as ``projection="globe"``.
         name
-            A word for captions.
+            Name for captions.
         sel, isel
-            What to draw along axes, by value and by number, such as ``sel={"level": 500}``.
+            Selections along axes, by value and by index, such as ``sel={"level": 500}``.
         **selection
             The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
-            ``level`` stand for those axes whatever their names. All times by default, the level
-            nearest to the surface, and the first along any other axis.
+            ``level`` select along these axes whatever their names. By default all times, the level
+            nearest to the surface, and the first entry of any other axis.
 
         Returns
         -------
         FlowField
-            On longitude and latitude its positions are metres on the map, and its velocity in m/s
-            is mapped along; else they are those of the x and y coordinates. Components on the
-            sides of cells (Arakawa C) become means in the middle. Other variables at the same
-            nodes are ``scalars``; on a flat map ``"speed"`` is that on the Earth.
+            For data on longitude and latitude, positions are metres on the map, and the velocity in
+            m/s is projected with them; otherwise positions are the x and y coordinates. Components
+            on the sides of cells (Arakawa C) are averaged to the centres. Other variables at the
+            same nodes are ``scalars``; on a flat map ``"speed"`` is the speed on the Earth.
 
         Raises
         ------
         FieldError
-            When the components, the coordinates or what is chosen cannot be told.
+            When components or coordinates are not recognised, or a selection does not exist.
         ModuleNotFoundError
             When xarray, cf_xarray or pyproj is missing.
 
         Warns
         -----
         DatasetNotice
-            When something was chosen without being asked for, such as a level.
+            When flowtex made a choice, such as a level.
 
         Examples
         --------

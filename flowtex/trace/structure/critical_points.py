@@ -108,7 +108,7 @@ class CriticalPoints(Sequence[CriticalPoint]):
         return iter(self._points)
 
     def of_kind(self, *kinds: str) -> CriticalPoints:
-        """Return those of some kinds."""
+        """Return the points of the given kinds."""
         for kind in kinds:
             if kind not in KINDS:
                 msg = f"kind {kind!r} does not exist; expected one of {', '.join(KINDS)}"
@@ -116,12 +116,12 @@ class CriticalPoints(Sequence[CriticalPoint]):
         return CriticalPoints([p for p in self._points if p.kind in kinds])
 
     def strongest(self, count: int) -> CriticalPoints:
-        """Return so many at most, the strongest first."""
+        """Return at most ``count`` points, the strongest first."""
         count = checked_count("count", count, expected="a number of points, 0 or more", low=0)
         return CriticalPoints(sorted(self._points, key=lambda p: -p.strength)[:count])
 
     def records(self) -> list[dict[str, Any]]:
-        """Return a row of plain numbers and words for each point."""
+        """Return a dictionary of numbers and strings for each point."""
         rows = []
         for p in self._points:
             row: dict[str, Any] = {"kind": p.kind, "time": p.time, "strength": p.strength}
@@ -143,7 +143,7 @@ class CriticalPoints(Sequence[CriticalPoint]):
         Raises
         ------
         FieldError
-            When the field is not one of the Earth.
+            When the field is not in coordinates of the Earth.
         """
         features = []
         for point, row in zip(self._points, self.records(), strict=True):
@@ -158,7 +158,7 @@ class CriticalPoints(Sequence[CriticalPoint]):
     def to_pyvista(self) -> Any:
         """Return a ``pyvista.PolyData`` of the points.
 
-        It has ``kind`` as numbers into ``KINDS``, ``time`` and ``strength``.
+        It has the arrays ``kind`` (index into ``KINDS``), ``time`` and ``strength``.
         """
         import pyvista as pv
 
@@ -175,14 +175,14 @@ class CriticalPoints(Sequence[CriticalPoint]):
 
 
 def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> CriticalPoints:
-    """Find where the velocity is zero, and what kind of point each is.
+    """Find the points where the velocity is zero, and classify them.
 
     Parameters
     ----------
     field
         The flow.
     steps
-        Numbers of the time steps that are searched; all by default.
+        Indices of the time steps to search; all by default.
 
     Returns
     -------
@@ -191,12 +191,12 @@ def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> 
     Raises
     ------
     FieldError
-        When the field has no sign, or there is no such step.
+        When the field is sign-free, or a step does not exist.
 
     Notes
     -----
     The velocity is bilinear in the cells of a structured surface and linear in triangles. Regions
-    at rest, and walls where the velocity is zero, have no critical points.
+    at rest, and walls where the velocity is zero, contain no critical points.
 
     Examples
     --------

@@ -85,7 +85,7 @@ class Separatrices(list[Separatrix]):
     """
 
     def records(self) -> list[dict[str, Any]]:
-        """Return a row of plain numbers for each line: its saddle, end, length and direction."""
+        """Return a dictionary for each line: its saddle, end, length and direction."""
         rows = []
         for line in self:
             row: dict[str, Any] = {"time": line.saddle.time, "strength": line.saddle.strength}
@@ -101,12 +101,12 @@ class Separatrices(list[Separatrix]):
         return import_extra("pandas", "xarray").DataFrame(self.records())
 
     def to_geojson(self) -> dict[str, Any]:
-        """Return a GeoJSON ``FeatureCollection`` of lines, parted where they cross 180 degrees.
+        """Return a GeoJSON ``FeatureCollection`` of lines, split where they cross 180 degrees.
 
         Raises
         ------
         FieldError
-            When the field is not one of the Earth.
+            When the field is not in coordinates of the Earth.
         """
         features = []
         for line, row in zip(self, self.records(), strict=True):
@@ -122,7 +122,7 @@ class Separatrices(list[Separatrix]):
     def to_pyvista(self) -> Any:
         """Return lines as a ``pyvista.PolyData``.
 
-        Each has ``forward``, ``closed``, ``time``, and the ``strength`` of its saddle.
+        Its cell arrays are ``forward``, ``closed``, ``time``, and the saddle's ``strength``.
         """
         import pyvista as pv
 
@@ -150,25 +150,26 @@ def separatrices(
     Parameters
     ----------
     field
-        The flow; of a field that varies the streamlines of each step.
+        The flow; of a time-varying one, the streamlines of each step are followed.
     steps
-        Numbers of the time steps; all by default.
+        Indices of the time steps; all by default.
     length
-        Longest line, in the mesh's units; three times the extent of the surface by default.
+        Maximum length of a line, in the mesh's units; by default three times the extent of the
+        surface.
     strongest
-        Of how many saddles of a step, the strongest ones; all by default.
+        Number of saddles of each step to start from, the strongest first; all by default.
 
     Returns
     -------
     Separatrices
-        A list of :class:`Separatrix`. A line ends at another critical point, at a border or a gap,
-        where it joins a closed orbit, or where it is as long as was asked for.
+        A sequence of :class:`Separatrix`. A line ends at another critical point, at a border or a
+        gap, where it joins a closed orbit, or at the maximum length.
 
     Raises
     ------
     FieldError
-        When the vectors have no sign, the length or the number of saddles is not positive, or
-        there is no such step.
+        When the field is sign-free, the length or the number of saddles is not positive, or a step
+        does not exist.
 
     Examples
     --------
