@@ -8,7 +8,7 @@ that lie in them are the same.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
@@ -80,30 +80,10 @@ NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_im
 class Scene:
     """One flow and how it is looked at.
 
-    Parameters
-    ----------
-    field
-        The flow.
-    settings
-        How the texture is drawn; changes are followed.
-    appearance
-        How the surface looks; its image is advected where ``noise="image"``.
-    slices
-        Traces of the field, when they are at hand.
-    image
-        Texels of an image, as the attribute, in place of the image of the appearance.
-
-    Attributes
-    ----------
-    image
-        Texels of the image, (H, W, 4): colours times opacity, row 0 at the bottom; or ``None``.
-
-    Raises
-    ------
-    SettingsError
-        When an image is asked for and there is none, or the image cannot be used.
-    FieldError
-        When there is no such scalar.
+    It follows changes of the settings; the image of the appearance is advected where
+    ``noise="image"``. Traces of the field may be given as ``slices``, and texels in place of that
+    image, (H, W, 4): colours times opacity, row 0 at the bottom. A SettingsError tells of an image
+    that is missing or cannot be used, a FieldError of a scalar that there is not.
     """
 
     def __init__(
@@ -154,17 +134,11 @@ class Scene:
         """Return the scene of a mesh or a field; :meth:`of` has the errors."""
         return cls(options.field.field(mesh), options.make_settings(), options.appearance)
 
-    def beside(self, changes: Mapping[str, Any], options: Options) -> Scene:
-        """Return a second scene of the same field.
+    def beside(self, changes: Mapping[str, Any], field: FlowField | None = None) -> Scene:
+        """Return a second scene of the same field, or of another one, that differs in changes.
 
-        It has the options of this scene, but for changes of :class:`Appearance` and of settings.
-
-        Raises
-        ------
-        FieldError
-            When the changes choose another field.
-        SettingsError
-            When a setting does not fit.
+        These are of :class:`Appearance` and of settings; :func:`follow` has the rest follow. Raises
+        a FieldError when they choose data, and what making a scene does.
         """
         of_field = [name for name in FieldOptions.__dataclass_fields__ if name in changes]
         if of_field:
@@ -173,8 +147,13 @@ class Scene:
                 "field, so expected settings"
             )
             raise FieldError(msg)
-        values = {**vars(options.appearance), **options.settings, **changes}
-        return Scene.from_options(self.field, Options.split("appearance", **values))
+        field, settings = field or self.field, dict(self.settings)
+        if "image" in changes:  # which has its colours alone
+            del settings["noise"], settings["strength"]
+        options = Options.split("appearance", **{**settings, **changes})
+        own = {n: v for n, v in vars(options.appearance).items() if n in changes}
+        look, image = _look_beside(self, own, field), None if "image" in own else self.image
+        return Scene(field, options.make_settings(), look, image=image)
 
     @property
     def appearance(self) -> Appearance:
@@ -293,14 +272,8 @@ class Scene:
     def set_image(self, image: Any) -> None:
         """Lay an image, as :class:`Appearance` has it, in place of the noise on the surface.
 
-        It sets ``noise`` to ``"image"``.
-
-        Raises
-        ------
-        ImageError
-            When it cannot be used; nothing is changed then.
-        SettingsError
-            When the surface is one of triangles, which images are not laid over.
+        It sets ``noise`` to ``"image"``. Nothing is changed when an ImageError tells that it cannot
+        be used, or a SettingsError that a surface of triangles takes none.
         """
         self._lay(self._picture(image))
 
@@ -500,6 +473,51 @@ class Scene:
     def _notify(self, affects: Change) -> None:
         for notice in list(self._notices):
             notice(affects)
+
+
+def _look_beside(first: Scene, own: dict[str, Any], field: FlowField) -> Appearance:
+    """Return the appearance of a scene beside a first one; a range is that of one scalar.
+
+    Colours that its field has not are those of the speed.
+    """
+    if "scalars" not in own and first.scalar_name not in (None, SPEED, *field.scalars):
+        own = {**own, "scalars": SPEED}
+    if "scalars" in own:
+        own = {"clim": None, **own}
+    return replace(first.appearance, **own)
+
+
+def follow(
+    first: Callable[[], Scene], second: Callable[[], Scene], own: Collection[str]
+) -> Callable[[], None]:
+    """Have a second scene follow a first one in all but what is its own; returns what ends it."""
+
+    def follow_setting(name: str, value: Any) -> None:
+        if name not in own:
+            second().settings.update(**{name: value})
+
+    def follow_look(affects: Change) -> None:
+        if affects != "appearance":
+            return
+        scene = second()
+        names = [*own, "image", *(["clim"] if "scalars" in own else [])]
+        kept = {n: v for n, v in vars(scene.appearance).items() if n in names}
+        look = _look_beside(first(), kept, scene.field)
+        try:
+            scene.appearance = look
+        except ValueError:  # its values have no logarithm, as those of the first one have
+            scene.appearance = replace(look, log_scale=False, clim=None)
+
+    ends = first().settings.observe(follow_setting), first().observe(follow_look)
+    return lambda: [end() for end in ends].clear()
+
+
+def lay_image(scenes: Sequence[Scene], image: Any, own: Collection[str]) -> None:
+    """Lay an image in scenes, of which others than the first may have a noise of their own."""
+    # The others follow the first one, and have to have the image by then.
+    for scene in reversed(scenes):
+        if scene is scenes[0] or "noise" not in own or scene.settings.noise == "image":
+            scene.set_image(image)
 
 
 def steps_of(field: FlowField, name: str) -> Steps:

@@ -101,13 +101,13 @@ def test_an_argument_that_a_function_names_itself_stands_once() -> None:
 def test_a_view_beside_another_differs_in_what_it_is_told() -> None:
     options = Options.split(samples=7, cmap="magma", image=np.ones((4, 4)))
     first = Scene.from_options(gyre(), options)
-    second = first.beside({"lod": False, "cmap": "viridis"}, options)
+    second = first.beside({"lod": False, "cmap": "viridis"})
     assert second.field is first.field
     assert (first.settings.lod, second.settings.lod) == (True, False)
     assert (second.settings.samples, second.appearance.cmap) == (7, "viridis")
     assert second.settings.noise == "image"
     with pytest.raises(ValueError, match=r"^beside has plane, which selects data"):
-        first.beside({"plane": "k=2"}, options)
+        first.beside({"plane": "k=2"})
 
 
 def test_choices_of_a_mesh_are_refused_for_a_field() -> None:

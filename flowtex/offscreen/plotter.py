@@ -155,7 +155,7 @@ def add_scenes(
     component, changes = FlowtexComponent(plotter), options.view.beside
     scenes = [Scene.from_options(mesh, options)]
     if changes is not None:
-        scenes.append(scenes[0].beside(changes, options))
+        scenes.append(scenes[0].beside(changes))
     handles = []
     for column, scene in enumerate(scenes):
         if changes is not None:

@@ -41,9 +41,8 @@ class WebView:
         own: Collection[str] = (),
         bodies: Bodies | None = None,
     ) -> None:
-        self.scene, self._bodies = scene, bodies
+        self.scene, self._bodies, self.own = scene, bodies, tuple(own)
         self.own_settings = tuple(name for name in own if name in TABLE)
-        self.own_appearance = tuple(name for name in own if name not in TABLE)
         self._times = even_steps(len(scene.field.times), steps)
         self._background = None if background is None else rgb(background)
 
@@ -192,13 +191,12 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
     :meth:`Scene.of`.
     """
     field = share_field(options.field.field(mesh))
-    chosen = replace(options, field=type(options.field)())
     background, changes = options.view.background, options.view.beside
-    first = Scene.from_options(field, chosen)
+    first = Scene(field, options.make_settings(), options.appearance)
     common: dict[str, Any] = {"background": background, "steps": steps, "bodies": options.bodies}
     views = [WebView(first, **common)]
     if changes is not None:
-        views.append(WebView(first.beside(changes, chosen), own=changes, **common))
+        views.append(WebView(first.beside(changes), own=changes, **common))
     return tuple(views)
 
 

@@ -331,7 +331,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     def _to_settings(self, change: Any) -> None:
         setattr(self.settings, change["name"], change["new"])
-        self._views.share_setting(change["name"], change["new"])
 
     def _to_time(self, change: Any) -> None:
         if change["new"] != self.scene.time:

@@ -17,7 +17,7 @@ import numpy as np
 from flowtex.field import FlowField
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
-from flowtex.scene import Change, Scene
+from flowtex.scene import Scene, follow, lay_image
 from flowtex.tiles import TileKey
 from flowtex.web.view import WebView
 from flowtex.widget.feed import Feed
@@ -42,7 +42,8 @@ class Views:
         self, views: Sequence[WebView], announce: Callable[[int, Header], None], send: Send
     ) -> None:
         self.views = tuple(views)
-        self.first.observe(self._share_appearance)
+        for view in self.views[1:]:
+            follow(lambda: self.first, lambda view=view: view.scene, view.own)  # type: ignore[misc]
         self.feeds = [self._feed(n, view, announce, send) for n, view in enumerate(self.views)]
 
     @property
@@ -115,25 +116,9 @@ class Views:
         with suppress(ValueError, KeyError, TypeError):
             self.first.appearance = replace(self.first.appearance, **known)
 
-    def _share_appearance(self, affects: Change) -> None:
-        """Hand the appearance of the first view on to the other, but for what is its own."""
-        for view in self.views[1:] if affects == "appearance" else ():
-            mine = view.scene.appearance
-            kept = {name: getattr(mine, name) for name in (*view.own_appearance, "image")}
-            view.scene.appearance = replace(self.first.appearance, **kept)
-
-    def share_setting(self, name: str, value: Any) -> None:
-        """Hand a setting of the first view on to the other."""
-        for view in self.views[1:]:
-            if name not in view.own_settings:
-                setattr(view.scene.settings, name, value)
-
     def set_image(self, image: Any) -> None:
         """Lay another image on the surface, in all views that show one."""
-        self.first.set_image(image)
-        for view in self.views[1:]:
-            if view.scene.settings.noise == "image" or "noise" not in view.own_settings:
-                view.scene.set_image(image)
+        lay_image([view.scene for view in self.views], image, self.views[-1].own)
 
     def picture(
         self, size: tuple[int, int], camera: dict[str, Any], timeout_s: float

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -24,9 +23,9 @@ from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.options import SPEED, Appearance, Options
+from flowtex.options import Options
 from flowtex.plotting.handle import FlowHandle
-from flowtex.scene import Change, Scene, steps_of
+from flowtex.scene import Scene, follow, lay_image, steps_of
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image
 
@@ -34,8 +33,6 @@ from flowtex.textures.images import as_image
 BACKGROUNDS = {"dark": "#12161c", "light": "#eef1f4"}
 #: Pixels between two panes.
 GAP_PX = 2
-#: What may differ in a second pane besides settings.
-PANE_ARGUMENTS = ("scalars", "time", "field")
 
 
 class Pane:
@@ -209,12 +206,9 @@ class Viewport:
             Whether the ends of the colour map that somebody chose stay, and the time that is
             shown where the flow has the same times: it is another part of the same data.
         """
-        appearance = self.scene.appearance
-        if not keep_range:
-            appearance = replace(appearance, clim=None)
         camera, clock, flat = self.camera, self.clock, self.flat
         times, time = self.field.times, self.handle.time
-        first = self._pane(_like(self.scene, field, dict(self.settings), appearance))
+        first = self._pane(_like(self.scene, {} if keep_range else {"clim": None}, field))
         try:
             second = self._second(first.handle, self._beside)
         except BaseException:
@@ -242,12 +236,8 @@ class Viewport:
         """Return the pane that differs from the first one; none where nothing does."""
         if not changes:
             return []
-        own = {name: changes[name] for name in PANE_ARGUMENTS if name in changes}
-        settings = {**dict(first.settings), **changes}
-        for name in own:
-            del settings[name]
-        appearance = _appearance_beside(first.scene, own)
-        scene = _like(first.scene, own.get("field", first.field), settings, appearance)
+        own = {name: value for name, value in changes.items() if name not in ("time", "field")}
+        scene = _like(first.scene, own, changes.get("field", first.field))
         scene.time = _time_beside(first.scene, changes)
         return [self._pane(scene)]
 
@@ -260,39 +250,17 @@ class Viewport:
                 pane.handle.remove(render=False)
         self.panes, self._beside = panes, dict(changes)
         if len(panes) > 1:
-            ends = (self.settings.observe(self._follow), self.scene.observe(self._follow_scene))
-            self._stop_following = lambda: [end() for end in ends]
+            scenes = [pane.handle.scene for pane in panes]
+            self._stop_following = follow(lambda: scenes[0], lambda: scenes[1], self._beside)
             self.clock = self.handle.clock
         self.resize(*self._size)
-
-    def _follow(self, name: str, value: Any) -> None:
-        """Change a setting of the second pane as that of the first one changes."""
-        if name not in self._beside:
-            self.panes[1].handle.settings.update(**{name: value})
-
-    def _follow_scene(self, affects: Change) -> None:
-        """Change the appearance of the second pane as that of the first one changes."""
-        if affects == "appearance":
-            second = self.panes[1].handle.scene
-            appearance = _appearance_beside(self.scene, self._beside)
-            if "scalars" in self._beside:
-                appearance = replace(appearance, clim=second.appearance.clim)
-            appearance = replace(appearance, image=second.appearance.image)
-            try:
-                second.appearance = appearance
-            except ValueError:  # its values have no logarithm, as those of the first one have
-                second.appearance = replace(appearance, log_scale=False, clim=None)
 
     def lay_image(self, image: Any) -> None:
         """Lay an image on the surface in place of the noise, except where panes differ in noise.
 
         Nothing is changed when it cannot be used.
         """
-        # The first pane is followed by the second, which has to have the image by then.
-        for pane in reversed(self.panes):
-            pane.handle.set_image(image)
-        if "noise" in self._beside:
-            self.panes[1].handle.settings.noise = self._beside["noise"]
+        lay_image([pane.handle.scene for pane in self.panes], image, self._beside)
 
     # --- colours -----------------------------------------------------------------------------
 
@@ -457,17 +425,6 @@ def _whole_mesh(surface: TriangleSurface) -> pv.PolyData:
     return pv.PolyData.from_regular_faces(surface.points[0], triangles)
 
 
-def _appearance_beside(first: Scene, changes: Mapping[str, Any]) -> Appearance:
-    """Appearance of a second pane; a range is that of one scalar."""
-    appearance, field = first.appearance, changes.get("field", first.field)
-    scalars = changes.get("scalars", appearance.scalars)
-    if "scalars" not in changes:
-        if appearance.scalar_name in (None, SPEED, *field.scalars):
-            return appearance
-        scalars = SPEED
-    return replace(appearance, scalars=scalars, clim=None)
-
-
 def _time_beside(first: Scene, changes: Mapping[str, Any]) -> float:
     """Time of a second pane."""
     if "field" in changes:
@@ -484,21 +441,12 @@ def _time_in(scene: Scene, field: FlowField) -> float:
     return time if first <= time <= last and not scene.field.steady else last
 
 
-def _like(
-    scene: Scene, field: FlowField, settings: Mapping[str, Any], appearance: Appearance
-) -> Scene:
-    """Return a scene of a field with the image of another one, whatever its noise is.
-
-    Colours that the field has not are those of the speed.
-    """
-    if appearance.scalar_name not in (None, SPEED, *field.scalars):
-        appearance = replace(appearance, scalars=SPEED)
-    appearance, chosen = replace(appearance, image=None), Settings(**settings)
+def _like(scene: Scene, changes: Mapping[str, Any], field: FlowField) -> Scene:
+    """Return a scene of a field that looks like another one, but for changes."""
     try:
-        return Scene(field, chosen, appearance, image=scene.image)
+        return scene.beside(changes, field)
     except ValueError:
-        if not appearance.log_scale:
+        if not scene.appearance.log_scale:
             raise
         # The field has values that have no logarithm.
-        plain = replace(appearance, log_scale=False, clim=None)
-        return Scene(field, chosen, plain, image=scene.image)
+        return scene.beside({**changes, "log_scale": False, "clim": None}, field)
