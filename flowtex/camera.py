@@ -39,35 +39,21 @@ FARTHEST_REACH, NEAREST_REACH = 1e9, 1e-9
 
 @dataclass(frozen=True)
 class CameraLimits:
-    """How far a camera may go, and how fast it moves.
+    """How far a camera may go, and how fast it moves."""
 
-    Attributes
-    ----------
-    deepest_zoom, farthest_zoom
-        Greatest and least zoom relative to the whole surface; single precision ends beyond.
-    closest
-        How many times closer a perspective camera comes than the distance that shows the whole
-        surface; beyond, its view angle narrows, so that nothing near is cut off.
-    view_angle
-        View angle in perspective while the camera is farther than that, in degrees.
-    margin
-        Share of the picture that is left empty at each side of a flat surface.
-    wheel_zoom
-        Zoom by one notch of the wheel.
-    turn
-        Degrees that a drag over half the height of the view turns a curved surface.
-    widest_turn
-        Aspect beyond which a drag to the side turns no farther.
-    """
-
+    #: Greatest and least zoom relative to the whole surface; single precision ends beyond.
     deepest_zoom: float = 1e6
     farthest_zoom: float = 0.25
+    #: How many times closer a perspective camera comes than the distance that shows the whole
+    #: surface; beyond, its view angle narrows, so that nothing near is cut off.
     closest: float = 16.0
+    #: View angle in perspective while the camera is farther than that, in degrees.
     view_angle: float = 30.0
-    margin: float = 0.04
-    wheel_zoom: float = 1.25
+    margin: float = 0.04  #: Share of the picture that is left empty at each side of a flat surface.
+    wheel_zoom: float = 1.25  #: Zoom by one notch of the wheel.
+    #: Degrees that a drag over half the height of the view turns a curved surface.
     turn: float = 90.0
-    widest_turn: float = 2.0
+    widest_turn: float = 2.0  #: Aspect beyond which a drag to the side turns no farther.
 
 
 CAMERA_LIMITS = CameraLimits()

@@ -238,17 +238,7 @@ class _Pixel:
         self._unit = float(self._base[0, 3]) * textures.unit / textures.pace
 
     def probe(self) -> Probe:
-        """Draw the pixel, and return how.
-
-        Examples
-        --------
-        >>> import flowtex
-        >>> from flowtex.probe import locate, probe
-        >>> from flowtex.scene import Scene
-        >>> field = flowtex.examples.double_gyre_field()
-        >>> probe(Scene.of(field), locate(field, (0.5, 0.25)), pixel=0.01).parameter
-        'arclength'
-        """
+        """Draw the pixel, and return how."""
         values, recorder = self._values, self._lookup
         value = self._summing.texture(self._fragments.place, self._level)[0]
         sides = list(self._sides(1))

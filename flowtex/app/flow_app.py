@@ -137,10 +137,7 @@ class FlowApp(NotebookPage):
 def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Choice]:
     """Return what is shown first: the name of a flow, and what the options choose of it.
 
-    Raises
-    ------
-    FieldError
-        When none can be opened; it tells of the first one.
+    Raises a FieldError when none can be opened; it tells of the first one.
     """
     partial_choice = Choice(
         *("" if (value := options.get(key)) is None else str(value) for key in CHOICE_ARGUMENTS)

@@ -40,17 +40,10 @@ LOOKS = {True: 25, False: 65}
 
 @dataclass(frozen=True)
 class MapLines:
-    """Lines on a map.
+    """Lines on a map."""
 
-    Attributes
-    ----------
-    points
-        Positions in metres, (N, 3).
-    starts
-        Where each line begins, (L + 1,): line k is ``points[starts[k]:starts[k + 1]]``.
-    """
-
-    points: Floats
+    points: Floats  #: Positions in metres, (N, 3).
+    #: Where each line begins, (L + 1,): line k is ``points[starts[k]:starts[k + 1]]``.
     starts: Indices
 
     def and_(self, other: MapLines) -> MapLines:
@@ -87,13 +80,7 @@ class MapLines:
 def coastlines(projection: Projection, box: Floats | None = None) -> MapLines:
     """Return the coasts of all land, the larger islands and lakes.
 
-    Parameters
-    ----------
-    projection
-        The map.
-    box
-        Least and greatest position of what is shown, (2, 3); what is outside is left out. By
-        default there is all of the Earth.
+    What is outside of a box, the least and greatest position of what is shown, (2, 3), is left out.
     """
     lonlat, joined = _coasts()
     return _mapped(projection, lonlat, joined, box)
@@ -102,16 +89,9 @@ def coastlines(projection: Projection, box: Floats | None = None) -> MapLines:
 def graticule(
     projection: Projection, box: Floats | None = None, step: float | None = None
 ) -> MapLines:
-    """Return meridians and parallels.
+    """Return meridians and parallels, in a box as for :func:`coastlines`.
 
-    Parameters
-    ----------
-    projection
-        The map.
-    box
-        As for :func:`coastlines`.
-    step
-        Degrees between two lines; by default a round number, so that some cross the box.
+    Between two lines are so many degrees; by default a round number, so that some cross the box.
     """
     lon, lat = _places(projection, box)
     if not len(lon):

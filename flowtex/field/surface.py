@@ -21,30 +21,14 @@ from flowtex.field.poles import Poles
 
 
 class Surface(ABC):
-    """A surface in space with data at its nodes, in the mesh's own units.
+    """A surface in space with data at its nodes, in the mesh's own units."""
 
-    Attributes
-    ----------
-    points
-        Positions of the nodes, (J, I, 3); a surface of triangles has one row.
-    valid
-        Nodes that carry data, (J, I).
-    has_position
-        Nodes with a position of their own, (J, I).
-    periodic
-        Whether the (j, i) axis closes on itself.
-    offset
-        What to add to a position when index j, or i, grows by one period, (2, 3).
-    on_globe
-        Whether it lies on a globe around the origin, with north at +z.
-    """
-
-    points: Floats
-    valid: Bools
-    has_position: Bools
-    periodic: tuple[bool, bool]
-    offset: Floats
-    on_globe: bool
+    points: Floats  #: Positions of the nodes, (J, I, 3); a surface of triangles has one row.
+    valid: Bools  #: Nodes that carry data, (J, I).
+    has_position: Bools  #: Nodes with a position of their own, (J, I).
+    periodic: tuple[bool, bool]  #: Whether the (j, i) axis closes on itself.
+    offset: Floats  #: What to add to a position when index j, or i, grows by one period, (2, 3).
+    on_globe: bool  #: Whether it lies on a globe around the origin, with north at +z.
 
     @property
     def poles(self) -> Poles | None:

@@ -85,20 +85,9 @@ def plates(
 ) -> list[Plate]:
     """Return what is written on a picture, the most important first.
 
-    Parameters
-    ----------
-    scene
-        What the picture shows.
-    size
-        Its width and height in pixels.
-    camera
-        Where it was taken from.
-    background
-        Colour behind the surface: plates are light on a light one.
-    label
-        What the title says beside the name of the field.
-    legend
-        Whether there may be one; there is none where the colours tell nothing.
+    Size is the width and height of the picture in pixels, and label what the title says beside the
+    name of the field. Plates are light on a light background. There is no legend where the colours
+    tell nothing.
     """
     width, height = size
     writer = _Writer(size, background)

@@ -200,14 +200,8 @@ def default_fps(path: str | Path) -> float:
 def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT_QUALITY) -> None:
     """Refuse a movie that cannot be written, before anything is drawn.
 
-    The parameters are those of :class:`MovieWriter`.
-
-    Raises
-    ------
-    MovieError
-        When it cannot be; the text says how it can.
-    ModuleNotFoundError
-        When an MP4 is asked for without PyAV; the text names the command that installs it.
+    The parameters are those of :class:`MovieWriter`. Raises a MovieError, whose text says how it
+    can be, and for an MP4 without PyAV a ModuleNotFoundError with the command that installs it.
     """
     path = checked_target(path)
     suffix = path.suffix.lower()
@@ -241,23 +235,10 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
 class MovieWriter:
     """Takes pictures and makes a file of them, which is there whole or not at all.
 
-    Parameters
-    ----------
-    path
-        File to write: ``.mp4``, ``.gif`` or ``.webp``.
-    size
-        Width and height in pixels; even numbers for an MP4.
-    fps
-        Frames in a second; at most 50 for a GIF.
-    quality
-        1 to 100: the more, the truer and the larger. A GIF has so many hundredths of 256 colours.
-
-    Raises
-    ------
-    MovieError, ModuleNotFoundError
-        As for :func:`check_movie`.
-    OSError
-        When there is no such folder, or no right to write there.
+    The file is ``.mp4``, with even sides in pixels, ``.gif``, with at most 50 frames in a second,
+    or ``.webp``. The higher the quality, 1 to 100, the truer and the larger; a GIF has so many
+    hundredths of 256 colours. Raises what :func:`check_movie` does, and an OSError when there is no
+    such folder, or no right to write there.
     """
 
     def __init__(self, path: str | Path, size: Size, fps: float, quality: int) -> None:
@@ -274,10 +255,7 @@ class MovieWriter:
     def add(self, picture: Bytes) -> None:
         """Take the next picture, (H, W, 3) uint8.
 
-        Raises
-        ------
-        MovieError
-            When its size is not that of the movie.
+        Raises a MovieError when its size is not that of the movie.
         """
         height, width = picture.shape[:2]
         if (width, height) != self._size:
@@ -289,10 +267,7 @@ class MovieWriter:
     def finish(self, cancelled: Callable[[], bool]) -> None:
         """Write what is left to write, and put the file in its place.
 
-        Raises
-        ------
-        Stopped
-            When ``cancelled()`` became true before.
+        Raises :class:`Stopped` when ``cancelled()`` became true before.
         """
         self._encoder.finish(cancelled)
         self._encoder.close()
@@ -322,13 +297,8 @@ def write_movie(
 
     Each picture is taken when the one before is written; ``cancelled`` is asked before each, and
     once it is true nothing is left behind. The other parameters are those of :class:`MovieWriter`.
-
-    Raises
-    ------
-    MovieError, ModuleNotFoundError, OSError
-        As for :class:`MovieWriter`, and when there are no pictures or one differs in size.
-    Stopped
-        When it was cancelled.
+    Raises what that does, a MovieError when there are no pictures or one differs in size, and
+    :class:`Stopped` when it was cancelled.
     """
     writer: MovieWriter | None = None
     try:

@@ -40,21 +40,13 @@ SAME_SHARE = 1e-6
 
 @dataclass(frozen=True)
 class FrameTimes:
-    """What each frame of a movie shows.
+    """What each frame of a movie shows."""
 
-    Attributes
-    ----------
-    times
-        Times of a field that varies, in its own unit; empty for a steady flow.
-    clocks
-        Clocks of the streaming of a steady flow, in seconds; empty for a field that varies.
-    fps, seconds, closed
-        As for :class:`Movie`; a steady flow is as long as its ``period``.
-    """
-
+    #: Times of a field that varies, in its own unit; empty for a steady flow.
     times: tuple[float, ...]
+    #: Clocks of the streaming of a steady flow, in seconds; empty for a field that varies.
     clocks: tuple[float, ...]
-    fps: float
+    fps: float  #: As for :class:`Movie`; a steady flow is as long as its ``period``.
     seconds: float
     closed: bool
 
@@ -68,12 +60,8 @@ def frame_times(
 ) -> FrameTimes:
     """Return what each frame of a movie shows; :func:`flowtex.movie` has the parameters.
 
-    Of the settings ``motion``, ``noise`` and ``period`` of a steady flow count.
-
-    Raises
-    ------
-    MovieError
-        When a number is out of its range, or a steady flow would stand still.
+    Of the settings ``motion``, ``noise`` and ``period`` of a steady flow count. Raises a MovieError
+    when a number is out of its range, or a steady flow would stand still.
     """
     expected = f"more than 0 and at most {MAX_FPS:g} frames per second"
     checked_number("fps", fps, math.ulp(0.0), MAX_FPS, expected=expected, error=MovieError)

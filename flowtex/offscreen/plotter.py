@@ -174,10 +174,7 @@ def point_camera(
 ) -> None:
     """Point a plotter's camera where a view asks for.
 
-    Raises
-    ------
-    FieldError
-        When the view's camera, zoom or focus is none, or the margin.
+    Raises a FieldError when the view's camera, zoom or focus is none, or the margin.
     """
     if view.camera is None:
         look(plotter, scene.whole, zoom=view.zoom, focus=view.focus, margin=margin)

@@ -73,16 +73,11 @@ class _Parts(_Rows):
 
 
 class ArrowSeeds:
-    """Seeds of one surface, made as views ask for them.
-
-    Attributes
-    ----------
-    corners
-        Vertices at the corners of each cell, (N, 4); the last two of a triangle are one.
-    """
+    """Seeds of one surface, made as views ask for them."""
 
     def __init__(self, geometry: SurfaceGeometry | TriangleGeometry) -> None:
         faces = geometry.faces
+        #: Vertices at the corners of each cell, (N, 4); the last two of a triangle are one.
         self.corners = faces[:, [0, 1, 3, 2] if faces.shape[1] == 4 else [0, 1, 2, 2]]
         self._geometry = geometry
         self._nodes: Floats32 = geometry.at_vertices(geometry.position)

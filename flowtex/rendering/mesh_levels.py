@@ -52,24 +52,9 @@ class _Blocks:
 class MeshLevels:
     """The levels of a surface's mesh, and the triangles that a view needs.
 
-    Parameters
-    ----------
-    points
-        Nodes of the surface, (J, I, 3).
-    cells
-        Cells that are drawn, (J - 1, I - 1).
-    periodic
-        Whether the first line of nodes lies where the last one does, along j and i.
-    slide, height
-        What counts of an error along the surface and across it, from 0 to 1.
-
-    Attributes
-    ----------
-    error
-        Greatest distance of a node from the triangles of each level, (L, rows, columns) of blocks;
-        of its outline, and along the surface, shares of it.
-    blocks
-        Centre, radius, and longest side of a cell of each block, (block rows, block columns, 5).
+    Nodes are (J, I, 3), and cells that are drawn (J - 1, I - 1); along a periodic axis, j or i, the
+    first line of nodes lies where the last one does. ``slide`` and ``height`` are what counts of an
+    error along the surface and across it, from 0 to 1.
     """
 
     def __init__(
@@ -86,8 +71,11 @@ class MeshLevels:
         self._cells, self._periodic = cells, periodic
         self._rows, self._columns = (_Blocks.of(n) for n in self._shape)
         points = np.where(np.isfinite(points), points, 0.0)
+        #: Greatest distance of a node from the triangles of each level, (L, rows, columns) of
+        #: blocks; of its outline, and along the surface, shares of it.
         self.error = self._errors(points, _directions(points))
         self.error[self._mixed_levels()] = np.inf
+        #: Centre, radius, and longest side of a cell of each block, (rows, columns, 5) of blocks.
         self.blocks = block_places(points)
 
     @classmethod
@@ -108,16 +96,9 @@ class MeshLevels:
     def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
         """Return the level of each block, (block rows, block columns): 0 has every node.
 
-        Parameters
-        ----------
-        eye
-            Where the camera is, (3,), in the coordinates of the points; ``None`` where all rays
-            are parallel.
-        half_height
-            Half the height of what is seen: a length where all rays are parallel, else for a
-            distance of one.
-        pixels
-            Height of the picture in pixels.
+        The eye is (3,), in the coordinates of the points, or ``None`` where all rays are parallel;
+        half the height of what is seen is a length then, and else for a distance of one. The
+        picture is so many ``pixels`` high.
         """
         radius, cell_size = self.blocks[..., 3], self.blocks[..., 4]
         distance = np.ones(radius.shape)
@@ -138,13 +119,9 @@ class MeshLevels:
     def triangles(self, levels: Ints, joins: Ints | None = None) -> Indices:
         """Return the nodes of the triangles, (N, 3), numbered row by row.
 
-        Parameters
-        ----------
-        levels
-            Of each block, as :meth:`levels` gives them; -1 leaves a block out.
-        joins
-            Levels of the borders below, above, left and right of each block, (4, block rows, block
-            columns), no finer than its own; by default the coarser one of both its sides.
+        Levels are those of :meth:`levels`; -1 leaves a block out. Joins are the levels of the
+        borders below, above, left and right of each block, (4, block rows, block columns), no finer
+        than its own; by default the coarser one of both its sides.
         """
         if joins is None:
             whole = Region(0, 0, 0, levels)
@@ -335,16 +312,8 @@ def join(
     """Return the levels of the borders of each part's blocks, so that no crack opens.
 
     Levels of the parts are made finer in place, where a neighbour is so much finer that its corner
-    would lie inside of a side.
-
-    Parameters
-    ----------
-    parts
-        What is drawn.
-    blocks
-        Rows and columns of blocks of the finest nodes.
-    periodic
-        Whether the first line of blocks follows on the last one, along j and i.
+    would lie inside of a side. ``blocks`` are rows and columns of blocks of the finest nodes; along
+    a periodic axis, j or i, the first line of blocks follows on the last one.
     """
     # Doublings from the finest nodes to those here; what is not drawn is no neighbour.
     nodes = np.full(blocks, NOT_DRAWN)

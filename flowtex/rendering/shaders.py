@@ -39,10 +39,7 @@ class GLSLError(ValueError):
 def shader_folder(package: Path = _PACKAGE) -> Path:
     """Return the folder that holds the shaders of a package.
 
-    Raises
-    ------
-    FileNotFoundError
-        When neither an installed nor a checkout's folder is there.
+    Raises a FileNotFoundError when neither an installed nor a checkout's folder is there.
     """
     installed = package / "_shaders"
     if installed.is_dir():
@@ -70,10 +67,7 @@ def shader_names() -> tuple[str, ...]:
 def shader_source(name: str) -> str:
     """Return the text of one shader.
 
-    Raises
-    ------
-    FileNotFoundError
-        When there is no such shader; the text lists those that there are.
+    Raises a FileNotFoundError when there is no such shader; the text lists those that there are.
     """
     path = shader_folder() / name
     # Listing all names takes longer than reading one, and is left to the error.
@@ -90,12 +84,8 @@ def shader_source(name: str) -> str:
 def shader_text(name: str, variants: Iterable[str] = ()) -> str:
     """Return a shader with its includes, and names out of :data:`VARIANTS` defined before it.
 
-    Raises
-    ------
-    GLSLError
-        When a variant is unknown, or files include one another in a circle.
-    FileNotFoundError
-        When there is no such file.
+    Raises a GLSLError when a variant is unknown, or files include one another in a circle; a
+    FileNotFoundError when there is no such file.
     """
     unknown = sorted(set(variants) - set(VARIANTS))
     if unknown:

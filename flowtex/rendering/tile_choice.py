@@ -21,27 +21,16 @@ CELL_PIXELS = 2.5
 
 @dataclass(frozen=True)
 class TileView:
-    """What decides on tiles.
+    """What decides on tiles."""
 
-    Attributes
-    ----------
-    eye
-        Where the camera is, (3,), in the coordinates of the mesh; ``None`` where rays are parallel.
-    half_height
-        Half the height of what is seen: a length where rays are parallel, else for a distance of 1.
-    pixels
-        Height of the picture in pixels, as the settings count them.
-    planes
-        Planes around what is seen, (N, 4): a point is inside where p . (x, y, z, 1) >= 0.
-    cell_pixels
-        Pixels of a cell above which the next level is drawn.
-    """
-
+    #: Where the camera is, (3,), in the coordinates of the mesh; ``None`` where rays are parallel.
     eye: Floats | None
+    #: Half the height of what is seen: a length where rays are parallel, else for a distance of 1.
     half_height: float
-    pixels: float
+    pixels: float  #: Height of the picture in pixels, as the settings count them.
+    #: Planes around what is seen, (N, 4): a point is inside where p . (x, y, z, 1) >= 0.
     planes: Floats
-    cell_pixels: float = CELL_PIXELS
+    cell_pixels: float = CELL_PIXELS  #: Pixels of a cell above which the next level is drawn.
 
     def sees(self, blocks: Floats) -> Bools:
         """Which blocks (J, I, 5) of a mesh may be in view."""
@@ -68,21 +57,11 @@ def cell_pixels(settings: Settings) -> float:
 
 @dataclass
 class Choice:
-    """What a view asks of a tile, or of the root.
+    """What a view asks of a tile, or of the root."""
 
-    Attributes
-    ----------
-    needed
-        Whether some of its own cells are to be shown.
-    pixels
-        Size of the largest of those cells in pixels.
-    finer
-        The tiles that are to be shown in place of its larger cells.
-    """
-
-    needed: bool
-    pixels: float
-    finer: list[TileKey]
+    needed: bool  #: Whether some of its own cells are to be shown.
+    pixels: float  #: Size of the largest of those cells in pixels.
+    finer: list[TileKey]  #: The tiles that are to be shown in place of its larger cells.
 
 
 #: By tile, coarse ones first; ``None`` is the root.

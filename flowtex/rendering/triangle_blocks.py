@@ -14,15 +14,10 @@ from flowtex.textures import TextureSet, TriangleGeometry
 
 
 class TriangleBlocks:
-    """The triangles that a view needs, as :class:`MeshLevels` has those of a structured surface.
-
-    Attributes
-    ----------
-    blocks
-        Centre, radius and longest side of a triangle of each block, (rows, columns, 5).
-    """
+    """The triangles that a view needs, as :class:`MeshLevels` has those of a structured surface."""
 
     def __init__(self, geometry: TriangleGeometry) -> None:
+        #: Centre, radius and longest side of a triangle of each block, (rows, columns, 5).
         self.blocks, self._masks = geometry.block_places, geometry.blocks
 
     @property

@@ -45,43 +45,27 @@ ANCHOR_RANGE = 8.0
 
 @dataclass
 class ViewState:
-    """What changes from frame to frame.
+    """What changes from frame to frame."""
 
-    Attributes
-    ----------
-    focus
-        Point of the mesh that the view looks at, (3,), in the mesh's own coordinates.
-    anchor
-        Point of the surface's frame that positions are counted from, (3,).
-    eye
-        The eye in the mesh's own coordinates and 1, or the way to it and 0 where all rays are
-        parallel, (4,).
-    between
-        How far the time has come from one destination time of the slices to the next, 0 to 1.
-    time
-        Time that is shown of a field that varies, in its own unit.
-    clock
-        Clock of the streaming of a steady flow, in seconds.
-    density
-        Pixels drawn, along a side, for one that the settings speak of: a picture of twice the
-        density has grains of twice as many pixels, and shows the same.
-    pixel
-        Length that a pixel drawn covers at the focus; 0 stands for as near as can be.
-    lags
-        Number of lags of the slices that are drawn with, the shortest; ``None`` for all.
-    levels
-        Mip levels of the slices beside the finest that are drawn with; ``None`` for all.
-    """
-
+    #: Point of the mesh that the view looks at, (3,), in the mesh's own coordinates.
     focus: Floats = field(default_factory=lambda: np.zeros(3))
+    #: Point of the surface's frame that positions are counted from, (3,).
     anchor: Floats = field(default_factory=lambda: np.zeros(3))
+    #: The eye in the mesh's own coordinates and 1, or the way to it and 0 where all rays are
+    #: parallel, (4,).
     eye: Floats = field(default_factory=lambda: np.array([0.0, 0.0, 1.0, 0.0]))
+    #: How far the time has come from one destination time of the slices to the next, 0 to 1.
     between: float = 0.0
-    time: float = 0.0
-    clock: float = 0.0
+    time: float = 0.0  #: Time that is shown of a field that varies, in its own unit.
+    clock: float = 0.0  #: Clock of the streaming of a steady flow, in seconds.
+    #: Pixels drawn, along a side, for one that the settings speak of: a picture of twice the
+    #: density has grains of twice as many pixels, and shows the same.
     density: float = 1.0
+    #: Length that a pixel drawn covers at the focus; 0 stands for as near as can be.
     pixel: float = 0.0
+    #: Number of lags of the slices that are drawn with, the shortest; ``None`` for all.
     lags: int | None = None
+    #: Mip levels of the slices beside the finest that are drawn with; ``None`` for all.
     levels: int | None = None
 
 

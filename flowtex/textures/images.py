@@ -39,22 +39,12 @@ class ImageError(SettingsError):
 def as_picture(image: Any) -> Floats32:
     """Check an image and return its texels.
 
-    Parameters
-    ----------
-    image
-        Grey (H, W), colours (H, W, 3) or colours and opacity (H, W, 4). Whole numbers without
-        sign from 0 to their greatest, floats from 0 to 1, or booleans. Row 0 is the top.
+    It is grey (H, W), colours (H, W, 3) or colours and opacity (H, W, 4), row 0 at the top: whole
+    numbers without sign from 0 to their greatest, floats from 0 to 1, or booleans. An ImageError
+    tells of another array, an empty one, NaN, and values out of range.
 
-    Returns
-    -------
-    numpy.ndarray
-        (h, w, 4) single precision: red, green and blue times opacity, and opacity, from 0 to 1.
-        Row 0 is the bottom, as j grows upward. Not more than :data:`LARGEST` on a side.
-
-    Raises
-    ------
-    ImageError
-        When it is no such array, is empty, or holds NaN or values out of range.
+    Texels are (h, w, 4) in single precision: red, green and blue times opacity, and opacity, from 0
+    to 1. Row 0 is the bottom, as j grows upward. There are no more than :data:`LARGEST` on a side.
     """
     try:
         array = np.asarray(image)

@@ -26,30 +26,16 @@ from flowtex.textures.geometry import DrawnSurface
 
 @dataclass(frozen=True, eq=False)
 class TriangleGeometry(DrawnSurface):
-    """Triangles ready to be drawn.
+    """Triangles ready to be drawn."""
 
-    Attributes
-    ----------
-    field
-        The flow, with nodes (1, N).
-    nodes
-        Numbers of the nodes that are drawn, (n,), or all of them.
-    triangles
-        Nodes at the corners of what is drawn, (m, 3), as numbers among these.
-    whole
-        The surface that a tile is a part of, whose middle, size and frame it has.
-    blocks
-        Blocks that each triangle lies in, (m,): bit b stands for the block at row b // C of C
-        columns, and column b % C.
-    block_places
-        Centre, radius and longest side of a triangle of each block, (rows, C, 5).
-    """
-
-    field: FlowField
-    nodes: slice | Indices
-    triangles: Indices
-    whole: Surface
+    field: FlowField  #: The flow, with nodes (1, N).
+    nodes: slice | Indices  #: Numbers of the nodes that are drawn, (n,), or all of them.
+    triangles: Indices  #: Nodes at the corners of what is drawn, (m, 3), as numbers among these.
+    whole: Surface  #: The surface that a tile is a part of, whose middle, size and frame it has.
+    #: Blocks that each triangle lies in, (m,): bit b stands for the block at row b // C of C
+    #: columns, and column b % C.
     blocks: NDArray[np.uint16]
+    #: Centre, radius and longest side of a triangle of each block, (rows, C, 5).
     block_places: Floats
 
     #: Mip levels beside the finest: none, for other levels of detail are other meshes.

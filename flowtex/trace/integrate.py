@@ -43,24 +43,13 @@ MOST_CELLS = 1e30
 
 @dataclass(frozen=True)
 class Paths:
-    """Positions at the lags, and how far the paths lead.
+    """Positions at the lags, and how far the paths lead."""
 
-    Attributes
-    ----------
-    positions
-        Positions in index space, (M, N, 2) as (i, j).
-    reach
-        Lag at which each path ended, (N,), infinite where it goes on.
-    polar
-        Which paths came right beside a pole, (N,).
-    interrupted
-        Which paths came where they are not to be followed, (N,): ``reach`` is the lag at which
-        they did, and all their later positions are the one where they did.
-    """
-
-    positions: Floats
-    reach: Floats
-    polar: Bools
+    positions: Floats  #: Positions in index space, (M, N, 2) as (i, j).
+    reach: Floats  #: Lag at which each path ended, (N,), infinite where it goes on.
+    polar: Bools  #: Which paths came right beside a pole, (N,).
+    #: Which paths came where they are not to be followed, (N,): ``reach`` is the lag at which they
+    #: did, and all their later positions are the one where they did.
     interrupted: Bools
 
 

@@ -195,28 +195,12 @@ def paths(
 ) -> Paths:
     """Follow particles from chosen positions in index space.
 
-    Parameters
-    ----------
-    field
-        The flow.
-    start
-        Starting positions, (N, 2) as (i, j); on triangles those of
-        :class:`~flowtex.field.triangles.surface.TriangleSurface`.
-    lags
-        Lags of the positions, (M,), in units of length or time.
-    step
-        Which destination time.
-    parameter, forward, tolerance
-        As for :func:`trace`; the raised errors are the same.
-    within
-        Tells for positions (2, N) in index space whether paths are followed there; one that comes
-        elsewhere is interrupted. On triangles all are followed.
-
-    Returns
-    -------
-    Paths
-        Positions (M, N, 2) in index space, and the lag at which each path ended, (N,), infinite
-        where it goes on beyond the last lag. On triangles a path that has ended stays there.
+    They start at (N, 2) as (i, j), or on triangles as
+    :class:`~flowtex.field.triangles.surface.TriangleSurface` has places, at destination time
+    ``step``, and are wanted at lags (M,) in units of length or time. ``within`` tells for positions
+    (2, N) whether paths are followed there: one that comes elsewhere is interrupted. On triangles
+    all are followed, and one that has ended stays there. The other parameters, and the errors, are
+    those of :func:`trace`.
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)

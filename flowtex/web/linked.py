@@ -25,27 +25,16 @@ EXPECTED = (
 
 @dataclass(frozen=True)
 class StoreLink:
-    """Where a page finds its store.
+    """Where a page finds its store."""
 
-    Attributes
-    ----------
-    address
-        A URL, whole or from the page on.
-    source
-        What the page's policy allows it to connect to.
-    """
-
-    address: str
-    source: str
+    address: str  #: A URL, whole or from the page on.
+    source: str  #: What the page's policy allows it to connect to.
 
     @classmethod
     def of(cls, text: str) -> StoreLink:
         """Return the link of an address.
 
-        Raises
-        ------
-        FieldError
-            When a browser could not read it, or it holds what is not for everybody.
+        Raises a FieldError when a browser could not read it, or it holds what is not for everybody.
         """
         if not isinstance(text, str):
             msg = f"store is {text!r}; expected an address, such as './flow.zarr'"
@@ -76,10 +65,7 @@ class StoreLink:
 def linked_data(view: WebView) -> ClientData:
     """Return what a page is handed of a view whose tiles lie in a store.
 
-    Raises
-    ------
-    FieldError
-        When the flow is not one of a store, or the store has other paths.
+    Raises a FieldError when the flow is not one of a store, or the store has other paths.
     """
     stored, data = _stored(view), view.page_data()
     if not stored.about.get("complete"):

@@ -72,17 +72,12 @@ def look_shown(look: Look) -> dict[str, Any]:
 
 
 class Appearance(Controller):
-    """How the flow is drawn, and in a second pane with ``beside`` that of another file.
-
-    Attributes
-    ----------
-    theme, background, compared
-        What was chosen last of what the page may choose: a page may send anything.
-    """
+    """How the flow is drawn, and in a second pane with ``beside`` that of another file."""
 
     def __init__(self, context: Context, beside: FileBeside) -> None:
         super().__init__(context)
         self.beside = beside
+        #: What was chosen last of what the page may choose: a page may send anything.
         self.theme, self.background, self.compared = "dark", BACKGROUNDS[0], "nothing"
         self._laying: asyncio.Task[None] | None = None
         self.state.set(

@@ -16,26 +16,14 @@ from flowtex.settings import Settings
 
 
 class Context:
-    """What the controllers of a page share.
-
-    Attributes
-    ----------
-    state, routes, library
-        What the page knows, the files it may fetch, and the flows it may open.
-    area
-        The view, with its ``viewport``, ``stream`` and ``player``.
-    controllers
-        All of them, in the order in which they were made.
-    field_changed
-        Signal after another flow is shown.
-    beside_changed
-        Signal after the flow of another file came into the second pane, or went.
-    """
+    """What the controllers of a page share."""
 
     def __init__(self, state: PageState, area: FlowArea, library: Library) -> None:
+        #: What the page knows, the view, and the flows the page may open.
         self.state, self.area, self.library = state, area, library
-        self.routes = Routes.of(state.server)
-        self.controllers: list[Controller] = []
+        self.routes = Routes.of(state.server)  #: The files that the page may fetch.
+        self.controllers: list[Controller] = []  #: All, in the order in which they were made.
+        #: Signals after another flow is shown, and after that of another file came or went.
         self.field_changed, self.beside_changed = Signal(), Signal()
         area.element.failed.connect(self.complain)
 

@@ -52,15 +52,9 @@ class LoadedFlow:
 
 
 class Data(Controller):
-    """Which flow is shown; ``name`` and ``choice`` at first.
+    """Which flow is shown; ``name`` and ``choice`` at first."""
 
-    Attributes
-    ----------
-    library, names
-        What may be opened, and the names of it when they were last listed.
-    """
-
-    names: tuple[str, ...]
+    names: tuple[str, ...]  #: Of what may be opened, when they were last listed.
 
     def __init__(self, context: Context, name: str, choice: Choice) -> None:
         super().__init__(context)

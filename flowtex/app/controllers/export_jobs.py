@@ -151,35 +151,13 @@ class TiledPicture:
 
 
 class Job:
-    """Something that is drawn and writing while a page goes on.
+    """Something that is drawn and written while a page goes on; nothing of the view is changed.
 
-    Parameters
-    ----------
-    viewport
-        What is on view; nothing of it is changed.
-    path
-        File to write.
-    size
-        Width and height in pixels.
-    supersampling
-        Pixels that are drawn, along each side, for one of the result, 1 to 4.
-    density
-        Pixels of the result for one that the settings speak of: 2 has grains of twice as many
-        pixels, as fine screens and print want it.
-    annotations
-        Whether legend, scale bar, time and name are written on it.
-    busy
-        Tells whether the view needs the time more; nothing is drawn meanwhile.
-
-    Attributes
-    ----------
-    progress, done
-        How much is done, 0 to 1, and whether it has ended, in whatever way.
-
-    Raises
-    ------
-    ExportError, MovieError
-        When it cannot be made so.
+    ``supersampling`` are the pixels that are drawn, along each side, for one of the result, 1 to 4,
+    and ``density`` those of the result for one that the settings speak of: 2 has grains of twice as
+    many pixels, as fine screens and print want it. While the view needs the time more, which
+    ``busy`` tells, nothing is drawn. Raises an ExportError or a MovieError when it cannot be made
+    so.
     """
 
     def __init__(
@@ -194,6 +172,7 @@ class Job:
         busy: Callable[[], bool] = lambda: False,
     ) -> None:
         _check(size, supersampling, density)
+        #: The file, how much is done, 0 to 1, and whether it has ended, in whatever way.
         self.path, self.progress, self.done = Path(path), 0.0, False
         self._viewport, self._size, self._busy = viewport, size, busy
         self._supersampling, self._density = supersampling, density
@@ -293,14 +272,8 @@ class _StoppableFile:
 class MovieJob(Job):
     """A movie: a seamless loop of a steady flow, or all times of one that varies.
 
-    Parameters
-    ----------
-    viewport, path, size
-        As for :class:`Job`; the suffix of the file is the format. An MP4 gets even sides.
-    seconds, fps, quality
-        As for :func:`flowtex.movie`.
-    **options
-        Further arguments of :class:`Job`.
+    The suffix of the file is the format; an MP4 gets even sides. Seconds, fps and quality are those
+    of :func:`flowtex.movie`, further options those of :class:`Job`.
     """
 
     def __init__(

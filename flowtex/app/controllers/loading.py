@@ -29,21 +29,14 @@ NAME_LENGTH = 80
 
 @dataclass(eq=False)
 class LoadRequest:
-    """Something that is to be opened, after which ``then`` is called.
-
-    Attributes
-    ----------
-    cancelled
-        Whether nothing of it is to be shown any more.
-    superseded
-        Whether something else was requested since. While a slider moves that is always so: what
-        is quick to load is shown all the same, or nothing would be seen on the way.
-    """
+    """Something that is to be opened, after which ``then`` is called."""
 
     name: str
     choice: Choice
     then: Callable[[], None] | None = None
-    cancelled: bool = False
+    cancelled: bool = False  #: Whether nothing of it is to be shown any more.
+    #: Whether something else was requested since. While a slider moves that is always so: what is
+    #: quick to load is shown all the same, or nothing would be seen on the way.
     superseded: bool = False
 
     @property

@@ -199,17 +199,9 @@ def to_python(
 ) -> str:
     """Return the lines of Python that draw a state again, where its file is at hand.
 
-    Parameters
-    ----------
-    state
-        What a page shows.
-    source, source_beside
-        Expressions that make the fields of the two views where they are not those of files, such
-        as ``"flowtex.examples.cylinder_field()"``.
-    size
-        Width and height of the window in pixels.
-    picture
-        File to write a picture to; left out, a window is opened.
+    A window is opened, or a picture written to a file. ``source`` and ``source_beside`` are
+    expressions that make the fields of the two views where they are not those of files, such as
+    ``"flowtex.examples.cylinder_field()"``.
     """
     fields = {"field": source or _from_file(state)}
     panes: list[Mapping[str, Any]] = [{}]

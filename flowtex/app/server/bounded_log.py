@@ -19,13 +19,7 @@ OTHERS_FAULTS = HttpProcessingError, web.RequestPayloadError
 
 
 class RepeatFilter(logging.Filter):
-    """Drops what was written several times already, and cuts what is long.
-
-    Parameters
-    ----------
-    clock
-        Returns the time in seconds.
-    """
+    """Drops what was written several times already, and cuts what is long; a clock in seconds."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         super().__init__()

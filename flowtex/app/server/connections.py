@@ -52,17 +52,10 @@ def keep(request: web.Request) -> None:
 
 
 class LimitedServer:
-    """A web application on a port.
+    """A web application on a port, after :func:`limit_time`.
 
-    Parameters
-    ----------
-    application
-        After :func:`limit_time`.
-    most
-        Connections at one time, at most; by default half of the files that the process may open
-        are left for others.
-    **options
-        Arguments of ``aiohttp.web.AppRunner``.
+    It has ``most`` connections at one time; by default half of the files that the process may open
+    are left for others. Options are arguments of ``aiohttp.web.AppRunner``.
     """
 
     def __init__(

@@ -84,12 +84,8 @@ class Routes:
     def give(self, name: str, content: Give) -> str:
         """Hand out a file, in place of an earlier one of that name; return its address.
 
-        Parameters
-        ----------
-        name
-            Last part of the address, without a slash.
-        content
-            Called at each request; it may be a coroutine function.
+        The name has no slash; the content is called at each request, and may be a coroutine
+        function.
         """
         if not name or "/" in name:
             msg = f"the name of a file is {name!r}; expected one part of an address, as in 'a.png'"
@@ -201,19 +197,7 @@ def add_route(application: web.Application, find: Callable[[str], Handler | None
 class Downloads:
     """The files that one application offers to save.
 
-    Parameters
-    ----------
-    routes
-        Where they are handed out.
-    lifetime
-        Seconds after which a file is removed that nobody has asked for.
-    clock
-        Returns the time in seconds.
-
-    Attributes
-    ----------
-    folder
-        Where the files lie.
+    One that nobody has asked for is removed after a lifetime in seconds.
     """
 
     def __init__(

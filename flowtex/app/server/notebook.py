@@ -42,12 +42,9 @@ NO_LOOP = "flowtex: no event loop is running, so nothing is shown; use flowtex.a
 def proxy_path(proxy: str | bool | None = None) -> str | None:  # noqa: FBT001 one question
     """Return the path of jupyter-server-proxy, or ``None`` where the browser comes directly.
 
-    Parameters
-    ----------
-    proxy
-        A path such as ``"/user/me/proxy"``, or an address; ``True`` for the usual path,
-        ``False`` for none. By default the path is that of ``FLOWTEX_PROXY``, or of JupyterHub
-        where its environment is found.
+    It may be given, as in ``"/user/me/proxy"``, or as an address; ``True`` is the usual one,
+    ``False`` none. By default it is that of ``FLOWTEX_PROXY``, or of JupyterHub where its
+    environment is found.
     """
     hub = os.environ.get("JUPYTERHUB_SERVICE_PREFIX")
     if proxy is None:

@@ -67,12 +67,8 @@ def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
     """Return the names that a server which listens on ``host`` is known by.
 
     On JupyterHub, and behind another proxy of Jupyter's, that is any: the proxy hands on a name
-    that is not known here, and Jupyter's own token guards it.
-
-    Raises
-    ------
-    FieldError
-        When what is allowed is no name.
+    that is not known here, and Jupyter's own token guards it. Raises a FieldError when what is
+    allowed is no name.
     """
     names = [*LOCAL, host]
     if host in ("0.0.0.0", "::", ""):
@@ -95,14 +91,9 @@ def guard(
 ) -> None:
     """Limit times, refuse other sites' pages and unknown names, and keep faults to the log.
 
-    Parameters
-    ----------
-    application
-        The headers above go with each of its answers.
-    hosts
-        Names that it answers to, in small letters, besides addresses in numbers.
-    framed
-        Whether pages of other sites may hold this one in a frame, as a notebook does.
+    The headers above go with each answer. ``hosts`` are names that it answers to, in small letters,
+    besides addresses in numbers; ``framed`` lets pages of other sites hold it in a frame, as a
+    notebook does.
     """
     policy = POLICY if framed else f"{POLICY}; frame-ancestors 'self'"
 

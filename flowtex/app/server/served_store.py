@@ -21,25 +21,12 @@ _NUMBER = re.compile(r"0|[1-9][0-9]{0,8}")
 class ServedStore:
     """The objects of a pyramid by their names.
 
-    Parameters
-    ----------
-    place
-        The store.
-
-    Attributes
-    ----------
-    run
-        A word that no other run has.
-
-    Raises
-    ------
-    PyramidError
-        When there is no pyramid, or it cannot be read.
+    Raises a PyramidError when there is no pyramid, or it cannot be read.
     """
 
     def __init__(self, place: str | Path) -> None:
         levels = Levels(place)
-        self.run = secrets.token_hex(4)
+        self.run = secrets.token_hex(4)  #: A word that no other run has.
         self._origin = objects_at(levels.place)
         self._reads = asyncio.Semaphore(MOST_READS)
         zarr = import_extra("zarr", "store")
@@ -56,12 +43,7 @@ class ServedStore:
     async def get(self, name: str) -> bytes:
         """Return an object.
 
-        Raises
-        ------
-        LookupError
-            When there is no such object.
-        ReadFault
-            When it cannot be read.
+        Raises a LookupError when there is none, and a ReadFault when it cannot be read.
         """
         if name not in self._metadata:
             self._check(name)

@@ -78,17 +78,7 @@ class ServeError(FieldError):
 
 
 class Site:
-    """Pages on one port.
-
-    Parameters
-    ----------
-    sessions
-        The sessions of the pages.
-    secret
-        What the door asks for.
-    hosts, framed
-        As :func:`flowtex.app.server.security.guard` has them.
-    """
+    """Pages on one port, behind a secret; hosts and framed are those of :func:`guard`."""
 
     def __init__(
         self,
@@ -192,10 +182,7 @@ def _pages(count: int) -> str:
 def _asked(body: bytes) -> tuple[str, str | None]:
     """Return the secret and the token that a door sends.
 
-    Raises
-    ------
-    ValueError
-        When they are no texts that can be sent, or missing.
+    Raises a ValueError when they are no texts that can be sent, or missing.
     """
     try:
         asked = json.loads(body)

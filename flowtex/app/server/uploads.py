@@ -28,12 +28,7 @@ UPLOAD_BYTES, MOST_UPLOADS = 200_000_000, 8
 class Uploads:
     """The files that one page has sent, in a folder that goes with it.
 
-    Parameters
-    ----------
-    routes
-        Where they are taken.
-    arrived
-        Called with the name and the path of each.
+    ``arrived`` is called with the name and the path of each.
     """
 
     def __init__(self, routes: Routes, arrived: Callable[[str, Path], None]) -> None:
@@ -46,10 +41,7 @@ class Uploads:
     async def receive(self, name: str, content: AsyncIterable[bytes]) -> None:
         """Write a file, and tell of it.
 
-        Raises
-        ------
-        FieldError
-            When it is not of a format that is taken, too large, or one too many.
+        Raises a FieldError when it is not of a format that is taken, too large, or one too many.
         """
         name = plain_name(name.replace("\\", "/").rsplit("/", 1)[-1])
         if Path(name).suffix.lower() not in UPLOAD_SUFFIXES:

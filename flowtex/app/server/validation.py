@@ -65,15 +65,8 @@ def shortened(text: str, most: int = MESSAGE_LENGTH) -> str:
 def sent_picture(sent: Any) -> tuple[bytes, str]:
     """Return the bytes and the name of a picture that a page has sent.
 
-    Parameters
-    ----------
-    sent
-        A mapping with ``content``, bytes or a list of them, and ``name``.
-
-    Raises
-    ------
-    SettingsError
-        When it is too large, or not there.
+    It is a mapping with ``content``, bytes or a list of them, and ``name``. Raises a SettingsError
+    when it is too large, or not there.
     """
     content = sent.get("content") if isinstance(sent, Mapping) else None
     if isinstance(content, list):
@@ -92,10 +85,7 @@ def sent_picture(sent: Any) -> tuple[bytes, str]:
 def decode_picture(content: bytes, name: str) -> AnyArray:
     """Read a picture, averaged to :data:`PICTURE_SIDE` on a side at most; one at a time.
 
-    Raises
-    ------
-    SettingsError
-        When it has too many pixels, or is no picture.
+    Raises a SettingsError when it has too many pixels, or is no picture.
     """
     with _decoding:
         return _read(content, name)

@@ -154,24 +154,16 @@ class HandedScene:
 
 
 class Element:
-    """What a page shows of a viewport, and what is done there.
-
-    Attributes
-    ----------
-    painter
-        Who draws, ``"server"`` or ``"browser"``; empty before a page says.
-    names
-        What the panes are called, where that is not the name of their field.
-    failed, painter_changed
-        Signal with what is wrong with something that a person did, and one after another painter
-        draws.
-    """
+    """What a page shows of a viewport, and what is done there."""
 
     def __init__(
         self, state: PageState, viewport: Viewport, stream: FrameStream, player: Player
     ) -> None:
-        self.painter = ""
+        self.painter = ""  #: Who draws, ``"server"`` or ``"browser"``; empty before a page says.
+        #: What the panes are called, where that is not the name of their field.
         self.names: tuple[str, ...] = ()
+        #: Signal with what is wrong with something that a person did, and one after another painter
+        #: draws.
         self.failed, self.painter_changed = Signal(), Signal()
         self.parameter_asked = Signal()
         self.ref = state.key("element")

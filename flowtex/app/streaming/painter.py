@@ -103,23 +103,13 @@ def view_pixels(size: Mapping[str, Any]) -> tuple[int, int]:
 
 
 class PanePainter:
-    """Draws a pane as well as the time allows.
-
-    Attributes
-    ----------
-    pane, cost
-        What is drawn, and what pictures cost here, which is learnt from them.
-    complete
-        Whether the last picture that was drawn is at full quality.
-    drafting
-        Whether a setting is changed for the moment, for a draft.
-    """
+    """Draws a pane as well as the time allows."""
 
     def __init__(self, pane: Pane, cost: Cost | None = None) -> None:
         self.pane = pane
-        self.cost = cost or Cost()
-        self.complete = False
-        self.drafting = False
+        self.cost = cost or Cost()  #: What pictures cost here, which is learnt from them.
+        self.complete = False  #: Whether the last picture that was drawn is at full quality.
+        self.drafting = False  #: Whether a setting is changed for the moment, for a draft.
         self._snapshot: Snapshot | None = None
         self._under: Snapshot | None = None
         self._last: Bytes | None = None

@@ -12,18 +12,12 @@ from flowtex.errors import FieldError
 
 
 class Player:
-    """The time of a viewport.
-
-    Attributes
-    ----------
-    page
-        Name of the page that asked for the time that is shown; empty where it comes from here.
-    time_changed, playing_changed
-        Signals after a change of the time that is shown, and of whether time goes by.
-    """
+    """The time of a viewport."""
 
     def __init__(self, viewport: Viewport, stream: FrameStream) -> None:
+        #: Signals after a change of the time that is shown, and of whether time goes by.
         self.time_changed, self.playing_changed = Signal(), Signal()
+        #: Name of the page that asked for the time that is shown; empty where it comes from here.
         self.page = ""
         self._viewport = viewport
         self._stream = stream

@@ -23,21 +23,12 @@ SHIFT_TOLERANCE_PX = 0.02
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A picture and the view that it shows.
+    """A picture and the view that it shows."""
 
-    Attributes
-    ----------
-    pixels
-        (H, W, 3) uint8, row 0 at the top.
-    view
-        Affine map from coordinates in the plane to the view's (x, y) from -1 to 1, (3, 3).
-    sharp
-        Whether it is at full quality everywhere.
-    """
-
-    pixels: Bytes
+    pixels: Bytes  #: (H, W, 3) uint8, row 0 at the top.
+    #: Affine map from coordinates in the plane to the view's (x, y) from -1 to 1, (3, 3).
     view: Floats
-    sharp: bool = False
+    sharp: bool = False  #: Whether it is at full quality everywhere.
 
 
 def plane_to_view(surface: Surface, camera: Camera, aspect: float) -> Floats | None:

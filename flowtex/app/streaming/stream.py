@@ -50,32 +50,19 @@ _log = logging.getLogger(__name__)
 
 
 class FrameStream:
-    """One view of the page, as trame-rca's areas are made.
-
-    Attributes
-    ----------
-    playing
-        Whether pictures follow one another by themselves.
-    paused
-        Whether the browser draws, and no picture is wanted.
-    moving
-        Whether the last picture was one in motion.
-    fits
-        Whether the surface is fitted to another size of the view, which a page does itself.
-    watched
-        Tells whether anyone looks; nothing is drawn for nobody.
-    data_failed
-        Signal with a FieldError when a part of the data, such as a later step, cannot be read.
-    painter
-        What draws.
-    """
+    """One view of the page, as trame-rca's areas are made."""
 
     def __init__(self, name: str, viewport: Viewport) -> None:
         self.area_name = name
         self.streamer: Any = None
+        #: Whether pictures follow one another by themselves, whether the browser draws and none is
+        #: wanted, and whether the last one was in motion.
         self.playing = self.paused = self.moving = False
+        #: Whether the surface is fitted to another size of the view, which a page does itself.
         self.fits = True
+        #: Tells whether anyone looks; nothing is drawn for nobody.
         self.watched: Callable[[], bool] = lambda: True
+        #: Signal with a FieldError when a part of the data, such as a later step, cannot be read.
         self.data_failed = Signal()
         self.painter = ViewPainter(viewport)
         self._viewport = viewport

@@ -64,26 +64,11 @@ class Pane:
 class Viewport:
     """A flow texture, its camera, and pictures of them.
 
-    Parameters
-    ----------
-    field
-        The flow.
-    zoom, focus
-        How far in, and on what point of the mesh, the first look is.
-    **options
-        Arguments and settings of ``plotter.flowtex.add``.
-
-    Attributes
-    ----------
-    window, panes
-        Where it is drawn, and the views beside each other, one or two.
-    background
-        The colour behind the surface.
-    whole
-        The camera that shows the whole surface, from which zoom counts.
+    Zoom and focus are those of the first look, options arguments and settings of
+    ``plotter.flowtex.add``.
     """
 
-    whole: Camera
+    whole: Camera  #: The camera that shows the whole surface, from which zoom counts.
 
     def __init__(
         self,
@@ -96,6 +81,7 @@ class Viewport:
         from flowtex.plotting.component import FlowtexComponent
 
         self.window = OffscreenWindow(640, 400)
+        #: The colour behind the surface.
         self.background: Any = self.window.plotter.background_color
         self._size = self.window.size
         self._component = FlowtexComponent(self.window.plotter)
@@ -103,6 +89,7 @@ class Viewport:
         self._stop_following: Callable[[], Any] = lambda: None
         self._tile_ready: Callable[[], None] | None = None
         first = Options.split("appearance", **{**options, "show_scalar_bar": False})
+        #: The views beside each other, one or two.
         self.panes: list[Pane] = [self._pane(Scene.from_options(field, first))]
         self.window.suppress_rendering()
         self.resize(*self._size)
@@ -194,17 +181,10 @@ class Viewport:
         return other
 
     def show(self, field: FlowField, *, keep_view: bool = False, keep_range: bool = False) -> None:
-        """Show another flow with the same settings.
+        """Show another flow with the same settings, and from the same camera if asked to.
 
-        Parameters
-        ----------
-        field
-            The flow.
-        keep_view
-            Whether the camera stays where it is.
-        keep_range
-            Whether the ends of the colour map that somebody chose stay, and the time that is
-            shown where the flow has the same times: it is another part of the same data.
+        With ``keep_range`` it is another part of the same data: the ends of the colour map that
+        somebody chose stay, and the time that is shown where the flow has the same times.
         """
         camera, clock, flat = self.camera, self.clock, self.flat
         times, time = self.field.times, self.handle.time

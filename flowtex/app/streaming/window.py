@@ -19,13 +19,7 @@ Rect = tuple[int, int, int, int]
 
 
 class OffscreenWindow:
-    """Draws the actors of a PyVista plotter, only when it is told to.
-
-    Attributes
-    ----------
-    plotter
-        PyVista's plotter.
-    """
+    """Draws the actors of a PyVista plotter, only when it is told to."""
 
     def __init__(self, width: int, height: int) -> None:
         import pyvista as pv
@@ -68,12 +62,8 @@ class OffscreenWindow:
     def draw(self, width: int, height: int, part: Rect | None = None) -> Bytes:
         """Return a picture of what is visible, (height, width, 3), row 0 at the top.
 
-        Parameters
-        ----------
-        width, height
-            Size of the picture, at most that of a whole one.
-        part
-            Left, top, width and height of a part of a whole picture that it shows, in pixels.
+        It is as large as a whole one at most, and may show a part of that: left, top, width and
+        height in pixels.
         """
         whole_width, whole_height = self.size
         camera, renderer = self.plotter.camera, self.plotter.renderer

@@ -92,10 +92,7 @@ class FormulaError(FieldError):
 def parse(text: str, names: Collection[str]) -> Tree:
     """Return the tree of a formula in which some names are known.
 
-    Raises
-    ------
-    FormulaError
-        When it is none; the text points at the place.
+    Raises a FormulaError when it is none; the text points at the place.
     """
     return _Parser(text, names).whole()
 

@@ -29,10 +29,7 @@ def is_symbolic(expression: Any) -> bool:
 def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
     """Return the tree of an expression in which some names are known.
 
-    Raises
-    ------
-    FormulaError
-        When there is more in it than formulas have.
+    Raises a FormulaError when there is more in it than formulas have.
     """
     kind = type(expression).__name__
     if depth > MOST_DEPTH:

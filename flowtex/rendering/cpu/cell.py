@@ -16,20 +16,8 @@ from flowtex.rendering.cpu.places import Places, TrianglePlaces
 class CellPath:
     """Paths of N fragments that follow the velocity of the nodes around each.
 
-    Parameters
-    ----------
-    slices
-        The slice texture.
-    coordinate, reach
-        Texture coordinates (N, 2), or places in triangles, and lengths of a side of the paths,
-        (N,).
-    values
-        The uniforms.
-
-    Attributes
-    ----------
-    share
-        Share of these paths in those of the fragments, (N,).
+    Places are texture coordinates (N, 2), or places in triangles; ``reach`` is the length of a side
+    of the paths, (N,), and ``values`` are the uniforms.
     """
 
     def __init__(
@@ -49,6 +37,7 @@ class CellPath:
         speed = np.maximum(speed, const.LEAST_SPEED)
         agreed = np.linalg.norm(both[:, :3, 0], axis=1) / speed
         far = _smoothstep(const.NEAR_CELLS, const.FAR_CELLS, reach * rate / speed)
+        #: Share of these paths in those of the fragments, (N,).
         self.share = (1 - _smoothstep(const.PARTING, const.AGREED, agreed)) * (1 - far)
         # Only where it is wanted.
         self._some = np.flatnonzero(self.share)

@@ -23,43 +23,22 @@ Hashes = NDArray[np.uint32]
 
 @dataclass(frozen=True, eq=False)
 class NoiseLattice:
-    """What is the same for every point of the paths of N fragments.
+    """What is the same for every point of the paths of N fragments."""
 
-    Attributes
-    ----------
-    here
-        The fragments, (N, 3), in cells from the lattice point nearest to the origin.
-    inverse
-        Cells by length, (N,).
-    key
-        Hash of that lattice point, the octave and the seed, by axis, (N, 3).
-    """
-
-    here: Floats
-    inverse: Floats
-    key: Hashes
+    here: Floats  #: The fragments, (N, 3), in cells from the lattice point nearest to the origin.
+    inverse: Floats  #: Cells by length, (N,).
+    key: Hashes  #: Hash of that lattice point, the octave and the seed, by axis, (N, 3).
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Motion of the grains at N fragments: two rates, and how far it is between them.
+    """Motion of the grains at N fragments: two rates, and how far it is between them."""
 
-    Attributes
-    ----------
-    clock
-        The moment in turns, (N, 2).
-    turns
-        Turns by length of path, (N, 2).
-    phases
-        Turns by the values of grains that stand, which say where those in motion begin, (N, 2).
-    shares
-        Of the two rates in a grain, (N, 2).
-    """
-
-    clock: Floats
-    turns: Floats
+    clock: Floats  #: The moment in turns, (N, 2).
+    turns: Floats  #: Turns by length of path, (N, 2).
+    #: Turns by the values of grains that stand, which say where those in motion begin, (N, 2).
     phases: Floats
-    shares: Floats
+    shares: Floats  #: Of the two rates in a grain, (N, 2).
 
     def after(self, length: Floats) -> Motion:
         """Return the motion a length (N,) along the paths."""

@@ -87,18 +87,9 @@ class AxisSlices(Slices):
 class Path:
     """Paths followed outward from lag zero, one side at a time.
 
-    Parameters
-    ----------
-    slices
-        The slice texture.
-    coordinate, level
-        Texture coordinates (N, 2), or places in triangles, and mip levels (N,) of the fragments.
-    ends
-        Slopes at lag zero and at the first lag, (N, 3) each.
-    first
-        Layer before the side's first slice.
-    lags
-        Lags of the slices.
+    The N fragments are at texture coordinates (N, 2), or places in triangles, and mip levels (N,);
+    ``ends`` are slopes at lag zero and at the first lag, (N, 3) each. ``first`` is the layer before
+    the side's first slice, and ``lags`` are those of the slices.
     """
 
     def __init__(

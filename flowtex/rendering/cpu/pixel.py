@@ -22,12 +22,8 @@ def cover_place(
 ) -> Coverage:
     """Return the coverage of one place, whether or not something stands before it.
 
-    The pixel is one of a picture of some width and height in pixels.
-
-    Raises
-    ------
-    FieldError
-        When the place is behind the camera, or its triangle is seen edge on.
+    The pixel is one of a picture of some width and height in pixels. Raises a FieldError when the
+    place is behind the camera, or its triangle is seen edge on.
     """
     points = surface.points.reshape(-1, 3)[place.nodes] - surface.center
     matrix = camera.matrix(size[0] / size[1], surface.center)
@@ -53,11 +49,8 @@ def cover_place(
 def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera:
     """Return the camera that looks straight at a place, for a picture of one pixel.
 
-    Raises
-    ------
-    FieldError
-        When the width of the pixel, in the mesh's units, is not positive, or the triangle has no
-        area.
+    Raises a FieldError when the width of the pixel, in the mesh's units, is not positive, or the
+    triangle has no area.
     """
     if not 0 < pixel < np.inf:
         msg = f"pixel is {pixel!r}; expected a positive length in the mesh's units, or a Camera"
@@ -86,22 +79,14 @@ class Recorder(Lookup):
     """Records where another look-up is used for one fragment, and the values that it returns.
 
     In place of the values it returns rows of zeros with a one at the number of the sample, of at
-    most so many, so that their weighted sums are the weights.
-
-    Attributes
-    ----------
-    displacement, length
-        Arguments of the look-up, sample by sample, (1, 3) and (1,).
-    weights
-        Share of each sample in the mean, (K,), once all are summed.
-    noise
-        Texture from each sample alone, (K,) or (K, 4).
-    gain
-        Factor of the mean of the noise.
+    most so many, so that their weighted sums are the weights: shares of the samples in the mean,
+    (K,), once all are summed. The noise is the texture from each sample alone, (K,) or (K, 4), and
+    the gain a factor of its mean.
     """
 
     def __init__(self, inner: Lookup, most_samples: int) -> None:
         self.inner, self.spacing, self.level = inner, inner.spacing, inner.level
+        #: Arguments of the look-up, sample by sample, (1, 3) and (1,).
         self.displacement: list[Floats] = []
         self.length: list[Floats] = []
         self._values: list[Floats] = []

@@ -12,19 +12,13 @@ from flowtex._util.array_types import Floats, Indices
 
 @dataclass(frozen=True, eq=False)
 class TrianglePlaces:
-    """Places of N fragments in their triangles.
+    """Places of N fragments in their triangles."""
 
-    Attributes
-    ----------
-    shares, nodes
-        Shares of the corners, and numbers of the nodes there in the texture, (N, 3) each.
-    by
-        Change of the shares of the second and the third corner by a vector in the surface's frame,
-        (N, 2, 3).
-    """
-
+    #: Shares of the corners, and numbers of the nodes there in the texture, (N, 3) each.
     shares: Floats
     nodes: Indices
+    #: Change of the shares of the second and the third corner by a vector in the surface's frame,
+    #: (N, 2, 3).
     by: Floats
 
     def __getitem__(self, some: slice | Indices) -> TrianglePlaces:

@@ -32,24 +32,12 @@ EPSILON = 8 * float(np.finfo(float).eps)
 
 @dataclass(frozen=True, eq=False)
 class Coverage:
-    """The pixels that show a triangle, N of them, from the top row down.
+    """The pixels that show a triangle, N of them, from the top row down."""
 
-    Attributes
-    ----------
-    pixel
-        Number of the pixel, (N,): row times width plus column.
-    corners
-        Numbers of the three points of its triangle, (N, 3).
-    weights
-        Share of each corner at the middle of the pixel, in perspective, (N, 3).
-    dx, dy
-        Derivatives of the shares for a pixel to the right and a pixel down, (N, 3).
-    """
-
-    pixel: Indices
-    corners: Indices
-    weights: Floats
-    dx: Floats
+    pixel: Indices  #: Number of the pixel, (N,): row times width plus column.
+    corners: Indices  #: Numbers of the three points of its triangle, (N, 3).
+    weights: Floats  #: Share of each corner at the middle of the pixel, in perspective, (N, 3).
+    dx: Floats  #: Derivatives of the shares for a pixel to the right and a pixel down, (N, 3).
     dy: Floats
 
     @property

@@ -31,38 +31,22 @@ PART = 1 << 14
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """A flow texture as numbers, row 0 at the top; NaN where there is no surface.
+    """A flow texture as numbers, row 0 at the top; NaN where there is no surface."""
 
-    Attributes
-    ----------
-    value
-        The texture before it is laid over a colour, (H, W), of mean zero and of deviation one.
-        For a picture in place of the noise, its mean colours times opacity, and opacity,
-        (H, W, 4).
-    covered
-        Pixels that show the surface, (H, W).
-    coordinate
-        Texture coordinates (u, v) in the slices, (H, W, 2); of triangles the shares of the second
-        and the third corner.
-    nearest
-        Number of the node that has the greatest share, (H, W): j times the number of columns plus
-        i; 0 where there is no surface.
-    position
-        Points of the mesh, in its own coordinates, (H, W, 3).
-    slice_level, noise_level
-        Mip level of the slices, and level of detail of the noise, (H, W).
-    settings
-        What it was drawn with.
-    """
-
+    #: The texture before it is laid over a colour, (H, W), of mean zero and of deviation one. For a
+    #: picture in place of the noise, its mean colours times opacity, and opacity, (H, W, 4).
     value: Floats
-    covered: Bools
+    covered: Bools  #: Pixels that show the surface, (H, W).
+    #: Texture coordinates (u, v) in the slices, (H, W, 2); of triangles the shares of the second
+    #: and the third corner.
     coordinate: Floats
+    #: Number of the node that has the greatest share, (H, W): j times the number of columns plus i;
+    #: 0 where there is no surface.
     nearest: Indices
-    position: Floats
-    slice_level: Floats
+    position: Floats  #: Points of the mesh, in its own coordinates, (H, W, 3).
+    slice_level: Floats  #: Mip level of the slices, and level of detail of the noise, (H, W).
     noise_level: Floats
-    settings: Settings
+    settings: Settings  #: What it was drawn with.
 
     def rgb(
         self, colour: ArrayLike = (0.627, 0.627, 0.627), background: ArrayLike = (1.0, 1.0, 1.0)
@@ -70,11 +54,7 @@ class Picture:
         """Colour the picture, without lights: those are the business of the other renderers.
 
         The colour of the surface is one, (3,), or one for each pixel, (H, W, 3), from 0 to 1.
-
-        Raises
-        ------
-        FieldError
-            When a colour has another shape or lies outside 0 to 1.
+        Raises a FieldError when a colour has another shape or lies outside 0 to 1.
         """
         shape = (*self.covered.shape, 3)
         below = _colours("colour", colour, shape)[self.covered]
@@ -98,22 +78,13 @@ def render(
 ) -> Picture:
     """Draw a flow texture with NumPy: slowly, in double precision, for any camera.
 
-    It is the same formula as the shaders in ``shaders/common``, with the same uniforms and the
-    same half-precision textures, so a picture of another renderer can be judged by it.
+    It is the same formula as the shaders in ``shaders/common``, with the same uniforms and the same
+    half-precision textures, so a picture of another renderer can be judged by it. The size is in
+    pixels, and the digits of the noise count from the camera's focal point.
 
-    Parameters
-    ----------
-    textures, settings, camera
-        What to draw, how, and from where: the digits of the noise count from the focal point.
-    size
-        Width and height of the picture in pixels.
-    view
-        How far the time is from one of the two steps to the other, and the clock; focus and eye
-        are those of the camera.
-    steps
-        The two destination times of the slices that ``view.between`` lies between.
-    lookup
-        What is summed along the paths instead of the noise.
+    The time lies between two destination times of the slices, ``steps``, as far as ``view.between``
+    tells; focus and eye of the view are those of the camera. A look-up is summed along the paths in
+    place of the noise.
     """
     values = uniforms(textures, settings, view_state(textures, camera, view or ViewState(), steps))
     coverage = cover(textures.geometry.field.surface, camera, size)

@@ -20,37 +20,20 @@ Values = Mapping[str, Any]
 
 @dataclass
 class Sums:
-    """Sums along the paths of N fragments.
+    """Sums along the paths of N fragments."""
 
-    Attributes
-    ----------
-    values
-        Of the weighted values, (N, C).
-    squares
-        Of the squared weights, (N,).
-    neighbours
-        Of the products of neighbouring weights, (N,).
-    """
-
-    values: Floats
-    squares: Floats
-    neighbours: Floats
+    values: Floats  #: Of the weighted values, (N, C).
+    squares: Floats  #: Of the squared weights, (N,).
+    neighbours: Floats  #: Of the products of neighbouring weights, (N,).
 
 
 class Lookup(Protocol):
-    """What is summed along the paths of N fragments, and how the sums become the texture.
+    """What is summed along the paths of N fragments, and how the sums become the texture."""
 
-    Attributes
-    ----------
-    spacing
-        Distance between two samples of each fragment, (N,), as a length; with the paper's
-        textures in units of lag at unit speed.
-    level
-        Level of detail of what is summed, (N,), to be shown.
-    """
-
+    #: Distance between two samples of each fragment, (N,), as a length; with the paper's textures
+    #: in units of lag at unit speed.
     spacing: Floats
-    level: Floats
+    level: Floats  #: Level of detail of what is summed, (N,), to be shown.
 
     def move(self, slope: Floats, speed: Floats) -> None:
         """Set the slopes at lag zero and the speeds, (N,), before anything is looked up."""
@@ -65,27 +48,13 @@ class Lookup(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Side:
-    """One side of the paths of N fragments.
+    """One side of the paths of N fragments."""
 
-    Attributes
-    ----------
-    sign
-        -1 behind the particles, 1 ahead of them.
-    path
-        The paths, from lag zero outward.
-    spacing
-        Distance between two samples in nominal length, (N,).
-    reach
-        Lag at which each path ends, (N,).
-    scale
-        Nominal length of a unit of lag, (N,).
-    """
-
-    sign: float
-    path: Path
-    spacing: Floats
-    reach: Floats
-    scale: Floats
+    sign: float  #: -1 behind the particles, 1 ahead of them.
+    path: Path  #: The paths, from lag zero outward.
+    spacing: Floats  #: Distance between two samples in nominal length, (N,).
+    reach: Floats  #: Lag at which each path ends, (N,).
+    scale: Floats  #: Nominal length of a unit of lag, (N,).
 
     def step(self, lag: Floats) -> Floats:
         """Lag to the next sample from lags (N,): equation 3, with the speed that is there."""
@@ -109,12 +78,8 @@ def weight(x: float, values: Values) -> float:
 def shared(apart: Floats, near: Floats) -> Floats:
     """Variance of a sum over that of independent samples, (N,).
 
-    Parameters
-    ----------
-    apart
-        Distance of two samples in grains, (N,).
-    near
-        Correlation of the weights with those of the next sample, (N,).
+    Two samples are so many grains ``apart``; ``near`` is the correlation of the weights with those
+    of the next sample. Both are (N,).
     """
     total = np.ones(np.broadcast_shapes(np.shape(apart), np.shape(near)))
     for m in range(1, const.SHARED_TERMS + 1):
@@ -126,18 +91,9 @@ def shared(apart: Floats, near: Floats) -> Floats:
 
 
 class Summing:
-    """The loop over the samples of some fragments.
+    """The loop over the samples of some fragments; values are the uniforms.
 
-    Parameters
-    ----------
-    slices
-        The slice texture.
-    values
-        The uniforms.
-    lookup
-        What is summed.
-    paper
-        Whether the slopes are those of the paper's noise texture.
+    Slopes may be those of the paper's noise texture.
     """
 
     def __init__(self, slices: Slices, values: Values, lookup: Lookup, *, paper: bool) -> None:

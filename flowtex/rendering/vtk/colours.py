@@ -19,25 +19,13 @@ MOST_RANGES = 1e3
 
 
 class MappedColours(NamedTuple):
-    """What maps the point array of a mesh to colours.
+    """What maps the point array of a mesh to colours."""
 
-    Attributes
-    ----------
-    values
-        VTK's array of a value for each node.
-    table
-        VTK's lookup table.
-    low, high
-        Range of the table.
-    state
-        Another one where any of these is.
-    """
-
-    values: Any
-    table: Any
-    low: float
+    values: Any  #: VTK's array of a value for each node.
+    table: Any  #: VTK's lookup table.
+    low: float  #: Range of the table.
     high: float
-    state: tuple[Any, ...]
+    state: tuple[Any, ...]  #: Another one where any of these is.
 
     @classmethod
     def of(cls, mapper: Any, mesh: Any) -> MappedColours | None:

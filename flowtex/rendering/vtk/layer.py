@@ -144,20 +144,9 @@ REPLACEMENTS = (
 class FlowLayer:
     """Draws a texture set on an actor whose mesh comes from :func:`surface_mesh`.
 
-    Parameters
-    ----------
-    actor
-        The actor; its mapper draws polygons.
-    renderer
-        The PyVista renderer that shows it: its camera decides where precision is needed.
-    textures
-        What to draw.
-    settings
-        How to draw it; read before each frame.
-    layers
-        Gives the layers of a destination time, where the texture set is not to be asked.
-    mesh_levels
-        Those of the texture set, where they are there already.
+    The actor's mapper draws polygons, and the camera of the renderer decides where precision is
+    needed. Settings are read before each frame. ``layers`` gives the layers of a destination time,
+    where the texture set is not to be asked; levels of the mesh are made where there are none.
     """
 
     def __init__(

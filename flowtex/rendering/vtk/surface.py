@@ -54,25 +54,8 @@ class _TileActor:
 class FlowSurface:
     """Draws a flow by an actor whose mesh comes from :func:`surface_mesh`, and by tiles.
 
-    Parameters
-    ----------
-    actor
-        The actor; its mapper draws polygons.
-    renderer
-        The PyVista renderer that shows it.
-    textures
-        What to draw; of a pyramid, the textures of its root.
-    settings
-        How to draw it; read before each frame.
-    pyramid
-        The tiles of a large surface.
-
-    Attributes
-    ----------
-    view
-        Clock, density and time of the next frame.
-    full_height
-        Height in pixels for which tiles are chosen, where a frame is a draft of fewer.
+    Of a large surface, the textures are those of the root of its pyramid. Settings are read before
+    each frame.
     """
 
     def __init__(
@@ -91,6 +74,7 @@ class FlowSurface:
         self._arrows = SurfaceArrows(renderer, settings)
         self._tiles: dict[TileKey, _TileActor] = {}
         self._loader = None if pyramid is None else self._loader_of(pyramid)
+        #: Height in pixels for which tiles are chosen, where a frame is a draft of fewer.
         self.full_height: int | None = None
         self._culling = "none"
         self._notify: Callable[[], None] | None = None

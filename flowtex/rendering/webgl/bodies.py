@@ -24,32 +24,17 @@ BEYOND = 1.01
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A mesh in colours of its own.
+    """A mesh in colours of its own."""
 
-    Attributes
-    ----------
-    points
-        Vertices in the mesh's own coordinates, (N, 3).
-    colours
-        Red, green, blue and opacity of each, (N, 4) uint8.
-    faces
-        Corners of triangles, (M, 3).
-    pieces
-        Ends of pieces of lines, (L, 2); both are the same vertex where it is a point.
-    normals
-        Unit normals of smooth faces, (N, 3); those of flat ones are found when they are drawn.
-    width
-        Width of lines and points in pixels.
-    ambient, diffuse
-        How much light there is everywhere, and how much faces have of the lights.
-    """
-
-    points: Floats
-    colours: Bytes
-    faces: Indices
+    points: Floats  #: Vertices in the mesh's own coordinates, (N, 3).
+    colours: Bytes  #: Red, green, blue and opacity of each, (N, 4) uint8.
+    faces: Indices  #: Corners of triangles, (M, 3).
+    #: Ends of pieces of lines, (L, 2); both are the same vertex where it is a point.
     pieces: Indices
+    #: Unit normals of smooth faces, (N, 3); those of flat ones are found when they are drawn.
     normals: Floats | None = None
-    width: float = 1.0
+    width: float = 1.0  #: Width of lines and points in pixels.
+    #: How much light there is everywhere, and how much faces have of the lights.
     ambient: float = 1.0
     diffuse: float = 0.0
 

@@ -73,65 +73,36 @@ SINGLE_MAX = float(np.finfo(np.float32).max)
 
 @dataclass(frozen=True, eq=False)
 class Colours:
-    """How the surface is coloured.
+    """How the surface is coloured."""
 
-    Attributes
-    ----------
-    name, label, unit
-        What it is coloured by, ``None`` for a plain surface, and words for the legend.
-    number
-        Number of the scalar among those of the field.
-    choices
-        What a person may choose to colour by: name, label, unit, automatic range, and whether it
-        varies.
-    cmap, auto
-        Name of the colour map, empty for one that has none, and whether nobody has chosen its
-        range.
-    values
-        Values at all nodes of the field, (T or 1, J, I).
-    others
-        Numbers and values of other scalars, handed over as well where nobody can be asked later.
-    low, high
-        Values at the ends of the colour map.
-    log_scale
-        Whether the map goes by the logarithm.
-    table
-        Colour map, (256, 4) uint8.
-    plain, background
-        Colours from 0 to 1 where there are no values, and behind the surface: ``None`` for that
-        of the page around.
-    lighting
-        Whether the surface is lit.
-    opacity
-        How much of the background it hides, 0 to 1.
-    bar
-        Whether there is a legend.
-    coastlines, graticule
-        Whether these lines are drawn on a map of the Earth.
-    land
-        Colour from 0 to 1 of what there are no data of on a map; ``None`` where it is not drawn.
-    """
-
+    #: What it is coloured by, ``None`` for a plain surface, and words for the legend.
     name: str | None = None
     unit: str = ""
-    values: Floats | None = None
-    low: float = 0.0
+    values: Floats | None = None  #: Values at all nodes of the field, (T or 1, J, I).
+    low: float = 0.0  #: Values at the ends of the colour map.
     high: float = 1.0
-    table: Bytes | None = None
+    table: Bytes | None = None  #: Colour map, (256, 4) uint8.
+    #: Colours from 0 to 1 where there are no values, and behind the surface: ``None`` for that of
+    #: the page around.
     plain: tuple[float, float, float] = (0.63, 0.63, 0.63)
     background: tuple[float, float, float] | None = None
-    lighting: bool = False
-    opacity: float = 1.0
-    bar: bool = True
-    log_scale: bool = False
+    lighting: bool = False  #: Whether the surface is lit.
+    opacity: float = 1.0  #: How much of the background it hides, 0 to 1.
+    bar: bool = True  #: Whether there is a legend.
+    log_scale: bool = False  #: Whether the map goes by the logarithm.
+    #: Numbers and values of other scalars, handed over as well where nobody can be asked later.
     others: tuple[tuple[int, Floats], ...] = ()
-    number: int = 0
+    number: int = 0  #: Number of the scalar among those of the field.
+    #: What a person may choose to colour by: name, label, unit, automatic range, and whether it
+    #: varies.
     choices: tuple[Mapping[str, Any], ...] = ()
+    #: Name of the colour map, empty for one that has none, and whether nobody has chosen its range.
     cmap: str = ""
     auto: bool = True
     label: str = ""
-    coastlines: bool = False
+    coastlines: bool = False  #: Whether these lines are drawn on a map of the Earth.
     graticule: bool = False
+    #: Colour from 0 to 1 of what there are no data of on a map; ``None`` where it is not drawn.
     land: tuple[float, float, float] | None = None
 
     def shares(self, values: Floats) -> Floats:
@@ -319,12 +290,7 @@ class ClientData:
     def step(self, step: int) -> Parts:
         """Return the arrays of one destination time, the smallest first.
 
-        What is not yet traced is traced.
-
-        Raises
-        ------
-        IndexError
-            When there is no such step.
+        What is not yet traced is traced. Raises an IndexError when there is no such step.
         """
         if not 0 <= step < self.steps:
             msg = f"time step {step} does not exist: expected 0 to {self.steps - 1}"

@@ -22,16 +22,8 @@ SHARES = np.geomspace(1e-3, 1.0, 32)
 def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Floats) -> Floats:
     """Return the strengths of critical points of a steady field as speeds, (K,).
 
-    Parameters
-    ----------
-    field
-        The flow at one time.
-    nodes
-        A node beside each point, counted row by row, (K,).
-    signs
-        Their Poincare indices, (K,).
-    steepness
-        Which of them are left where several have one partner: the greatest, (K,).
+    Of each point there is a node beside it, counted row by row, and its Poincare index, (K,) each.
+    Where several have one partner, the steepest, (K,), are left.
     """
     speed, valid = field.speed[0].ravel(), field.valid.ravel()
     result = np.full(len(nodes), float(speed[valid].max(initial=0.0)))

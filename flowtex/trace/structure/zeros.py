@@ -13,16 +13,9 @@ ROUNDING_CELLS = 1e-9
 def bilinear_zeros(corners: Floats) -> tuple[Indices, Floats]:
     """Find the zeros of a velocity in cells.
 
-    Parameters
-    ----------
-    corners
-        Velocity at the corners (j, i), (j, i + 1), (j + 1, i) and (j + 1, i + 1), (N, 4, 2).
-
-    Returns
-    -------
-    cell, place
-        Number of each cell with a zero, (K,), and where that lies in it, (K, 2) from 0 to 1 as
-        (i, j). A cell may have two.
+    It is known at the corners (j, i), (j, i + 1), (j + 1, i) and (j + 1, i + 1), (N, 4, 2). Returns
+    the number of each cell with a zero, (K,), and where that lies in it, (K, 2) from 0 to 1 as (i,
+    j). A cell may have two.
     """
     near = ROUNDING_CELLS * np.abs(corners).max(axis=(1, 2), initial=0)[:, None]
     crossed = ((corners.max(axis=1) >= -near) & (corners.min(axis=1) <= near)).all(axis=1)
@@ -47,16 +40,9 @@ def bilinear_zeros(corners: Floats) -> tuple[Indices, Floats]:
 def linear_zeros(points: Floats, vectors: Floats) -> tuple[Floats, Floats]:
     """Return where a linear velocity is zero, and its gradient.
 
-    Parameters
-    ----------
-    points, vectors
-        Corners of triangles in a plane, and velocities there, (N, 3, 2).
-
-    Returns
-    -------
-    weights, gradient
-        Shares of the corners at the zero, (N, 3), not finite where there is no single one; and the
-        change of component m along direction n, (N, 2, 2).
+    Corners of triangles in a plane, and velocities there, are (N, 3, 2). The zero is given as
+    shares of the corners, (N, 3), not finite where there is no single one; the gradient is the
+    change of component m along direction n, (N, 2, 2).
     """
     edges = np.swapaxes(points[:, 1:] - points[:, :1], 1, 2)
     change = np.swapaxes(vectors[:, 1:] - vectors[:, :1], 1, 2)
@@ -71,15 +57,10 @@ def triangle_indices(
 ) -> Indices:
     """Return the Poincare index of each triangle, (M,): 1, 0, or -1 for a saddle.
 
-    Angles are measured at each node against the edges in its tangent plane, so two triangles agree
-    about the edge they share, and on a closed surface the indices sum to its Euler characteristic.
-
-    Parameters
-    ----------
-    points, normals, velocity
-        Positions, unit normals and tangent velocities of nodes, (N, 3) each.
-    triangles
-        Their nodes, (M, 3), in the sense of the normals.
+    Positions, unit normals and tangent velocities of nodes are (N, 3) each, triangles (M, 3), in
+    the sense of the normals. Angles are measured at each node against the edges in its tangent
+    plane, so two triangles agree about the edge they share, and on a closed surface the indices sum
+    to its Euler characteristic.
     """
     turned = np.full(len(triangles), 2 * np.pi)
     for k in range(3):

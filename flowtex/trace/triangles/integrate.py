@@ -54,26 +54,15 @@ NEWTON_ROUNDS = 3
 
 @dataclass(frozen=True)
 class TrianglePaths:
-    """Where N particles are at M lags.
+    """Where N particles are at M lags."""
 
-    Attributes
-    ----------
-    triangle, shares
-        Triangles (M, N), and the shares of their second and third corners, (M, 2, N). Of a path
-        that has ended these are where it did.
-    further
-        Lag since then, (M, N), 0 for one that has not ended.
-    ahead
-        Velocity at the end, (3, N), by which a path goes straight on.
-    reach
-        Lag at which each path ended, (N,), infinite where it goes on.
-    """
-
+    #: Triangles (M, N), and the shares of their second and third corners, (M, 2, N). Of a path that
+    #: has ended these are where it did.
     triangle: Indices
     shares: Floats
-    further: Floats
-    ahead: Floats
-    reach: Floats
+    further: Floats  #: Lag since then, (M, N), 0 for one that has not ended.
+    ahead: Floats  #: Velocity at the end, (3, N), by which a path goes straight on.
+    reach: Floats  #: Lag at which each path ended, (N,), infinite where it goes on.
 
     def positions(self, mesh: TriangleMesh, points: Floats, lag: int) -> Floats:
         """Positions in space at one of the lags, (N, 3), by the nodes (N, 3) of the surface."""

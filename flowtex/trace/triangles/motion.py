@@ -32,36 +32,22 @@ STIFF, OFF_LINE = 4.0, 1e-3
 
 @dataclass(frozen=True, eq=False)
 class TriangleMesh:
-    """The geometry of a surface by its triangles, of which M are.
+    """The geometry of a surface by its triangles, of which M are."""
 
-    Attributes
-    ----------
-    corners
-        Nodes, (M, 3).
-    across
-        For the edge opposite to each corner, (3 M,): the triangle behind it times eight, plus how
-        its corners are those of this one, an index of :data:`BEHIND`; or -1 where paths end.
-    rates
-        Rates at which the second and the third share change, by components of the velocity at each
-        corner, (M, 12) as (corner, share, component).
-    metric
-        Products of the sides from the first corner to the others, over the square of the size,
-        (M, 3), those of the first, of both, and of the second.
-    heights
-        Distance from each corner to the edge opposite, over the size, (M, 3).
-    size
-        Mean length of the sides, (M,).
-    around, first
-        Corners by node: numbers of triangles times three plus that of the corner, those of node n
-        from ``first[n]`` to ``first[n + 1]``; only of triangles with data.
-    """
-
-    corners: Indices
+    corners: Indices  #: Nodes, (M, 3).
+    #: For the edge opposite to each corner, (3 M,): the triangle behind it times eight, plus how
+    #: its corners are those of this one, an index of :data:`BEHIND`; or -1 where paths end.
     across: Indices
+    #: Rates at which the second and the third share change, by components of the velocity at each
+    #: corner, (M, 12) as (corner, share, component).
     rates: Floats
+    #: Products of the sides from the first corner to the others, over the square of the size,
+    #: (M, 3), those of the first, of both, and of the second.
     metric: Floats
-    heights: Floats
-    size: Floats
+    heights: Floats  #: Distance from each corner to the edge opposite, over the size, (M, 3).
+    size: Floats  #: Mean length of the sides, (M,).
+    #: Corners by node: numbers of triangles times three plus that of the corner, those of node n
+    #: from ``first[n]`` to ``first[n + 1]``; only of triangles with data.
     around: Indices
     first: Indices
 
@@ -160,33 +146,18 @@ AFTER = np.array([[(m + s) % 3 == k for m in range(3) for s in (1, 2)] for k in 
 
 @dataclass
 class Derivatives:
-    """How particles move at one moment, each in the own time and length of its triangle.
+    """How particles move at one moment, each in the own time and length of its triangle."""
 
-    Attributes
-    ----------
-    first, second, third
-        Derivatives of the second and third share by time, (2, N).
-    bend
-        What of the second derivative is due to the place, (2, N).
-    metric
-        As :attr:`TriangleMesh.metric`, (3, N).
-    size, pace
-        Length of a unit of length, and lag that passes in one of time, by which time counts, (N,).
-    rest
-        Square of the speed up to which a particle stands still, (N,).
-    until
-        Lag at which the law becomes another, (N,), or ``None``.
-    """
-
-    first: Floats
+    first: Floats  #: Derivatives of the second and third share by time, (2, N).
     second: Floats
     third: Floats
-    bend: Floats
-    metric: Floats
+    bend: Floats  #: What of the second derivative is due to the place, (2, N).
+    metric: Floats  #: As :attr:`TriangleMesh.metric`, (3, N).
+    #: Length of a unit of length, and lag that passes in one of time, by which time counts, (N,).
     size: Floats
     pace: Floats
-    rest: Floats
-    until: Floats | None = None
+    rest: Floats  #: Square of the speed up to which a particle stands still, (N,).
+    until: Floats | None = None  #: Lag at which the law becomes another, (N,), or ``None``.
 
     def pick(self, mask: Bools) -> Derivatives:
         """Return those of some particles."""

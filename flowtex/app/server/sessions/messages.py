@@ -30,12 +30,8 @@ _log = logging.getLogger(__name__)
 class LimitedMessages(UnChunker):
     """The messages of one connection, joined from their pieces, within limits.
 
-    Parameters
-    ----------
-    declared
-        Names of the state's values; a page cannot add others.
-    areas
-        Names of the views that a page may speak of.
+    ``declared`` are the names of the state's values, to which a page cannot add others, and
+    ``areas`` those of the views that it may speak of.
     """
 
     def __init__(self, declared: Container[str] = (), areas: Container[str] = ()) -> None:
@@ -49,10 +45,7 @@ class LimitedMessages(UnChunker):
     def process_chunk(self, chunk: bytes) -> Any:
         """Take a piece; return the message when it is the last one.
 
-        Raises
-        ------
-        ValueError
-            When a message is too long, malformed, or one too many.
+        Raises a ValueError when a message is too long, malformed, or one too many.
         """
         message = super().process_chunk(chunk)
         if len(self.pending_messages) > OPEN_MESSAGES:

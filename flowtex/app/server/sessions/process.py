@@ -43,14 +43,9 @@ def process_opener(
 ) -> OpenSession:
     """Return what opens sessions in processes of their own.
 
-    Parameters
-    ----------
-    entry, preload
-        As :class:`flowtex._util.child.Child` has them; the entry makes a :class:`HostedSession`.
-    request
-        What that is asked to open.
-    opened
-        Called with what is said of each session.
+    Entry and preload are those of :class:`flowtex._util.child.Child`; the entry makes a
+    :class:`HostedSession`, which is asked to open the request. ``opened`` is called with what is
+    said of each session.
     """
 
     async def open_session(*, again: bool = True) -> Session:
@@ -174,10 +169,7 @@ class _Files:
 class HostedSession:
     """A session as its own process has it: answers what :class:`ProcessSession` asks.
 
-    Parameters
-    ----------
-    open_site
-        Called with a request; returns a site with one session, and what is said of it.
+    ``open_site`` takes a request, and returns a site with one session, and what is said of it.
     """
 
     def __init__(self, open_site: Callable[[dict[str, Any]], tuple[Any, Any]]) -> None:

@@ -49,22 +49,12 @@ _log = logging.getLogger(__name__)
 
 
 class Session(ABC):
-    """What a page is connected to, the token that it is known by, and the page's connection.
-
-    Attributes
-    ----------
-    token
-        Known to the page alone.
-    routes
-        What answers requests for files, below a token of its own.
-    static
-        The folders that all pages want served, by route.
-    """
+    """What a page is connected to, the token that it is known by, and the page's connection."""
 
     def __init__(self, routes: Handler, token: str = "") -> None:
-        self.token = token or new_secret()
-        self.routes = routes
-        self.static: dict[str, str] = {}
+        self.token = token or new_secret()  #: Known to the page alone.
+        self.routes = routes  #: What answers requests for files, below a token of its own.
+        self.static: dict[str, str] = {}  #: The folders that all pages want served, by route.
         #: Called when it is lost, with a text that says how.
         self.lost: Callable[[str], None] = _log.error
         self._left = time.monotonic()
@@ -160,18 +150,10 @@ def usual_limit() -> int:
 
 
 class Sessions:
-    """The sessions of one start.
+    """The sessions of one start, at most ``limit`` at one time.
 
-    Parameters
-    ----------
-    open_session
-        Opens one more.
-    limit
-        Sessions at one time, at most.
-    idle
-        Minutes without a connection after which a session ends.
-    shared
-        Whether all pages have the first session together, as the cells of a notebook.
+    One that is ``idle``, without a connection, for so many minutes ends. Pages may have the first
+    session together, as the cells of a notebook.
     """
 
     def __init__(
