@@ -99,7 +99,7 @@ class Check:
 
 
 def has_display() -> bool:
-    """Tell whether a window could be opened."""
+    """Return whether a window could be opened."""
     if not sys.platform.startswith("linux"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
@@ -117,7 +117,7 @@ def prefer_headless() -> None:
 
 def begin_trial() -> Future[OpenGLReport]:
     """Begin to try OpenGL in a second process, beside what else there is to do before drawing."""
-    # A forked process has not the thread that waits for the report.
+    # A forked process lacks the thread that waits for the report.
     trial = _trials.get(os.getpid())
     if trial is None:
         prefer_headless()

@@ -71,7 +71,7 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
 
 
 def in_notebook() -> bool:
-    """Tell whether a notebook runs this; neither IPython nor marimo is loaded to find out."""
+    """Return whether a notebook runs this; neither IPython nor marimo is loaded to find out."""
     if (marimo := sys.modules.get("marimo")) is not None and marimo.running_in_notebook():
         return True
     ipython = sys.modules.get("IPython")

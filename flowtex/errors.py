@@ -28,7 +28,7 @@ FieldError.__module__ = "flowtex"  # where it is public, as tracebacks show it
 
 
 def raise_faults(faults: Sequence[str]) -> None:
-    """Raise a FieldError with every fault, or return when there is none."""
+    """Raise a FieldError with all faults, if there are any."""
     if not faults:
         return
     if len(faults) == 1:

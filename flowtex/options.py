@@ -419,7 +419,7 @@ class Options:
         """Sort fields of the option classes, and settings, by name.
 
         Classes that are accepted are ``"field"``, ``"appearance"`` and ``"view"``, all by default.
-        A SettingsError tells of an argument that there is not, with the nearest one.
+        Raises a SettingsError for an unknown argument, with the nearest names.
         """
         accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
         parts = {

@@ -71,7 +71,7 @@ SETTINGS_IN_TEXTURES = {
     "resolution": ("texture", "spots", "checkerboard", "image"),
 }
 
-#: Share of the larger end of a range below which the other one is told as 0.
+#: Share of the larger end of a range below which the other end is shown as 0.
 ZERO_SHARE = 1e-5
 
 NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_image(image)"
@@ -157,7 +157,7 @@ class Scene:
 
     @property
     def appearance(self) -> Appearance:
-        """How the surface looks; set another one to change it, and observers are told.
+        """How the surface looks; set another one to change it and notify observers.
 
         An error, as of making a scene, leaves it as it was.
         """
@@ -217,7 +217,7 @@ class Scene:
 
     @property
     def legend_limits(self) -> tuple[float, float]:
-        """The same as a legend tells them: an end that is 0 but for rounding is 0."""
+        """The same as a legend shows them: an end that is 0 but for rounding is 0."""
         low, high = self.scalar_limits
         if self.appearance.log_scale:
             return low, high
@@ -359,7 +359,7 @@ class Scene:
         """Least and greatest value over the valid nodes and all times.
 
         A robust range leaves 2 % of the values out at either end. Where all are the same but for
-        rounding, the range is widened, so that colours do not tell of differences that are none.
+        rounding, the range is widened, so that colours do not show rounding errors.
         """
         key = (name, robust, self.pyramid is None)
         if key not in self._ranges:
@@ -421,7 +421,7 @@ class Scene:
         return scene
 
     def follow(self, before: Scene) -> None:
-        """Take the place of another scene, and tell those who observe that one."""
+        """Replace another scene, and notify its observers."""
         self._notices, before._notices = before._notices, []
         before.close()
         self._notify("trace")

@@ -16,7 +16,7 @@ from flowtex.errors import FieldError
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value is one real number that is not NaN; texts and truth values are none."""
+    """Whether a value is one real number and not NaN; strings and booleans are not numbers."""
     try:
         return not isinstance(value, (bool, str, bytes)) and float(value) == float(value)
     except (TypeError, ValueError, OverflowError):  # a whole number may have any size

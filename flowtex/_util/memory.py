@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-#: What is assumed where the system does not tell.
+#: Memory that is assumed if the system does not report it.
 UNKNOWN_BYTES = 4_000_000_000
 
 

@@ -32,8 +32,9 @@ class WholeFile:
 
     A symbolic link is followed. A file that is replaced keeps its mode, and its owner where that is
     allowed. ``part`` is the path of the new file, with the suffix of ``path``, for libraries that
-    open files by name; ``file`` is that file, empty and open for reading and writing. An OSError
-    tells that the folder does not exist, writing is not permitted, or ``path`` is no regular file.
+    open files by name; ``file`` is that file, empty and open for reading and writing. Raises an
+    OSError when the folder does not exist, writing is not permitted, or ``path`` is not a regular
+    file.
     """
 
     def __init__(self, path: str | Path) -> None:

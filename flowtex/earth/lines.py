@@ -170,7 +170,7 @@ def _grid_lines(
 def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats | None) -> MapLines:
     """Project lines: short pieces of them, cut where the map is torn, and those in a box.
 
-    ``joined`` tells of each point but the last whether it is joined to the next one.
+    ``joined`` says for each point but the last whether it is joined to the next one.
     """
     first, last, place = _pieces(lonlat, joined)
     torn = _is_torn(projection, first, last)
@@ -213,7 +213,7 @@ def _lengths(first: Floats, last: Floats) -> Floats:
 
 
 def _is_torn(projection: Projection, first: Floats, last: Floats) -> Bools:
-    """Tell which pieces have their ends at different sides of a map, or one of them beside it."""
+    """Return which pieces have ends on opposite sides of a map, or one end outside it."""
     start, middle, stop = (projection.positions(*p.T) for p in (first, (first + last) / 2, last))
     bend = np.linalg.norm(middle - (start + stop) / 2, axis=1)
     beside = np.isnan(start[:, 0]) != np.isnan(stop[:, 0])

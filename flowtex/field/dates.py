@@ -24,7 +24,7 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
         given = np.asarray(times)
         if given.dtype.kind == "O" and given.size and hasattr(given.flat[0], "isoformat"):
             start = given.flat[0]
-            # Other calendars have days that datetime64 has not; their differences are spans.
+            # Other calendars have days that datetime64 lacks; their differences are spans.
             given = (given - start).astype("timedelta64[us]")
     except (TypeError, ValueError):  # what is no array is refused later, by its name
         return times, time_unit, None

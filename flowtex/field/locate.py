@@ -2,7 +2,7 @@
 
 Every renderer cuts the cells of a structured surface along the diagonal from their first corner
 (j, i) to (j + 1, i + 1), and what lies between the nodes is linear in the triangles; so is what
-this module returns. What triangles a surface has, it tells itself.
+this module returns. Each surface returns its own triangles.
 
 To find a point in space, the nearest nodes are looked up in a tree, which is cached with the
 field. From the triangles around them a walk leads over the surface, across the side on which the

@@ -88,12 +88,12 @@ class Source:
         if axis not in self.ends:
             return f"{axis}={number}"
         low, high = self.ends[axis]
-        # As many digits as tell one place from the next.
+        # Enough digits to distinguish neighbouring positions.
         digits = 3 - math.floor(math.log10(high - low))
         return f"{axis}={round(low + (high - low) * (number + 0.5) / CUTS, digits):.12g}"
 
     def plane_number(self, plane: str) -> int | None:
-        """Return the number of a plane, or of the nearest; ``None`` where there is none."""
+        """Return the number of a plane, or of the nearest; ``None`` if it does not exist."""
         axis, _, text = plane.partition("=")
         try:
             value = float(text)

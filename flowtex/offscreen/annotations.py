@@ -265,7 +265,7 @@ def _printable(text: str) -> str:
 
 
 def _apart(one: Plate, other: Plate, gap: int) -> bool:
-    """Tell whether there is a gap between two plates."""
+    """Return whether there is a gap between two plates."""
     (left, top, right, bottom), (to_left, above, to_right, below) = one.box, other.box
     return (
         right + gap <= to_left
@@ -291,7 +291,7 @@ def _value_texts(low: float, high: float, *, log_scale: bool) -> list[str]:
 def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) -> str:
     """Return a time of a field: its date, or with decimals that tell its steps apart.
 
-    A unit is told up to a length.
+    A unit is shown up to this length.
     """
     step = float(np.diff(field.times).min()) if len(field.times) > 1 else 1.0
     if field.start is not None:

@@ -284,7 +284,7 @@ class FlowImage(AxesImage):
             label_degrees(ax, self._projection, self._unit)
 
     def _tell(self) -> None:
-        """Tell level and time of data of the Earth in the title, unless there is another."""
+        """Show level and time of data of the Earth in the title, unless it has been set."""
         field = self._scene.field
         if self._projection is not None and self.axes.get_title() == self._title:
             dated = len(field.times) > 1 or field.start is not None

@@ -115,7 +115,7 @@ def _check_motion(field: FlowField, settings: Settings) -> None:
 
 
 def _is_periodic(field: FlowField) -> bool:
-    """Tell whether the velocity of the last time is that of the first."""
+    """Return whether the velocity of the last time is that of the first."""
     first, last = (np.nan_to_num(field.velocity[step]) for step in (0, -1))
     return bool(np.abs(last - first).max() <= SAME_SHARE * max(np.abs(first).max(), 1e-300))
 

@@ -29,10 +29,10 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
 
 
 def _asked_for() -> bool:
-    """Tell whether the user has named this backend.
+    """Return whether the user has named this backend.
 
-    PyVista does not tell a backend whether it was named or is merely the first that was found,
-    so the caller's own argument is looked at; where that has another form, being called counts.
+    PyVista does not say whether a backend was named or is merely the first that was found, so the
+    caller's argument is inspected; where that has another form, being called counts.
     """
     frame = sys._getframe(1)
     while (caller := frame.f_back) is not None:

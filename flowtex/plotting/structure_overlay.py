@@ -41,7 +41,7 @@ class StructureOverlay(Overlay):
         self.show(scene)
 
     def load_in_background(self, notify: Callable[[], None]) -> None:
-        """Show what is found when it is there, and tell from a thread; else a change waits."""
+        """Show the structure when it is found, and notify from a thread; else a change waits."""
         self._notify = notify
 
     @property

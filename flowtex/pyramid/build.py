@@ -189,7 +189,7 @@ def build(
         group, arrays, about, new = _prepared(place, about, given, fresh=fresh)
         run, depth = _Run(group, arrays, about, lease, known, progress), about["depth"]
         if not new:
-            # What is corrupt of what is there goes, and what lacks a part of it.
+            # Corrupt and incomplete objects are removed.
             begun = sorted({unit for name in run.arrays for unit in _begun(run, name)}, key=repr)
             run.work(workers, mend, begun, "Checking existing objects", TILE_BYTES, new=False)
         _write_finest(run, given, workers if given.travels else threads)
@@ -262,7 +262,7 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
 def _prepared(
     place: str, about: dict[str, Any], source: Source, *, fresh: bool
 ) -> tuple[Any, dict[str, Sequence[str]], dict[str, Any], bool]:
-    """Return the group at a place, its arrays, what it tells, and whether it is new."""
+    """Return the group of a store, its arrays, its description, and whether it is new."""
     zarr = import_extra("zarr", "store")
     store = store_at(place, read_only=False)
     if fresh:
@@ -328,7 +328,7 @@ class _Run:
         self.made = self.kept = 0
 
     def tell(self, **words: Any) -> None:
-        """Write more of what is told of the pyramid; what workers have opened does not know it."""
+        """Add to the description of the pyramid; what workers have opened does not know it."""
         self.lease.check()
         self.about = {**self.about, **words}
         self.group.attrs["flowtex"] = sealed(self.about)

@@ -1,6 +1,6 @@
-"""What a store tells of itself, looked at before it is believed.
+"""Checks of the description in a store, before it is used.
 
-A seal, a hash of all that is told, shows what came to harm by chance. What was written wrong has
+A seal, a hash of the whole description, reveals accidental damage. What was written wrong has
 one too, so types and sizes are looked at as well: they decide how much memory is taken.
 """
 
@@ -29,7 +29,7 @@ Check = Callable[[Any], bool]
 
 
 def sealed(about: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what is told of a pyramid with its seal; no dictionary without is believed."""
+    """Return the description of a pyramid with its seal; no dictionary without is believed."""
     return {**about, "seal": _seal(about)}
 
 
@@ -96,7 +96,7 @@ def is_scalar_name(name: str) -> bool:
 
 
 _ENDS = _list(_list(_number, 2), 2)
-#: What is to be found of what is told of a pyramid; more may be told.
+#: Required entries of the description of a pyramid; more are allowed.
 _ABOUT: dict[str, Check] = {
     **dict.fromkeys(("name", "length_unit", "time_unit", "version"), _text),
     **dict.fromkeys(("fingerprint", "source"), _text),

@@ -20,12 +20,12 @@ them; the root is one tile. A browser is handed what it makes them of, in files 
 surface of a tile, with all that is the same at all times, the flow of one time, and the values of
 one scalar, so that it takes what it shows with one request each. The flow is the velocity where the
 browser can trace it, and slices where it cannot; see client_parts.py. Scalar 0 is the speed, which
-velocity tells by itself.
+follows from the velocity.
 
 Arrays over nodes lie in chunks of a tile, several in a shard, packed by Blosc. A file is a shard,
 followed by zeros, of which most are left out, packed by gzip, which browsers undo themselves. All
-has check sums. A part is a shard of the arrays over nodes; a hash of all digests of level 0 tells
-which field it is.
+has check sums. A part is a shard of the arrays over nodes; a hash of all digests of level 0
+identifies the field.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ def value_names(about: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
-    """Return what is told of a field and its pyramid, as it is kept in the store."""
+    """Return the description of a field and its pyramid, as the store keeps it."""
     field = source.field
     depth = root_level(source.shape)
     corner = source.points(np.array([0]), np.array([0]))

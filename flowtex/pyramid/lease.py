@@ -70,7 +70,7 @@ class Lease:
             raise PyramidError(msg)
 
     def renew(self) -> None:
-        """Tell that the holder is still there."""
+        """Show that the holder is still running."""
         there = self._read()
         if there.get("id") != self._own["id"]:
             self._holder = _words(there)
@@ -98,7 +98,7 @@ class Lease:
         raise PyramidError(msg)
 
     def _read(self) -> dict[str, Any]:
-        """Return what the lease tells; nothing where there is none."""
+        """Return the content of the lease; empty without one."""
         from zarr.core.buffer import default_buffer_prototype
 
         found = sync(self._store.get(LEASE, default_buffer_prototype()))

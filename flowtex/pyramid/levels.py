@@ -80,7 +80,7 @@ class Levels:
                 "flowtex.pyramid.build"
             )
             raise PyramidError(msg) from None
-        #: What is told of the field and its pyramid.
+        #: The description of the field and its pyramid.
         self.about = check_about(about, self.place)
         self._arrays: dict[str, Any] = {}
         self._expected: dict[str, dict[str, dict[str, Any]]] = {}
@@ -162,7 +162,7 @@ class Levels:
             self._check_file(SURFACE, level, tuple(at), f"{SURFACE} {where}")
 
     def _check_file(self, kind: str, level: int, at: tuple[int, ...], name: str) -> list[str]:
-        """Return the names of the parts of a file; a DamageError tells what is wrong."""
+        """Return the names of the parts of a file; a DamageError says what is wrong."""
         array = f"{level}/{kind}"
         (file,) = self._read(_Piece(array, (*at, slice(FILE_CHUNK)), name))
         try:

@@ -138,7 +138,7 @@ class OthersObjects(Objects):
 
 
 def level_names(attributes: Mapping[str, Any]) -> list[str]:
-    """Return the paths of levels, as ndpyramid and the convention of zarr-conventions tell them."""
+    """Return the paths of levels, from the metadata of ndpyramid or of zarr-conventions."""
     told = attributes.get("multiscales")
     if isinstance(told, list):  # of the former there is one in a list
         told = told[0] if told else {}
@@ -165,7 +165,7 @@ class _BoundedGzip(GzipCodec):
 
 
 class _BoundedBlosc(BloscCodec):
-    """Blosc of chunks that tell that they unpack to as many bytes as they have."""
+    """Blosc for chunks whose header declares as many bytes as they decompress to."""
 
     async def _decode_single(self, chunk_bytes: Any, chunk_spec: Any) -> Any:
         size = math.prod(chunk_spec.shape) * chunk_spec.dtype.to_native_dtype().itemsize

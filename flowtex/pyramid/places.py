@@ -21,7 +21,7 @@ from flowtex.errors import FieldError
 
 #: Written into every store; a reader refuses what it does not know.
 FORMAT = "flowtex-pyramid-6"
-#: The object of a store that tells who builds it.
+#: The object of a store that names its builder.
 LEASE = "building.json"
 DOCUMENT = "zarr.json"
 #: A URL, or one of which ``pathlib`` has made a path, on Windows with its slashes turned; those of
@@ -200,7 +200,7 @@ def is_store(place: Any) -> bool:
 
 
 def _remote_document(text: str) -> bytes:
-    """Return what tells of a Zarr group at a URL; empty where there is none."""
+    """Return the metadata of a Zarr group at a URL; empty where there is none."""
     obstore = import_extra("obstore", "store")
     try:
         return bytes(obstore.get(objects_at(text), DOCUMENT).bytes())
@@ -234,7 +234,7 @@ def is_refused(error: Exception) -> bool:
 
 
 def fault_words(error: Exception) -> str:
-    """Tell what became of a request, without what the server said: that may hold secrets."""
+    """Describe the result of a request, without the server's text: that may hold secrets."""
     text, kind = str(error), type(error).__name__
     status = re.search(r"status code: (\d{3})", text)
     if is_refused(error):

@@ -1,4 +1,4 @@
-"""Ranges of values, by which a pyramid is coloured, as the tasks tell them that read the nodes.
+"""Ranges of values for the colours of a pyramid, from the tasks that read the nodes.
 
 Each task keeps the least and the greatest value of its part, and some of its values: those of every
 2^n-th row and column, a million of the whole surface. They stay in the store, so that a build that
@@ -42,7 +42,7 @@ def create_samples(group: Any, about: Mapping[str, Any]) -> None:
 
 
 def write_samples(array: Arrays, about: Mapping[str, Any], part: Part, nodes: Nodes) -> None:
-    """Tell the values of a part of level 0, where its step is one that ranges are taken from."""
+    """Add the values of a part of level 0, if ranges are taken from its step."""
     if part.step not in _steps(about):
         return
     step, shape = _every(about), _shape(about)

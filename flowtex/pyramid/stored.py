@@ -124,7 +124,7 @@ class StoredPyramid(Pyramid):
 
     @property
     def about(self) -> Mapping[str, Any]:
-        """What is told of the field and its pyramid."""
+        """The description of the field and its pyramid."""
         return self._stored.about
 
     @cached_property
@@ -139,7 +139,7 @@ class StoredPyramid(Pyramid):
         return rows, columns
 
     def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
-        """Return the textures of a tile; a PyramidError tells what cannot be read."""
+        """Return the textures of a tile; a PyramidError says what cannot be read."""
         textures = super().tile(key, steps)
         if textures is not None and isinstance(self._stored, Levels):
             self._check_nodes(self._stored, key, textures, steps)

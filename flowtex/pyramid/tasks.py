@@ -44,7 +44,7 @@ class TileTask(NamedTuple):
 
 
 def make_finest(source: Source, place: str, run: str, part: Part) -> None:
-    """Make a part of level 0 from what is in the source; that of the first step tells the valid."""
+    """Make a part of level 0 from the source; the first step determines the valid nodes."""
     levels, array = _levels(place, run), _writable(place, run)
     nodes = _source_nodes(levels, source, part)
     if not levels.about.get("ranges"):

@@ -71,7 +71,7 @@ def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
 
 
 def land_cells(field: FlowField, *, tiled: bool = False) -> Bools:
-    """Tell which cells of a field have their positions and are not drawn.
+    """Return which cells of a field have their positions and are not drawn.
 
     The shape is (J - 1, I - 1), or (M,) of triangles. Of a map that is the coarsest level of a
     structured field in tiles all cells may be seen as land, where finer ones have no data.

@@ -261,7 +261,7 @@ def mesh_limits() -> dict[str, float]:
 def _directions(points: Floats) -> Floats:
     """Return unit normals at the nodes, and the directions of their lines along i and j.
 
-    The shape is (3, J, I, 3), and they are zero where there is none.
+    The shape is (3, J, I, 3), and they are zero where it is missing.
     """
     if min(points.shape[:2]) < 2:
         return np.zeros((3, *points.shape))

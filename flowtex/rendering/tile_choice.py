@@ -113,8 +113,8 @@ def wanted_tiles(chosen: Choices) -> list[TileKey]:
 def cover(chosen: Choices, ready: Callable[[TileKey], bool]) -> dict[TileKey | None, list[TileKey]]:
     """Return the tiles to show of those that are ready, and the parts of each that others cover.
 
-    A tile is replaced by finer ones where these cover all of it that is in view; until then what is
-    there of a coarser level is shown. The root is always ready.
+    A tile is replaced by finer ones where these cover all of it that is in view; until then the
+    tiles of a coarser level are shown. The root is always ready.
     """
     shown: dict[TileKey | None, list[TileKey]] = {}
 

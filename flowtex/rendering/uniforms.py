@@ -194,7 +194,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
 
 
 def is_moving(textures: TextureSet, settings: Settings) -> bool:
-    """Tell whether the grains change in time: with a field that varies, or by the clock.
+    """Return whether the grains change in time: with a field that varies, or by the clock.
 
     A field without a sign has no forward, so nothing streams; the paper's textures stand still.
     """
@@ -205,12 +205,12 @@ def is_moving(textures: TextureSet, settings: Settings) -> bool:
 
 
 def is_sparse(textures: TextureSet, settings: Settings) -> bool:
-    """Tell whether the texture is one of streaklets, which a noise in a texture is not."""
+    """Return whether the texture consists of streaklets, which a noise texture cannot."""
     return settings.texture == "streaklets" and textures.paper is None
 
 
 def has_arrows(textures: TextureSet, settings: Settings) -> bool:
-    """Tell whether arrows are drawn: a field without a sign has none, nor has a noise's texture."""
+    """Return whether arrows are drawn, which sign-free fields and noise textures lack."""
     signed = not textures.geometry.field.sign_free
     return settings.arrows > 0 and signed and textures.paper is None
 
@@ -221,7 +221,7 @@ def arrow_distance(settings: Settings) -> float:
 
 
 def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
-    """Tell whether a path may be so short that it stays in a cell where the flow turns.
+    """Return whether a path may be so short that it stays in a cell where the flow turns.
 
     In perspective the nearest point of the surface counts, or of the ball around it.
     """

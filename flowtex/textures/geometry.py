@@ -244,8 +244,8 @@ class SurfaceGeometry(DrawnSurface):
 
     ``rows`` and ``columns`` say how the j and i axes lie in the slice textures, and which nodes of
     the field are drawn: in a tile, those around it only continue it. ``whole`` is the surface that
-    a tile is a part of, whose middle, size and frame it has; ``open_sides`` tells of its field
-    whether that goes on before and after its rows, and its columns.
+    a tile is a part of, whose middle, size and frame it has; ``open_sides`` says whether the field
+    continues before and after its rows, and its columns.
     """
 
     field: FlowField

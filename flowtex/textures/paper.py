@@ -80,8 +80,7 @@ class PaperTextures:
     ) -> PaperTextures:
         """Make both textures of a flow, with a picture (H, W, 4) for ``noise="image"``.
 
-        Raises a FieldError when the pattern is an image and there is none, or there is no such
-        pattern.
+        Raises a FieldError when the pattern is unknown, or its image is missing.
         """
         field, corrected = store.field, settings.noise_correction
         height, width = _size(field, settings.resolution)

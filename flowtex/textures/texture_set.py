@@ -78,8 +78,8 @@ class TextureSet:
 
         The image (H, W, 4) is that for ``noise="image"``, and the geometry is the field's own by
         default. Raises a FieldError when the slices do
-        not belong to the field, or are more than a shader has room for; or when an image is asked
-        for and there is none, or the noise is one that the surface cannot have.
+        not belong to the field, or are more than a shader has room for; or when an image is
+        missing, or the surface does not support the noise.
         """
         field = store.field
         check_noise(field, settings.noise)
@@ -113,7 +113,7 @@ class TextureSet:
         return replace(self, paper=self.paper.with_image(image))
 
     def same_paths(self, other: TextureSet) -> bool:
-        """Tell whether nothing but the picture in place of the noise differs."""
+        """Return whether only the image instead of the noise differs."""
         steps = [None if one.paper is None else one.paper.step for one in (self, other)]
         return self.geometry is other.geometry and steps[0] is steps[1] is not None
 

@@ -1,6 +1,6 @@
 """Nested boxes of about as many nodes each, and the triangles that reach into them.
 
-A k-d tree cuts space at medians, along the longest side of what is there. Two cuts after another
+A k-d tree divides space at medians, along the longest side of its content. Two cuts after another
 make 2 x 2 boxes of one, in rows and columns, so that boxes of a depth are a square of blocks as
 those of a structured surface are. A box holds all of its space: its outer sides are open.
 """

@@ -1,8 +1,8 @@
 """Tiles on their way: made in threads, coarse ones first, within a budget of memory.
 
 Whoever draws asks for the tiles of a view, in the order of their need, and draws those that are
-ready. What a view does not ask for any more is cancelled when it has not come to its end, and
-dropped last when memory is short.
+ready. Tiles that no view requests any more are cancelled if unfinished, and dropped when memory
+is short.
 """
 
 from __future__ import annotations

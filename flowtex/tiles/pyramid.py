@@ -87,7 +87,7 @@ class Pyramid:
     ``parameter`` and ``lines`` are as for :class:`~flowtex.trace.SliceStore`. ``nodes`` are the
     numbers of nodes (J, I) at level 0, and ``depth`` is the level of the root; 0 where the whole
     field is one. ``ranges`` are the ends of scalars and of the speed at level 0, by name and
-    whether robust, where the field itself does not tell them.
+    whether robust, where they do not follow from the field itself.
     """
 
     tile_blocks = TILE_BLOCKS
@@ -206,7 +206,7 @@ class Pyramid:
         """Return the textures of a tile, whose layers are traced when they are asked for.
 
         ``None`` stands for a tile of which nothing is drawn. The halo is so many times as wide as
-        paths of even speed need; :func:`is_cut` tells whether that was enough. Raises a KeyError
+        paths of even speed need; :func:`is_cut` returns whether that was enough. Raises a KeyError
         where there is no such tile.
         """
         first = [at * TILE_CELLS for at in key[1:]]

@@ -77,7 +77,7 @@ class Structure:
             self.lines(step, saddles)
 
     def has(self, step: int, points: int, saddles: int) -> bool:
-        """Tell whether all that shows these has been found."""
+        """Return whether all that shows these has been found."""
         found = self._lines.get(step, (0, None))[0]
         return (not points or step in self._points) and saddles <= found
 

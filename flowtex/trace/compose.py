@@ -6,9 +6,9 @@ costs one look-up for each node, whatever the length, where integration would co
 as the path has cells.
 
 A look-up between the nodes is as good as the slice is smooth there. Around a centre or beside a
-separatrix long paths of neighbours part, so each slice's second differences are held against its
-length, and where they are large the path is continued in shorter pieces that are smooth. What is
-left is of the order of the error that bilinear velocity has itself.
+separatrix long paths of neighbours part, so each slice's second differences are compared with its
+length, and where they are large the path is continued in shorter, smooth pieces. What is left is of
+the order of the error that bilinear velocity has itself.
 
 A flow that varies is composed only when its lags are whole numbers of its equal time steps, from
 one step up: then each piece begins at a time for which there are slices.

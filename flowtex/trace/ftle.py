@@ -59,7 +59,7 @@ def _moved(field: FlowField, step: int, horizon: float) -> Floats:
     )
     assert moved is not None
     assert reach is not None
-    # What is at rest has not left.
+    # Particles at rest have not left.
     moved, ended = moved[0, 0].astype(float), (reach[0] < 1) & (field.speed[step] > 0)
     if not slices.in_space:
         moved = field.surface.at(slices.nodes + moved) - field.points

@@ -66,8 +66,8 @@ def integrate(
     """Follow particles from positions (N, 2) as (i, j) and return where they are at the lags (M,).
 
     Lags are positive and increasing, in multiples of each particle's ``unit`` (N,). Direction -1 is
-    backward, 1 forward; the tolerance is the error allowed in one step, in cells. ``within`` tells
-    for positions (2, N) in index space whether paths are to be followed there; a path that comes
+    backward, 1 forward; the tolerance is the error allowed in one step, in cells. ``within``
+    returns for positions (2, N) in index space whether paths are followed there; a path that comes
     elsewhere is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)

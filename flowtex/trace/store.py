@@ -140,7 +140,7 @@ class SliceStore:
         return self._trace_with(self.field, self.lags, steps=[step])
 
     def _trace_with(self, field: FlowField, lags: Floats, **options: Any) -> TraceSlices:
-        # A part of a surface is one of many, whose bars would tell nothing.
+        # A part of a surface is one of many, whose progress bars would mean nothing.
         alone = self._nodes is None
         parts: dict[str, Any] = {
             "nodes": self._nodes,

@@ -264,8 +264,8 @@ def page_pieces(
     """Give the text of a page piece by piece; each array is packed when it is reached.
 
     ``axes`` is that of :func:`export`. Camera, time and clock are those of
-    :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page has drawn,
-    made here where there is none. ``link`` tells where the rest is, and ``scenes`` are then of
+    :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page has drawn;
+    made here if missing. ``link`` says where the rest is; ``scenes`` are then of
     :func:`linked_data`.
     """
     now = {"camera": camera, "time": time, "clock": clock}
@@ -352,7 +352,7 @@ def _values(
         "version": __version__,
         "title": html.escape(str(title)),
         "style": look,
-        # Browsers tell JPEG by itself.
+        # Browsers recognise JPEG.
         "preview": "data:image/png;base64," + base64.b64encode(picture).decode(),
         "headers": zipped(_headers_text(headers).encode()),
         "script": script,

@@ -28,7 +28,7 @@ from flowtex.web.view import WebView
 if TYPE_CHECKING:
     from PIL import Image
 
-#: Nodes and samples of a small picture, which no eye can tell from more of them.
+#: Nodes and samples of a small picture; more make no visible difference.
 NODES, SAMPLES = 3_000, 17
 #: Greatest spacing of samples in grains. Pixels side by side share no sample of a greater one, and
 #: streaks become rows of dots.

@@ -66,7 +66,7 @@ class TileSource:
     def parts(self, key: TileKey | None, steps: Sequence[int], kind: str = "") -> Parts:
         """Return the parts of a tile at time steps, or of the whole; see the module's text.
 
-        A LookupError tells that there is no such tile or step.
+        Raises a LookupError if the tile or step does not exist.
         """
         if kind:
             return {n: part for step in steps for n, part in self.scene.mark(kind, step).items()}

@@ -80,7 +80,7 @@ class Displayed(anywidget.AnyWidget):
         return kind, base64.b64encode(picture).decode()
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
-        """Return the widget, and for where there are none a picture and a line of text."""
+        """Return the widget, and a picture and a line of text for hosts without widgets."""
         bundle = super()._repr_mimebundle_(**kwargs)
         if not isinstance(bundle, tuple):
             return bundle

@@ -364,7 +364,7 @@ class Feed:
         self.pictured.set()
 
     def _failed(self, error: Exception) -> None:
-        """Tell in the browser, where the picture would have been, and in the kernel's log."""
+        """Show the error in the browser instead of the picture, and in the kernel's log."""
         traceback.print_exception(error)
         self.settled.set()
         with suppress(Exception):
@@ -376,7 +376,7 @@ def _words(error: BaseException) -> str:
 
 
 def _was_sent(digest: str) -> bool:
-    """Tell whether an array was sent to some page, and note that it is."""
+    """Return whether an array was sent to some page, and note that it is."""
     with _sent_lock:
         was_sent = digest in _sent_digests
         _sent_digests[digest] = None

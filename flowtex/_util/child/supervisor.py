@@ -41,8 +41,8 @@ class ChildError(Exception):
     """A child gives no answer.
 
     ``kind`` is the name of the class of the error that it raised; empty where it died, had to be
-    ended, or lacks memory: the text then says so, as in ``"crashed (SIGSEGV)"``. ``trace`` tells
-    where it was raised; empty where the text says all.
+    ended, or lacks memory: the text then says so, as in ``"crashed (SIGSEGV)"``. ``trace`` is where
+    it was raised; empty where the text says all.
     """
 
     def __init__(self, text: str, kind: str = "", trace: str = "") -> None:
@@ -114,9 +114,9 @@ class Child:
     def request(self, value: Any, *, timeout: float) -> tuple[Any, list[AnyArray]]:
         """Return the answer to a request: a value of JSON, and arrays.
 
-        A ChildError tells that the child is dead, dies, needs more memory than it may have, does
-        not answer in ``timeout`` seconds, after which it is ended, or raises an error. Where the
-        work was cancelled, it hears of it, and goes on.
+        Raises a ChildError when the child is dead, dies, exceeds its memory, raises an error, or
+        does not answer in ``timeout`` seconds, after which it is ended. Where the work was
+        cancelled, it hears of it, and goes on.
         """
         while not self._asking.acquire(timeout=CHECK_INTERVAL_S):
             check()
@@ -155,7 +155,7 @@ class Child:
             self._deadline = time.monotonic() + timeout
 
     def _send(self, message: dict[str, Any]) -> None:
-        # Of a child that has died the answers tell why.
+        # The answers of a child that has died say why.
         with self._writing, suppress(OSError, ValueError):
             write_message(self._process.requests, message)
 
@@ -191,7 +191,7 @@ def _listen(
     waiting: set[int],
     stale: set[int],
 ) -> None:
-    """Take answers until there are no more, and tell how the child ended."""
+    """Take answers until there are no more, and return how the child ended."""
     ending = ""
     try:
         with process.answers:

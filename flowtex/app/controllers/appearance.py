@@ -120,7 +120,7 @@ class Appearance(Controller):
             self.state.set(painter=element.painter)
 
     def _change(self, **changes: Any) -> None:
-        """Change the appearance, or tell why that cannot be."""
+        """Change the appearance, or report why that is not possible."""
         try:
             self.area.scene.appearance = replace(self.area.scene.appearance, **changes)
         except FieldError as error:

@@ -59,7 +59,7 @@ class Data(Controller):
     def __init__(self, context: Context, name: str, choice: Choice) -> None:
         super().__init__(context)
         self.library = context.library
-        # It holds the source: the library may let go of it, and to read it again takes a while.
+        # It holds the source: the library may drop it, and reading it again takes a while.
         source, field = self.library.source(name), self.viewport.field
         self._current = LoadedFlow(name, choice, source, field, field)
         self._goal = (name, choice)

@@ -38,7 +38,7 @@ class FileBeside(Controller):
 
     @property
     def name(self) -> str:
-        """Name of the file in the second pane; empty while there is none."""
+        """Name of the file in the second pane; empty without one."""
         return self._name if "field" in self.viewport.differences else ""
 
     @property

@@ -69,7 +69,7 @@ class LoadRequest:
 async def announced(
     context: Context, request: LoadRequest, fail: Callable[[], None]
 ) -> AsyncIterator[None]:
-    """Tell the page what goes on, and why something cannot be opened; then call ``fail``."""
+    """Show progress on the page, and any reason why opening fails; then call ``fail``."""
     announcement = asyncio.create_task(_show_busy(context, request))
     name, problem = shortened(request.name, NAME_LENGTH), ""
     try:
@@ -91,7 +91,7 @@ async def announced(
 
 
 async def _show_busy(context: Context, request: LoadRequest) -> None:
-    """Tell the page what goes on, once it has gone on for a moment."""
+    """Show on the page what is in progress, after a short delay."""
     await asyncio.sleep(BUSY_DELAY_S)
     if not request.over:
         context.state.send(busy=f"Opening {shortened(request.name, NAME_LENGTH)}")

@@ -29,7 +29,7 @@ class RepeatFilter(logging.Filter):
         self._windows: dict[object, tuple[float, int]] = {}
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Tell whether a record is written; it is cut, and has a traceback for our faults alone."""
+        """Return whether a record is written; cut it, and keep tracebacks of defects only."""
         kind = record.exc_info[0] if record.exc_info else None
         place, now = (record.pathname, record.lineno, kind), self._clock()
         began, count = self._windows.get(place, (now, 0))

@@ -94,7 +94,7 @@ class Routes:
         return f"flowtex/{self.token}/{quote(name)}"
 
     def give_each(self, stem: str, content: Callable[[str], Give]) -> str:
-        """Hand out files of many names; return the address before what tells them apart.
+        """Hand out files of many names; return the common part of their addresses.
 
         ``content`` is called with that part of a name, and raises a ``LookupError`` or a
         ``ValueError`` where there is no such file. The stem is as the name of :meth:`give`, without
@@ -106,7 +106,7 @@ class Routes:
     def take(self, name: str, taker: Take) -> str:
         """Take files that the page sends; return the address, which gets ``?name=`` as well.
 
-        The taker raises a FieldError, which the page is told, for what is of no use.
+        The taker raises a FieldError, which the page shows, for a file that cannot be used.
         """
         self._takers[name] = taker
         return f"flowtex/{self.token}/{quote(name)}"

@@ -97,7 +97,7 @@ class PageState:
             self._state[self.key(name)] = value
 
     def send(self, **values: Any) -> None:
-        """Change values from a task, and tell the page at once."""
+        """Change values from a task, and send them to the page at once."""
         with self._state:
             self.set(**values)
 

@@ -57,7 +57,7 @@ def new_secret() -> str:
 
 
 def is_same(text: object, secret: str) -> bool:
-    """Tell whether a secret is the right one, in a time that tells nothing about it."""
+    """Return whether a secret is correct, in a time that reveals nothing about it."""
     return isinstance(text, str) and hmac.compare_digest(
         text.encode(errors="surrogatepass"), secret.encode()
     )
@@ -155,7 +155,7 @@ def _split(address: str) -> SplitResult:
 
 
 def _is_address(name: str) -> bool:
-    """Tell whether a name is a number, which nobody can lead elsewhere."""
+    """Return whether a name is a numeric address, which cannot be redirected."""
     try:
         ipaddress.ip_address(name)
     except ValueError:

@@ -9,8 +9,8 @@
     GET  /flowtex/<token>/<name>   what a session hands out
     GET  /...                      scripts and styles, the same for all pages
 
-trame's client looks for its connection beside its page. It can be told another address, but
-writes that in small letters, which loses the tokens and the paths of some proxies.
+trame's client looks for its connection beside its page. It accepts another address, but writes it
+in lower case, which breaks the tokens and the paths of some proxies.
 """
 
 from __future__ import annotations
@@ -298,7 +298,7 @@ def _host_name(host: str) -> str:
 
 
 def _open(address: str) -> None:
-    """Open a browser without waiting for it; where there is none, the address is printed."""
+    """Open a browser without waiting for it; without one, the address is printed."""
 
     def in_thread() -> None:
         with suppress(webbrowser.Error):

@@ -39,7 +39,7 @@ class Uploads:
         self.address = routes.take("upload", self.receive)
 
     async def receive(self, name: str, content: AsyncIterable[bytes]) -> None:
-        """Write a file, and tell of it.
+        """Write a file, and report it.
 
         Raises a FieldError when it is not of a format that is taken, too large, or one too many.
         """

@@ -48,7 +48,7 @@ def clipped(value: Any, default: float, low: float, high: float) -> float:
 
 
 def name_among(value: Any, names: Container[str]) -> bool:
-    """Tell whether something is one of a few names; a list or a mapping is none."""
+    """Return whether something is one of a few names; a list or a mapping is not."""
     return isinstance(value, str) and value in names
 
 

@@ -199,7 +199,7 @@ class Element:
         self._call("paint", painter)
 
     def follow(self) -> None:
-        """Tell the page what has changed on this side; other scenes once all else has been done."""
+        """Send changes on this side to the page; other scenes once all else has been done."""
         if not self.painter or self._due is not None:
             return
         loop = running_loop()
@@ -224,7 +224,7 @@ class Element:
             self._call("take", {**changes, "by": self._by})
 
     def repeat(self) -> None:
-        """Tell the page once more what there is, in place of something that cannot be."""
+        """Send the current values to the page again, to replace invalid ones."""
         self._shown, self._told = (), {}
         self.follow()
 
@@ -276,7 +276,7 @@ class Element:
 
     @contextmanager
     def _said_by(self, page: Any) -> Iterator[None]:
-        """Tell the other pages what one of them says, and leave that one alone."""
+        """Send a change by one page to all others."""
         self._by = page if isinstance(page, str) else ""
         try:
             yield
@@ -323,7 +323,7 @@ class Element:
             self._player.playing = bool(playing)
 
     def take_setting(self, pair: Any, page: Any = "") -> None:
-        """Set what the page asks for, and tell it what is not possible."""
+        """Set what the page requests, and report what is not possible."""
         if not (isinstance(pair, list) and len(pair) == 2):
             return
         name, value = pair[0], number(pair[1], -1e300, 1e300)
@@ -334,7 +334,7 @@ class Element:
                 self._viewport.settings.update(**{pair[0]: pair[1]})
 
     def take_colours(self, choice: Any, page: Any = "") -> None:
-        """Colour by what the page asks for, or tell it why that cannot be."""
+        """Colour by what the page requests, or report why that is not possible."""
         del page  # it gets the colours as well
         changes: dict[str, Any] = {
             name: value

@@ -149,7 +149,7 @@ class Viewport:
         return Pane(handle, self)
 
     def load_in_background(self, notify: Callable[[], None]) -> None:
-        """Draw large surfaces with what is there; as :meth:`FlowHandle.load_in_background`."""
+        """Draw with the tiles that are ready, as :meth:`FlowHandle.load_in_background` does."""
         self._tile_ready = notify
         for pane in self.panes:
             pane.handle.load_in_background(notify)

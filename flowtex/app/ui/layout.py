@@ -221,7 +221,7 @@ def _other_theme(theme: str) -> str:
 
 
 def _busy(controllers: Controllers) -> None:
-    """Tell what is being read or traced, and offer to stop it."""
+    """Show what is being read or traced, and offer to stop it."""
     name = controllers.context.state.key("busy")
     with html.Div(classes="flowtex-busy flowtex-glass", v_if=(name,), role="status"):
         v3.VProgressCircular(indeterminate=True, size=18, width=2, color="primary")

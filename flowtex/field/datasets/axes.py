@@ -34,7 +34,7 @@ SECONDS |= {"hr": 3600.0, "hour": 3600.0, "d": 86400.0, "day": 86400.0}
 FROM_THE_TOP = re.compile(r"generalized.height", re.IGNORECASE)
 #: Names of the dimensions of nodes and of faces, where there is a mesh.
 NODES, FACES = "mesh_nodes", "mesh_faces"
-#: Variables that tell which of these are under water, and what they have there.
+#: Variables that mark which of these are under water, and their value there.
 WET = {
     **dict.fromkeys(("wet_nodes", "wet_cells"), 1),
     **dict.fromkeys(("wetdry_node", "wetdry_elem", "dryFlagNode", "dryFlagElement"), 0),
@@ -64,8 +64,8 @@ class Section:
 
     ``array`` is the variable, ([time,] rows, columns) or ([time,] nodes or faces of a mesh), of
     which nothing is read yet. ``times`` are dates, or seconds, one for each step, or ``None`` where
-    no time is known; ``notes`` tell what was chosen without being asked for, ``level`` has words
-    for the level, and ``numbers`` what is drawn along axes where there is a choice, by name.
+    no time is known; ``notes`` say what was chosen automatically, ``level`` is the level as text,
+    and ``numbers`` are the indices that are drawn along axes with a choice, by name.
     """
 
     array: xr.DataArray
@@ -161,7 +161,7 @@ def _level_beside(array: xr.DataArray) -> str:
 def wet_at(
     section: Section, dim: str, datasets: Sequence[Any], choice: Choice
 ) -> Callable[[int], Bools] | None:
-    """Return what tells which nodes or faces are under water at a step of a velocity."""
+    """Return the mask of nodes or faces under water at a step of a velocity."""
     plain = Choice(choice.sel, choice.isel, {*choice.sel, *choice.isel})
     for ds in datasets:
         for name, water in WET.items():
@@ -267,7 +267,7 @@ def _values(array: xr.DataArray, dim: str) -> AnyArray | None:
 
 
 def _time_beside(array: xr.DataArray) -> AnyArray | None:
-    """Return the one date that is told beside a variable that has no axis of time."""
+    """Return the single date of a variable without a time axis."""
     found = [c for c in array.coords.values() if c.ndim == 0 and _is_dates(c)]
     named = [c for c in found if c.attrs.get("standard_name") == "time"] or found
     return np.atleast_1d(named[0].values) if named else None

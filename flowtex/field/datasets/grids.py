@@ -245,7 +245,7 @@ def first_side(side: str, cell: str, counts: tuple[int, int], datasets: Sequence
 
 
 def shift_told(side: str, cell: str, datasets: Sequence[Any]) -> int | None:
-    """Return the same where COMODO's or SGRID's attributes tell it."""
+    """Return the same from the attributes of COMODO or SGRID."""
     for ds in datasets:
         shift = ds[side].attrs.get("c_grid_axis_shift") if side in ds.variables else None
         if shift is not None:
@@ -264,6 +264,6 @@ def _line(name: str, datasets: Sequence[Any]) -> Any:
     for ds in datasets:
         if name in ds.coords and ds[name].ndim == 1 and ds[name].dtype.kind in "fiu":
             values = np.asarray(values_in(ds[name]), dtype=float)
-            # Numbers of the nodes alone tell nothing.
+            # Indices of the nodes alone are no coordinates.
             return None if np.array_equal(values, np.arange(len(values)) + values[0]) else values
     return None

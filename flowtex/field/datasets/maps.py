@@ -69,7 +69,7 @@ class MapNodes:
 
     ``points`` are (J, I, 3), ``lines`` is the index that takes an array of the grid (J, I) to the
     order of the map, ``periodic`` the argument of :meth:`FlowField.from_arrays`; ``lon`` and
-    ``lat`` tell where vectors point.
+    ``lat`` give the directions of vectors.
     """
 
     projection: Projection

@@ -32,13 +32,13 @@ EARTH = ("eastward", "zonal", "east")
 MAIN = ("sea_water_velocity", "sea_water_x_velocity", "wind", "x_wind")
 #: Words of velocities.
 MOVING = re.compile(r"velocity|wind|current|drift|momentum_component")
-#: Names that are a velocity even where nothing else says so, without what tells the component.
+#: Names that are a velocity even where nothing else says so, without the letter of the component.
 BARE = re.compile(
     r"^(|o|a|bar|vel|velocity|wind|wnd|cur|curr|current|grd|as|gos|water|component|"
     r"eulerian_current_velocity|.*(velocity|wind|current).*|"
     r"hvel|dahv|horizontalvel|depthaveragevel|nod|ureconstruct)\d*m?$"
 )
-#: Names that models have given to the components, and that nothing in them tells.
+#: Names of components in models that do not follow any pattern.
 KNOWN_NAMES = {"vozocrtx": "vomecrty", "sozocrtx": "somecrty"}
 #: Metres per second in the units of velocities, as they are left when written plainly.
 UNITS = {
@@ -72,8 +72,8 @@ WORDS = (
 class Pair:
     """Two variables that are the components of a velocity.
 
-    ``along`` tells the directions: ``"earth"`` for eastward and northward, ``"grid"`` for those of
-    the grid, and ``""`` where nothing tells. ``why`` says how the two were found, and ``rank`` how
+    ``along`` gives the directions: ``"earth"`` for eastward and northward, ``"grid"`` for those of
+    the grid, and ``""`` if unknown. ``why`` says how the two were found, and ``rank`` how
     likely they are the velocity that is meant, 0 the most.
     """
 
@@ -187,7 +187,7 @@ def _text(array: xr.DataArray, source: str) -> str:
 def _partners(
     text: str, source: str, partners: Mapping[str, str] = PARTNERS
 ) -> Iterator[tuple[str, str, str]]:
-    """Give the word that tells the component, the text without it, and that of the partner."""
+    """Yield the word of the component, the text without it, and the text of the partner."""
     if source == "name" and text in KNOWN_NAMES and partners is PARTNERS:
         yield "x", "velocity", KNOWN_NAMES[text]
     for word, other in partners.items():

@@ -40,7 +40,7 @@ class Places:
     """Positions of nodes, (J, I) each.
 
     ``a`` and ``b`` are longitude and latitude in degrees where ``is_earth``, else x and y in units
-    of ``unit``. ``is_line`` tells that a follows from the column alone and b from the row; both are
+    of ``unit``. ``is_line`` says that a depends on the column only and b on the row only; both are
     then views of two lines, :attr:`lines`, that take no room. ``why`` names the coordinates.
     """
 
@@ -207,7 +207,7 @@ def _numbers(c: Any) -> Floats:
 
 
 def _is_lonlat(a: Floats, b: Floats, lon: Any, lat: Any) -> bool:
-    """Whether coordinates are degrees; a name such as XC alone does not tell."""
+    """Whether coordinates are degrees; a name such as XC alone is not enough."""
     units = [str(c.attrs.get("units", "")) for c in (lon, lat)]
     told = all(DEGREES.match(u) for u in units) or all(
         "lon" in str(c.attrs.get("standard_name", c.name)).lower()
@@ -261,7 +261,7 @@ def _over_nodes(a: Floats, b: Floats) -> tuple[Floats, Floats]:
 def _plane(
     array: xr.DataArray, x: Any, y: Any, a: Floats, b: Floats, datasets: Sequence[xr.Dataset]
 ) -> Places:
-    """Return places in a plane, or on the Earth where the grid mapping tells which."""
+    """Return positions in a plane, or on the Earth if the grid mapping gives them."""
     units = [str(c.attrs.get("units", "")).strip() for c in (x, y)]
     why = f"{x.name} and {y.name}"
     crs = _mapping(array, datasets)

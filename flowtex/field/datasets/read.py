@@ -70,8 +70,8 @@ class Recognised:
     """What was recognised in a dataset, and why.
 
     ``pair`` are the two variables of the velocity, and ``along`` is along what they are:
-    ``"earth"``, or ``"grid"`` where ``ahead`` tells the ways of rows and columns, 1 or -1.
-    ``staggered`` tells that they lie on the sides of cells. ``grid``, ``coordinates`` and ``notes``
+    ``"earth"``, or ``"grid"``, where ``ahead`` gives the directions of rows and columns, 1 or -1.
+    ``staggered`` says that they lie on the sides of cells. ``grid``, ``coordinates`` and ``notes``
     are words: the kind of grid, names of the coordinates, and what was chosen without being asked
     for. ``places`` are the nodes in the middle of cells; ``factor`` makes components m/s, and
     ``mask`` is a variable that is positive where there is data.
@@ -400,7 +400,7 @@ def _on_mesh(
 
 
 class Datasets(list[Any]):
-    """Datasets whose axes cf_xarray can tell, with times as dates."""
+    """Datasets whose axes cf_xarray recognises, with times as dates."""
 
 
 def as_datasets(data: Any) -> Datasets:
@@ -437,7 +437,7 @@ def _scalars(known: Recognised, datasets: Sequence[Any], choice: Choice) -> dict
     found: dict[str, _Scalar] = {}
     used = (known.pair.u.name, known.pair.v.name)
     steps = known.u.array.shape[0] if known.u.is_series else 1
-    # Dimensions of one name do not tell the sides of cells from their middle.
+    # Dimensions of the same name do not distinguish the sides of cells from their centres.
     aside = known.staggered and set(known.pair.u.dims) & set(known.pair.v.dims) >= {*known.cells}
     # What a velocity has no level for may still have a value.
     choice.used.update(choice.sel, choice.isel)

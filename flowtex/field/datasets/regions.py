@@ -32,7 +32,7 @@ from flowtex.field.steps import Nodes
 if TYPE_CHECKING:
     import xarray as xr
 
-#: What is beyond this stands for missing data, though no attribute tells.
+#: Values beyond this are missing data, even without an attribute.
 LARGEST_VALUE = 1e15
 
 
@@ -43,7 +43,7 @@ class RegionLines:
     ``a`` is the longitude of each column (I,) and ``b`` the latitude of each row (J,), or x and y;
     ``shown`` is the former on the map, where the last column may be the first one, a turn further.
     ``rows`` and ``columns`` are numbers in the data. ``projection`` is the map, ``None`` in a
-    plane, and ``closed`` tells whether the last column is the first one again.
+    plane, and ``closed`` says whether the last column repeats the first.
     """
 
     a: Floats
@@ -180,7 +180,7 @@ def numbers_in(array: Any) -> Floats:
         msg = f"{getattr(array, 'name', 'a variable')!r} has type {values.dtype}; expected numbers"
         raise FieldError(msg)
     values = values.astype(float)
-    # Fill values that no attribute tells.
+    # Fill values that no attribute names.
     values[np.abs(values) > LARGEST_VALUE] = np.nan
     return values
 

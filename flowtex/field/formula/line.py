@@ -26,7 +26,7 @@ def is_line(text: str) -> bool:
 def line_arguments(line: str) -> tuple[list[str], dict[str, Any]]:
     """Return the expressions of a line, and the arguments of :func:`flowtex.formula` by name.
 
-    Raises a FieldError where numbers are none.
+    Raises a FieldError when numbers are invalid.
     """
     expressions, named = [], {}
     for part in line.split(";"):

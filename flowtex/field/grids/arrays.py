@@ -32,7 +32,7 @@ from flowtex.field.validation import (
 class GridNodes:
     """Nodes that make a field, with the geometry between them.
 
-    ``moves`` tells whether they do at the first time, or at any where all are in memory.
+    ``moves`` says whether they do at the first time, or at any time if all are in memory.
     """
 
     surface: GridSurface

@@ -149,7 +149,7 @@ def _longitude(points: Floats) -> Closure | None:
     x, y = points[..., 0], points[..., 1]
     if not np.isfinite(x[:, 0]).all():
         return None
-    # One line tells most other meshes apart.
+    # One line is enough to exclude most other meshes.
     steps = np.diff(x[:, 0])
     even = len(steps) > 3 and np.ptp(steps) <= 1e-3 * abs(steps[0]) and steps[0] != 0
     span, step = abs(x[-1, 0] - x[0, 0]), abs(steps[0])

@@ -43,7 +43,7 @@ class GridSurface(Surface):
     """Nodes of a structured surface, (J, I, 3), in the mesh's own units.
 
     ``valid`` (J, I) marks nodes that carry data. Where the (j, i) axis is ``periodic``, its last
-    line of nodes is the first one again, displaced by ``offset`` on a flat map. ``on_globe`` tells
+    line of nodes is the first one again, displaced by ``offset`` on a flat map. ``on_globe`` says
     that it lies on a globe around the origin, with north at +z.
     """
 
@@ -368,7 +368,7 @@ def faces_of(cells: Bools) -> Indices:
 def known_positions(points: Floats, valid: Bools) -> Bools:
     """Nodes whose coordinates can be trusted: blanked ones often hold a fill value."""
     finite = finite_nodes(points)
-    # Where all nodes with coordinates are valid, or none, there is nothing to tell apart.
+    # If all nodes with coordinates are valid, or none, nothing has to be distinguished.
     if not (valid & finite).any() or not (finite & ~valid).any():
         return finite
     low, high = bounds(points[valid & finite])

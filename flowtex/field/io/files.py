@@ -29,7 +29,7 @@ from flowtex.field.io.surfaces import beside
 
 
 def open_reader(file: Path) -> Any:
-    """Return the reader of a file; a ValueError tells of a format that is not known."""
+    """Return the reader of a file; raises a ValueError if the format is unknown."""
     import pyvista as pv
 
     class DecomposedReader(pv.POpenFOAMReader):
@@ -60,7 +60,7 @@ class _CGNSReader:
         reader.reader.UpdateInformation()
         information = reader.reader.GetOutputInformation(0)
         times = information.Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()) or ()
-        # VTK tells 0 where the file has no times.
+        # VTK reports 0 if the file has no times.
         self.time_values = [] if times == (0.0,) else sorted(map(float, times))
         self.active_time_value = self.time_values[0] if self.time_values else 0.0
 
@@ -94,7 +94,7 @@ class OpenFile:
     """A file that was opened, of which no more is read than its format asks for.
 
     ``source`` is one of PyVista's readers, a mesh, or a list of time steps; ``velocity`` is the
-    name of the velocity where the format fixes it; ``problem`` tells why nothing can be drawn.
+    name of the velocity where the format fixes it; ``problem`` says why nothing can be drawn.
     """
 
     path: Path

@@ -17,8 +17,8 @@ from pathlib import Path
 from flowtex.field.io import plot3d
 from flowtex.field.io.surfaces import beside
 
-#: Path, number on the disk, size and time of change in nanoseconds of each file; zeros where there
-#: is none.
+#: Path, number on the disk, size and time of change in nanoseconds of each file; zeros if it does
+#: not exist.
 Identity = tuple[tuple[str, int, int, int], ...]
 
 #: Endings of files that list others, how, and bytes of such a list that are read.

@@ -131,7 +131,7 @@ def several_parts(mesh: Any, *, series: bool = False, cut: bool = False) -> dict
 
 
 def _same_nodes(meshes: list[Any]) -> bool:
-    """Whether meshes have the same nodes, as far as their sizes and bounds tell."""
+    """Whether meshes have the same nodes, judged by their sizes and bounds."""
     if not meshes:
         return False
     first = np.asarray(meshes[0].bounds)

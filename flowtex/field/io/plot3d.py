@@ -25,7 +25,7 @@ VELOCITY = 200
 
 #: Suffixes under which PLOT3D grids are met.
 GRID_SUFFIXES = (".xyz", ".x", ".g", ".p3d", ".grd", ".bin", ".dat", ".fmt")
-#: Grids in one file, at most; a header that tells of more is none.
+#: Grids in one file, at most; a header with more is not one.
 MOST_GRIDS = 100_000
 #: Bytes in memory of one byte of text: a number has two at least, and its word takes some 50.
 TEXT_GROWTH = 25

@@ -57,9 +57,9 @@ class BlockSummary(NamedTuple):
 class FileSummary:
     """What a file holds.
 
-    ``grid`` is the type of its mesh: of the block that is meant where it has several. ``size`` are
-    words, ``cells`` counts those of an unstructured mesh by kind, ``bounds`` are ends, ((x, x), (y,
-    y), (z, z)), and ``volume`` tells whether there is one to cut. ``blocks`` are those that hold
+    ``grid`` is the type of its mesh: of the block that is meant where it has several. ``size`` is a
+    text, ``cells`` counts the cells of an unstructured mesh by kind, ``bounds`` are ((x, x), (y,
+    y), (z, z)), and ``volume`` says whether a volume can be cut. ``blocks`` are those that hold
     something, when there are several; ``candidates`` are names of what may be the velocity,
     ``blanked`` counts hidden nodes, and ``problem`` is what keeps :meth:`FlowField.from_file` from
     reading it as it stands.

@@ -1,7 +1,7 @@
 """The arrays of a mesh, and which of them are the velocity.
 
 A velocity is an array of two or three components, or as many arrays of one: those that are named,
-or whose names tell that they belong together (:mod:`flowtex.field.io.components`).
+or whose names show that they belong together (:mod:`flowtex.field.io.components`).
 """
 
 from __future__ import annotations
@@ -198,7 +198,7 @@ def _hint(name: Any, arrays: list[MeshArray]) -> str:
 
 
 def _preferred(mesh: Any) -> list[MeshArray]:
-    """Candidates, or the single one that the mesh marks as its vectors, or that a name tells."""
+    """Candidates, or the one that the mesh marks as its vectors or a name identifies."""
     arrays = candidates(mesh)
     active = mesh.active_vectors_name
     # VTK's PLOT3D reader marks the momentum by itself: that is no one's choice.

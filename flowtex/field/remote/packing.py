@@ -83,7 +83,7 @@ def unpack_field(
 
 
 def _check(field: FlowField) -> None:
-    """Raise where the shapes, types or numbers of nodes are none of a field."""
+    """Raise an error if the shapes, types or numbers of nodes do not describe a field."""
     (rows, columns), steps = field.shape, len(field.times)
     shapes: dict[str, tuple[Any, tuple[int, ...], str]] = {
         "points": (field.points, (rows, columns, 3), "f"),

@@ -48,7 +48,7 @@ class Reader:
         return describe_source(self._source), []
 
     def do_part(self, block: str | None) -> Answer:
-        """Tell what can be chosen of a block."""
+        """Describe what can be chosen of a block."""
         return describe_source(self._opened.part(block)), []
 
     def do_plane_of(self, level: float | str) -> Answer:

@@ -4,7 +4,7 @@ Its tangents at the nodes are two orthonormal vectors of the tangent plane, so t
 velocity "along i and j" are lengths there, and what is computed with tangents holds for both kinds
 of surfaces.
 
-A point of the surface is told by two numbers as (i, j), as on a structured surface: j is the number
+A point of the surface is given by two numbers (i, j), as on a structured surface: j is the number
 of the triangle plus the share of its second corner, i the share of its third.
 """
 

@@ -57,7 +57,7 @@ class Side:
     scale: Floats  #: Nominal length of a unit of lag, (N,).
 
     def step(self, lag: Floats) -> Floats:
-        """Lag to the next sample from lags (N,): equation 3, with the speed that is there."""
+        """Lag to the next sample from lags (N,): equation 3, with the speed at the sample."""
         speed = np.maximum(self.path.speed(lag), const.LEAST_SPEED)
         return np.asarray(self.spacing / (self.scale * speed))
 

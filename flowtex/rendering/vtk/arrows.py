@@ -85,7 +85,7 @@ class SurfaceArrows:
     def _shared(
         self, seeds: Seeds, layers: Mapping[TileKey | None, FlowLayer], pyramid: Pyramid | None
     ) -> dict[TileKey | None, dict[str, Floats]]:
-        """Share seeds among the layers: the finest that is there draws them."""
+        """Share seeds among the layers: the finest one that is ready draws them."""
         assert self._seeds is not None
         result: dict[TileKey | None, dict[str, Floats]] = {}
         keys = sorted((key for key in layers if key is not None), key=lambda key: key.level)

@@ -55,12 +55,12 @@ HALF_FLOAT = 0x140B
 class GPUTexture:
     """One texture array with its mip levels; an image is an array of one layer.
 
-    It belongs to one render window, takes a texture unit while a frame is drawn, and is let go with
-    the window at the latest. ``vtkTexture`` has neither arrays nor half precision, and of VTK's
-    textures from memory the arrays alone get mip levels. The texels (layers, H, W, channels), with
-    1, 2 or 4 channels, are stored in half precision; 2 or 3 may be in ``single``. There are so many
-    mip levels beside the finest, or all of them; ``repeat`` says whether the texture goes around
-    along (v, u).
+    It belongs to one render window, uses a texture unit while a frame is drawn, and is released
+    with the window at the latest. ``vtkTexture`` has neither arrays nor half precision, and of
+    VTK's textures from memory the arrays alone get mip levels. The texels (layers, H, W, channels),
+    with 1, 2 or 4 channels, are stored in half precision; 2 or 3 may be in ``single``. There are so
+    many mip levels beside the finest, or all of them; ``repeat`` says whether the texture goes
+    around along (v, u).
     """
 
     def __init__(

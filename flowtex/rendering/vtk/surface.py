@@ -90,7 +90,7 @@ class FlowSurface:
         return self._base.view
 
     def load_in_background(self, notify: Callable[[], None]) -> None:
-        """Draw frames with the tiles that are there, and tell, from a thread, when there are more.
+        """Draw frames with the tiles that are ready, and notify from a thread when more are.
 
         Otherwise a frame waits for the tiles that it asks for, but in a window that somebody uses.
         """

@@ -1,7 +1,7 @@
 """What stands beside a flow: meshes, lines, points and labels in colours of their own.
 
 A client draws them with the flow, and hides each behind what lies before it. All meshes are in a
-few parts together; the header tells which triangles and pieces of lines are whose.
+few parts together; the header says which triangles and pieces of lines belong to which body.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class Bodies:
     lights: tuple[Light, ...] = ()
 
     def header(self) -> Header:
-        """Return what of the header tells of them."""
+        """Return their part of the header."""
         face = piece = 0
         runs = []
         for body in self.meshes:

@@ -117,8 +117,8 @@ class ClientData:
     ``chosen`` are the numbers of the destination times that are handed over, increasing; all are
     where it is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and
     ``finest`` is the finest level of those that are handed over. Where the client ``traces``, it is
-    handed the velocity in place of slices, if it can trace them. ``bodies`` stand beside it, and
-    ``marks`` tell of its structure.
+    handed the velocity in place of slices, if it can trace them. ``bodies`` are other meshes, and
+    ``marks`` describe its structure.
     """
 
     textures: TextureSet

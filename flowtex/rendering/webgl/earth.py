@@ -46,7 +46,7 @@ class _Lines:
 
 
 def earth_header(geometry: DrawnSurface, *, has_land: bool) -> Header | None:
-    """Return what of the header tells of the Earth; ``None`` for a flow that is elsewhere."""
+    """Return the part of the header about the Earth; ``None`` for a flow that is elsewhere."""
     field = geometry.field
     if field.projection is None:
         return None
@@ -87,7 +87,7 @@ def earth_parts(geometry: DrawnSurface, *, has_land: bool, tiled: bool) -> Parts
 def dates_of(field: FlowField, times: Floats) -> Header:
     """Return the date at time 0 as ISO text, or those of all times in a calendar of its own.
 
-    ``step`` tells how exactly dates are told: the shortest time between two of them.
+    ``step`` is the precision of dates: the shortest time between two of them.
     """
     start = field.start
     if start is None:

@@ -1,8 +1,8 @@
 """Critical points and separatrices as a browser is handed them: two parts of each time step.
 
 ``critical/3`` has a row for each point of step 3, (K, 4): where it is, and the number of its kind.
-``separatrices/3`` has one for each point of its lines, (N, 4): where it is, and a number that tells
-the line. Both begin with the strongest; ``client/src/marks.ts`` is the other side.
+``separatrices/3`` has one for each point of its lines, (N, 4): its position, and a number that
+identifies the line. Both begin with the strongest; ``client/src/marks.ts`` is the other side.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Marks:
     carried: bool = False
 
     def header(self) -> Header:
-        """Return what of the header tells of them."""
+        """Return their part of the header."""
         return {
             "parts": list(self.kinds),
             "kinds": [

@@ -51,7 +51,7 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
 
 
 def _paired(region: Indices, signs: Indices) -> Bools:
-    """Tell which points (K,) have a partner in their region, the last ones where not all have."""
+    """Return which points (K,) have a partner in their region, the last ones where not all have."""
     kind = 2 * region + (signs > 0)
     counts = np.bincount(kind, minlength=2 * int(region.max(initial=0)) + 2)
     order = np.argsort(kind, kind="stable")

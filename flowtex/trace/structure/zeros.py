@@ -103,7 +103,7 @@ def _cross(one: Floats, two: Floats) -> Floats:
 
 
 def _inverse(matrix: Floats) -> Floats:
-    """Return the inverses of matrices (N, 2, 2), not finite where there is none."""
+    """Return the inverses of matrices (N, 2, 2), not finite for singular ones."""
     (a, b), (c, d) = np.moveaxis(matrix, 0, -1)
     adjugate = np.stack([np.stack([d, -b], axis=-1), np.stack([-c, a], axis=-1)], axis=1)
     return np.asarray(adjugate / (a * d - b * c)[:, None, None])

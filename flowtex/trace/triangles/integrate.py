@@ -1,9 +1,9 @@
 """Paths of many particles on a surface of triangles, one step of each within one triangle a round.
 
 A step follows the Taylor polynomial of second order of the particle's shares of the corners, whose
-term of third order tells how long it may be, so that none has to be taken back; it ends at an edge
-at the latest, at the root of a quadratic. The same polynomial gives the positions at the lags, and
-the length of path as far as lags are lengths, so lags do not shorten steps.
+third-order term limits its length, so that no step is rejected; it ends at an edge at the latest,
+at the root of a quadratic. The same polynomial gives the positions at the lags, and the length of
+path as far as lags are lengths, so lags do not shorten steps.
 
 Where the velocities of two triangles point at each other across their edge, which happens beside
 edges that are not flat, a particle slides along the edge.
@@ -38,13 +38,13 @@ STEPS_PER_ROW, LEAST_STEPS = 30, 3_000
 #: goes round in a spiral, or through a triangle so flat that it is as good as stuck. More triangles
 #: do not meet in a node.
 MOST_STANDING = 300
-#: Share of a triangle that is none, by rounding.
+#: Barycentric coordinate that is zero, up to rounding.
 SHARE_ROUNDING = 1e-12
-#: Rate of a share, as one of the others', that is none, by rounding.
+#: Relative rate of a barycentric coordinate that is zero, up to rounding.
 EDGE_ROUNDING = 1e-9
 #: Share of a lag by which rounding may miss it.
 LAG_ROUNDING = 1e-12
-#: Velocity out of a border, as a share of all, that is none.
+#: Relative velocity out of a border that counts as zero.
 BORDER_ROUNDING = 1e-6
 #: Twice what acceleration may move a particle in one step, in sizes of its triangle.
 MOST_TURN = 0.2
@@ -96,7 +96,7 @@ def integrate(
     run = _Run(
         motion, points, triangle, shares, lags, lags[-1] if last is None else last, tolerance
     )
-    # What is too large or too small to be told ends a path.
+    # Values too large or too small to represent end a path.
     with np.errstate(all="ignore"):
         for _ in range(most_steps or _most_steps(points)):
             if not len(run.state.which):
@@ -149,7 +149,7 @@ class _Particles:
     """Particles still under way; the last axis is theirs.
 
     ``edge`` is the corner opposite to the edge by which they came into their triangle, -1 where
-    there is none; ``due`` is the next lag they are to be told at, and ``next`` its number.
+    there is none; ``due`` is the next lag to record, and ``next`` its index.
     """
 
     which: Indices
@@ -368,7 +368,7 @@ class _Run:
             due = due[state.due[due] <= lag[due] * (1 + LAG_ROUNDING)]
 
     def _end(self, at: Indices, now: Derivatives) -> None:
-        """End some paths where they are, and tell the lags that are left by their straight on."""
+        """End some paths at their positions, and continue them straight for the other lags."""
         state = self.state
         which, rate = state.which[at], now.first[:, at]
         if self.motion.by_length:

@@ -90,7 +90,7 @@ def _measure(
     heights: Floats,
     size: Floats,
 ) -> None:
-    """Write what is told of some triangles."""
+    """Write the values of some triangles."""
     nodes = surface.triangles[some]
     p = surface.points[0][nodes]
     one, two = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
@@ -123,7 +123,7 @@ def _dot(one: Floats, two: Floats) -> Floats:
 
 
 def _across(surface: TriangleSurface) -> Indices:
-    """Return what :attr:`TriangleMesh.across` tells."""
+    """Return :attr:`TriangleMesh.across`."""
     corners, beside = surface.triangles, surface.neighbours
     result = np.full(beside.shape, -1, dtype=np.intp)
     for k in range(3):

@@ -111,7 +111,7 @@ class Session(ABC):
         return socket
 
     async def is_free(self) -> bool:
-        """Wait a little until no page is connected, and tell whether that is so."""
+        """Wait a little until no page is connected, and return whether that is so."""
         end = time.monotonic() + RECONNECT_WAIT_S
         while self.connected and time.monotonic() < end:
             await asyncio.sleep(0.02)
@@ -185,7 +185,7 @@ class Sessions:
     async def prepare(self) -> dict[str, str]:
         """Open the first session.
 
-        What is wrong with a mesh or a setting is told then, and the first visitor does not wait.
+        Errors of a mesh or a setting then appear early, and the first visitor does not wait.
         Returns the folders that all pages want served, by route.
         """
         self._ready = await self._begin()

@@ -29,9 +29,9 @@ class Mesh:
     """A mesh of polygons; its numbers are read when they are asked for.
 
     ``kind`` has words for the convention. ``x`` and ``y`` are coordinates of the nodes, or those of
-    the corners of each face where ``corners``, the nodes of each face, is missing. ``counts`` tells
-    how many corners each face has, where these differ, and ``first`` is the number of the
-    first node.
+    the corners of each face where ``corners``, the nodes of each face, is missing. ``counts`` is
+    the number of corners of each face, where these differ, and ``first`` the index of the first
+    node.
     """
 
     kind: str
@@ -72,7 +72,7 @@ class Mesh:
         if "projection" in told:
             return False
         if self.kind == "SCHISM" and not unit:
-            # Newer files tell nothing at all.
+            # Newer files say nothing at all.
             x, y = (np.abs(c) for c in self._raw)
             return bool(np.nanmax(x) <= 360 and np.nanmax(y) <= 90)
         return bool(LONGITUDES.search(told)) or name == "nodes"
@@ -198,7 +198,7 @@ def _dim(array: Any, ours: str) -> str:
 
 
 def _numbers(mesh: Mesh, count: int) -> Indices:
-    """Return the numbers of the nodes of faces, (F, K), from 0; -1 where there is none."""
+    """Return the numbers of the nodes of faces, (F, K), from 0; -1 if missing."""
     corners = mesh.corners
     _, faces = mesh.dims
     values = values_in(corners.transpose(faces, ...))

@@ -1,1 +1,1 @@
-"""What a file declares, held against what it has and what memory has, before a reader opens it."""
+"""Compares what a file declares with its size and the free memory, before a reader opens it."""

@@ -13,7 +13,7 @@ from flowtex.field.io.inspection.ensight import check_ensight
 from flowtex.field.io.inspection.surfaces import check_obj, check_ply, check_stl
 from flowtex.field.io.inspection.zarr_folder import DOCUMENTS, check_zarr
 
-#: Bytes that tell what most files are.
+#: Bytes that identify most files.
 HEAD_BYTES = 256
 GRIB_SUFFIXES = (".grib", ".grb")
 #: Files of a series or of several blocks that are looked into, at most.
@@ -29,7 +29,7 @@ BY_SUFFIX: dict[str, Callable[[Path], None]] = {
 
 
 def inspect_file(path: Path, *, whole: bool = True) -> None:
-    """Refuse a file that has not what it declares, needs too much memory, or leads to others.
+    """Refuse a file that lacks what it declares, needs too much memory, or refers to others.
 
     Those that it names as members of a series, or as its blocks, are looked into as well, each once
     for each of its times of change. Of folders those of Zarr are. Arrays are read ``whole``, as

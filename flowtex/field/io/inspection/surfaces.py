@@ -22,7 +22,7 @@ STL_HEAD, STL_TRIANGLE = 84, 50
 
 
 def check_obj(path: Path) -> None:
-    """Refuse a file whose last line is cut, or whose faces name points that it has not.
+    """Refuse a file whose last line is cut, or whose faces name missing points.
 
     The format declares nothing: of one that ends early after a line only points that no face uses
     tell, and a whole one may have such.

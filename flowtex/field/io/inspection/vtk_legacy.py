@@ -15,7 +15,7 @@ from flowtex.field.io.inspection.limits import check_count, check_memory
 from flowtex.field.io.inspection.numbers import TextScanner
 
 MAGIC = b"# vtk DataFile Version"
-#: Bytes of a value in the file and in memory; VTK tells types by how their names begin.
+#: Bytes of a value in the file and in memory; VTK recognises types by how their names begin.
 TYPES = {
     b"unsigned_char": (1, 1),
     b"signed_char": (1, 1),
@@ -44,7 +44,7 @@ COMPONENTS = {
 }
 CELLS = (b"cells", b"vertices", b"lines", b"polygons", b"triangle_strips")
 COORDINATES = (b"x_coordinate", b"y_coordinate", b"z_coordinate")
-#: Keywords; VTK tells them by how they begin, as types.
+#: Keywords; VTK recognises them by how they begin, as types.
 KEYWORDS = (
     *(*COMPONENTS, *CELLS, *COORDINATES, b"dataset", b"dimensions", b"extent", b"spacing"),
     *(b"origin", b"aspect_ratio", b"points", b"blanking", b"cell_types", b"point_data"),

@@ -30,7 +30,7 @@ def check_zarr(folder: Path) -> None:
 
 
 def _arrays(folder: Path) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Give what documents say of arrays, each of which may be told at several places."""
+    """Yield what documents say of arrays, each of which may occur in several documents."""
     for kind in DOCUMENTS:
         for path in folder.rglob(kind):
             with suppress(ValueError, OSError):

@@ -1,6 +1,6 @@
 """The surface that is drawn of a mesh: its own, a plane through a volume, or a contour of it.
 
-A cut is told as text, ``slice="x=0.5"`` or ``contour="pressure=101325"``, or as Python's numbers.
+A cut is given as text, ``slice="x=0.5"`` or ``contour="pressure=101325"``, or as numbers.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class Contour:
     text: str
 
     def faults(self, mesh: Any) -> list[str]:
-        """Tell that there is no such array."""
+        """Raise the error for an unknown array."""
         names = [a.name for a in catalogue(mesh) if a.numeric and a.components == 1]
         if self.name in names:
             return []
@@ -181,8 +181,8 @@ def surface_of(
     """Return a PolyData with the data of the mesh, and the triangles of its surface, (M, 3).
 
     Arrays on the cells of a volume that is cut come to its points before. :data:`HIDDEN` is above
-    zero at points that depend on hidden ones. ``tell`` says what was taken without being asked
-    for; :func:`cut_faults` returned none before.
+    zero at points that depend on hidden ones. ``tell`` issues a notice about what was chosen
+    automatically; :func:`cut_faults` returned none before.
     """
     import pyvista as pv
 
