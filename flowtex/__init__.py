@@ -3,7 +3,7 @@
 Three calls are enough to begin: :func:`show` and :func:`render` draw a mesh or a
 :class:`FlowField`, and ``plotter.flowtex.add(mesh)`` adds one to a PyVista plotter. Beneath
 them lie :meth:`FlowField.from_arrays`, :func:`trace` and :class:`TraceSlices`, which need
-NumPy and SciPy alone: what draws is imported when it is first asked for.
+NumPy and SciPy alone: what draws is imported when it is first requested.
 """
 
 from __future__ import annotations

@@ -498,7 +498,7 @@ class AppearanceAttributes:
     Each of the appearance is to be set at any time; ``{appearance}`` in the docstring of a class
     becomes their names.
 
-    Once it is made, other attributes cannot be set, so that a slip of the pen is no silent one.
+    Once it is made, other attributes cannot be set, so that a slip of the pen is not a silent one.
     """
 
     scene: Any

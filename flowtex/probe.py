@@ -205,7 +205,7 @@ def probe(
     field_values = values_at(view.field, place.index, view.time)
     textures = view.textures
     if (drawn := textures.geometry.field) is not view.field:
-        # Of a large field a coarser form is at hand, on which the point has another place.
+        # Of a large field a coarser form is available, on which the point has another place.
         nearest, _ = locator(drawn).nearest(field_values.position[None])
         surface, place = drawn.surface, surface_point(drawn.surface, nearest[0])
     fragments = Fragments.of(textures, cover_place(surface, place, camera, size))

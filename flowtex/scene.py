@@ -217,7 +217,7 @@ class Scene:
 
     @property
     def legend_limits(self) -> tuple[float, float]:
-        """The same as a legend shows them: an end that is 0 but for rounding is 0."""
+        """The same as a legend shows them: an end that is 0 up to rounding is 0."""
         low, high = self.scalar_limits
         if self.appearance.log_scale:
             return low, high
@@ -233,7 +233,7 @@ class Scene:
     def pyramid(self) -> Pyramid | None:
         """The tiles of a large field; ``None`` where all of it is traced together.
 
-        Noise in a texture, and a field without a sign, are not drawn in tiles.
+        Noise in a texture, and a sign-free field, are not drawn in tiles.
         """
         if self._sliced or not _is_tiled(self.field, self.settings):
             return None
@@ -358,7 +358,7 @@ class Scene:
     def scalar_range(self, name: str, *, robust: bool = False) -> tuple[float, float]:
         """Least and greatest value over the valid nodes and all times.
 
-        A robust range leaves 2 % of the values out at either end. Where all are the same but for
+        A robust range leaves 2 % of the values out at either end. Where all are the same up to
         rounding, the range is widened, so that colours do not show rounding errors.
         """
         key = (name, robust, self.pyramid is None)
@@ -392,7 +392,7 @@ class Scene:
         return scene
 
     def coarsened(self, nodes: int) -> Scene:
-        """Return a scene of the same settings on so many nodes at most, for a first picture.
+        """Return a scene of the same settings on at most this many nodes, for a first picture.
 
         Its colours have the range of this one.
         """

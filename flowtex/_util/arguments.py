@@ -88,7 +88,7 @@ def checked_target(path: Any) -> Path:
 
 
 def check_field(field: Any, kind: type) -> None:
-    """Refuse what is no field, which is of a class."""
+    """Refuse what is not a field, which is of a class."""
     if not isinstance(field, kind):
         msg = f"field is {field!r}; expected a FlowField, such as FlowField.from_pyvista(mesh)"
         raise FieldError(msg)

@@ -129,7 +129,7 @@ class ByteCache(Generic[K, S]):
         with self._lock:
             self._values[key] = value
             self._values.move_to_end(key)
-            # Sizes are added up anew: a value may have grown since it was put here.
+            # Sizes are added up again: a value may have grown since it was put here.
             while len(self._values) > self.min_count and (
                 len(self._values) > self.max_count or self._size() > self.max_bytes
             ):

@@ -1,4 +1,4 @@
-"""What was chosen without being asked for, said to whoever called."""
+"""What was chosen automatically, said to whoever called."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _PACKAGE = str(Path(__file__).resolve().parents[1])
 
 
 class Notice(UserWarning):
-    """Something of the data was chosen without being asked for, or is not drawn."""
+    """Something of the data was chosen automatically, or is not drawn."""
 
 
 def notify(text: str, kind: type[Notice] = Notice) -> None:

@@ -111,7 +111,7 @@ def _coasts() -> tuple[Floats, Bools]:
     lonlat = np.cumsum(steps, axis=0, dtype=np.int16) / STEPS_PER_DEGREE
     joined = np.ones(len(lonlat) - 1, dtype=bool)
     joined[np.cumsum(lengths)[:-1] - 1] = False
-    # Some islands are cut at the date line, which is no coast.
+    # Some islands are cut at the date line, which is not a coast.
     at_date_line = np.abs(lonlat[:, 0]) == 180
     joined &= ~(at_date_line[:-1] & at_date_line[1:])
     return lonlat, joined

@@ -26,7 +26,7 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
             start = given.flat[0]
             # Other calendars have days that datetime64 lacks; their differences are spans.
             given = (given - start).astype("timedelta64[us]")
-    except (TypeError, ValueError):  # what is no array is refused later, by its name
+    except (TypeError, ValueError):  # what is not an array is refused later, by its name
         return times, time_unit, None
     if given.dtype.kind not in "mM":
         return times, time_unit, None

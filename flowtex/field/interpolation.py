@@ -95,7 +95,7 @@ def between_nodes(nodal: AnyArray, index: Floats) -> Floats:
 
 
 def along_line(line: Floats, index: Floats, *, periodic: bool) -> Floats:
-    """Interpolate increasing values (N,) at any index; they go on straight, or by a period."""
+    """Interpolate increasing values (N,) at any index; they continue straight, or by a period."""
     last = len(line) - 1
     if periodic:
         turns = np.floor(index / last)

@@ -7,7 +7,7 @@ this module returns. Each surface returns its own triangles.
 To find a point in space, the nearest nodes are looked up in a tree, which is cached with the
 field. From the triangles around them a walk leads over the surface, across the side on which the
 point lies as long as that leads nearer; that also finds the way over cells that are thousands of
-times longer than wide, where the nearest node is no corner of the right cell.
+times longer than wide, where the nearest node is not a corner of the right cell.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ class Locator:
                 self._try(at, some, beside, (best, triangle, shares))
         self._walk(at, (best, triangle, shares))
         corners = self._points[self._surface.corners_of(triangle)]
-        # The diagonal of a cell is no size of it.
+        # The diagonal of a cell is not a size of it.
         sides = np.sort(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1), axis=1)
         distance = (best / np.where(sides[:, 1] > 0, sides[:, 1], 1.0)).reshape(len(points), -1)
         chosen = np.argmin(distance, axis=1) + np.arange(len(points)) * len(self._shifts)

@@ -28,7 +28,7 @@ REST_SHARE = 1e-7
 
 
 def sign_free_faults(v: Floats) -> list[str]:
-    """Return faults in the velocity of a field without a sign."""
+    """Return faults in the velocity of a sign-free field."""
     if v.ndim != 4 or len(v) == 1:
         return []
     return [

@@ -53,7 +53,7 @@ class Source:
         self.vectors: tuple[str, ...] = ()
         #: Number of nodes (I, J, K) of a structured mesh; ``None`` for others, and for a field.
         self.dimensions: tuple[int, int, int] | None = None
-        #: Names of the meshes, where there are several that are no time steps, of the arrays that
+        #: Names of the meshes, where there are several that are not time steps, of the arrays that
         #: may be the velocity in each, and what a person calls one of them.
         self.blocks: tuple[str, ...] = ()
         self.block_vectors: dict[str, tuple[str, ...]] = {}
@@ -64,7 +64,7 @@ class Source:
         self.ends: dict[str, tuple[float, float]] = {}
         #: Other axes along which there is a choice, and words for each place.
         self.axes: dict[str, tuple[str, ...]] = {}
-        #: Whether a part of the file is read when a field is asked for.
+        #: Whether a part of the file is read when a field is requested.
         self.reads_late = False
         self.nbytes = 0
         self.identity: Identity = ()

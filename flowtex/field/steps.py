@@ -1,4 +1,4 @@
-"""Nodal values of many time steps, each of which is read when it is asked for."""
+"""Nodal values of many time steps, each of which is read when it is requested."""
 
 from __future__ import annotations
 

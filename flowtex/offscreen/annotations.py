@@ -251,7 +251,7 @@ class _Writer:
 
 @lru_cache(8)
 def _font(height: int) -> ImageFont.FreeTypeFont:
-    """Return matplotlib's own font, which has the letters of units, in so many pixels."""
+    """Return matplotlib's own font, which has the letters of units, in this many pixels."""
     from matplotlib import get_data_path
 
     path = Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")

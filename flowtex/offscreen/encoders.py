@@ -27,7 +27,7 @@ Size = tuple[int, int]
 
 #: Suffixes of the files that can be written.
 FORMATS = (".mp4", ".gif", ".webp")
-#: Quality where none is asked for.
+#: Quality where none is requested.
 DEFAULT_QUALITY = 80
 #: Longest side of a picture, in pixels.
 LONGEST_SIDE_PIXELS = 16_384
@@ -193,7 +193,7 @@ class PillowEncoder:
 
 
 def default_fps(path: str | Path) -> float:
-    """Return frames in a second where none are asked for; a GIF counts whole hundredths."""
+    """Return frames in a second where none are requested; a GIF counts whole hundredths."""
     return 20.0 if checked_path("path", path).suffix.lower() == ".gif" else 30.0
 
 

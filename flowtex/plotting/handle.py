@@ -255,7 +255,7 @@ class FlowHandle(AppearanceAttributes):
     def _show_appearance(self, *anew: str) -> None:
         """Follow the appearance; what of the actor was changed by hand and not here stays.
 
-        What follows from the field is shown ``anew`` where that is another one.
+        What follows from the field is shown ``again`` where that is another one.
         """
         old, new = self._shown, self.scene.appearance
         self._shown = new

@@ -31,7 +31,7 @@ BY_HAND = (
 BEHIND, PLATE, OPACITY = ("fill", "background_color", "color"), (1.0, 1.0, 1.0), 0.8
 #: Height of the text: a share of the view's, within limits in points; a title's is larger.
 TEXT_SHARE, LEAST_TEXT, MOST_TEXT, TITLE_SHARE = 1 / 34, 10, 14, 1.15
-#: Height of a bar without its title: a share of the view's, and at least so many lines.
+#: Height of a bar without its title: a share of the view's, and at least this many lines.
 HEIGHT_SHARE, LEAST_LINES = 0.28, 5
 #: Lengths in heights of the text: the width of the colours, and the room around texts.
 THICKNESS, PAD = 1.1, 0.4

@@ -338,7 +338,7 @@ class _Run:
         """Return the numbers of the shards of an array that are in the store."""
         array = self.group[name]
         prefix = f"{array.path}/c/"
-        # A file that is being written is no shard yet.
+        # A file that is being written is not a shard yet.
         keys = listed(array.store.list_prefix, prefix)
         numbers = (key.removeprefix(prefix).split("/") for key in keys)
         return {tuple(map(int, some)) for some in numbers if all(map(str.isdecimal, some))}
@@ -355,7 +355,7 @@ class _Run:
     ) -> None:
         """Run tasks, and raise when some have failed though they were tried again.
 
-        Each needs so many bytes. Shards that are not ``new`` were counted when they were made.
+        Each needs this many bytes. Shards that are not ``new`` were counted when they were made.
         """
         if new:
             self.made += sum(len(t.steps) if isinstance(t, TileTask) else 1 for t in tasks)

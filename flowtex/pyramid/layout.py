@@ -81,7 +81,7 @@ class Part(NamedTuple):
     column: int
 
     def lines(self, shape: tuple[int, int]) -> tuple[slice, slice]:
-        """Return the rows and columns of a level with so many nodes."""
+        """Return the rows and columns of a level with this many nodes."""
         first, second = (
             slice(at * many * TILE_CELLS, min((at + 1) * many * TILE_CELLS, n))
             for at, many, n in zip((self.row, self.column), SHARD_CHUNKS, shape, strict=True)
@@ -96,7 +96,7 @@ def parts_of(level: int, shape: tuple[int, int], steps: int) -> list[Part]:
 
 
 def parts_along(shape: tuple[int, int]) -> tuple[int, int]:
-    """Return how many parts a level with so many nodes (J, I) has along both axes."""
+    """Return how many parts a level with this many nodes (J, I) has along both axes."""
     rows, columns = (
         -(-n // (many * TILE_CELLS)) for n, many in zip(shape, SHARD_CHUNKS, strict=True)
     )
@@ -104,7 +104,7 @@ def parts_along(shape: tuple[int, int]) -> tuple[int, int]:
 
 
 def tiles_of(level: int, shape: tuple[int, int], about: Mapping[str, Any]) -> tuple[int, int]:
-    """Return how many tiles a level with so many nodes (J, I) has along both axes."""
+    """Return how many tiles a level with this many nodes (J, I) has along both axes."""
     if level == about["depth"]:
         return 1, 1
     rows, columns = (-(-(n - 1) // TILE_CELLS) for n in shape)

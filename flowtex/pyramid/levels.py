@@ -229,7 +229,7 @@ class Levels:
     def _later(
         self, level: int, name: str, rows: Indices, columns: Indices
     ) -> Callable[[int], AnyArray]:
-        """Return what reads a step of an array when it is asked for."""
+        """Return what reads a step of an array when it is requested."""
 
         def read(step: int) -> AnyArray:
             (values,) = self._read(self._nodal(level, name, rows, columns, step))

@@ -65,7 +65,7 @@ class Objects(WrapperStore[Any]):
         self._reads = asyncio.Semaphore(MOST_READS)
 
     async def get(self, key: str, prototype: Any, byte_range: Any = None) -> Any:
-        """Return an object or a part of it, ``None`` for a missing one that is no chunk."""
+        """Return an object or a part of it, ``None`` for a missing one that is not a chunk."""
         if _FILES.match(key):
             return await self._read(key, prototype, byte_range)
         name = (key, repr(byte_range))

@@ -228,7 +228,7 @@ def check_room(place: str, names: Iterable[str]) -> None:
 
 
 def is_refused(error: Exception) -> bool:
-    """Whether a store has refused what was asked for, as private ones do for what is missing."""
+    """Whether a store has refused what was requested, as private ones do for what is missing."""
     refused = type(error).__name__ in ("PermissionDeniedError", "UnauthenticatedError")
     return refused or re.search(r"status code: 40[13]", str(error)) is not None
 

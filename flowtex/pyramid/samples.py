@@ -2,7 +2,7 @@
 
 Each task keeps the least and the greatest value of its part, and some of its values: those of every
 2^n-th row and column, a million of the whole surface. They stay in the store, so that a build that
-goes on knows them. The whole range is exact, the robust one has the percentiles of that sample.
+continues knows them. The whole range is exact, the robust one has the percentiles of that sample.
 """
 
 from __future__ import annotations

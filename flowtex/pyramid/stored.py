@@ -184,6 +184,6 @@ class StoredPyramid(Pyramid):
 
 
 def _alike(own: AnyArray, told: AnyArray) -> bool:
-    """Whether values are the same but for rounding, which is that of velocities at most."""
+    """Whether values are the same up to rounding, which is that of velocities at most."""
     size = np.abs(np.nan_to_num(told)).max(initial=0.0)
     return bool(np.allclose(own, told, 2.0**-VELOCITY_BITS, 1e-6 * size, equal_nan=True))

@@ -112,7 +112,7 @@ def _source_nodes(levels: Levels, source: Source, part: Part) -> Nodes:
     """Read what a part of level 0 is made of."""
     lines = part.lines(source.shape)
     valid = None
-    if part.step and source.travels:  # others have it at hand
+    if part.step and source.travels:  # others have it available
         valid = levels.valid(0, *(np.arange(some.start, some.stop) for some in lines))
     return source.nodes(part.step, *lines, valid)
 

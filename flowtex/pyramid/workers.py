@@ -50,7 +50,7 @@ class Threads:
                 )
 
     def count(self, need: int) -> int:
-        """Return how many tasks run at once that need so many bytes each."""
+        """Return how many tasks run at once that need this many bytes each."""
         cores = os.cpu_count() or 1
         if self._memory is None:
             return cores

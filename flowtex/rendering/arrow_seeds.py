@@ -93,7 +93,7 @@ class ArrowSeeds:
         self._last: tuple[TileView, float, Seeds] | None = None
 
     def seen(self, view: TileView, spacing: float) -> Seeds:
-        """Return the seeds of a view that are so many pixels apart, and some more."""
+        """Return the seeds of a view that are this many pixels apart, and some more."""
         if self._last is None or not self._covers(*self._last[:2], view, spacing):
             self._last = view, spacing, self._make(view, spacing)
         return self._last[2]

@@ -61,7 +61,7 @@ def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
 
     def there(lines: MapLines) -> MapLines:
         distances, nearest = tree.query(lines.points)
-        # A point of the graticule may be a node, which is as far as that but for rounding.
+        # A point of the graticule may be a node, which is as far as that up to rounding.
         return lines.within(distances <= (1 + 1e-6) * reach[nearest])
 
     meshes = there(graticule(projection, box))

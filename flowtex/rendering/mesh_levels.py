@@ -284,7 +284,7 @@ def _deviation(values: Floats, lines: Indices, axis: int) -> Floats:
 
 
 def _every_second(count: int) -> Any:
-    """Index every second of so many lines, and the last one."""
+    """Index every second of this many lines, and the last one."""
     return slice(None, None, 2) if count % 2 else np.append(np.arange(0, count, 2), count - 1)
 
 
@@ -315,7 +315,7 @@ def join(
     would lie inside of a side. ``blocks`` are rows and columns of blocks of the finest nodes; along
     a periodic axis, j or i, the first line of blocks follows on the last one.
     """
-    # Doublings from the finest nodes to those here; what is not drawn is no neighbour.
+    # Doublings from the finest nodes to those here; what is not drawn is not a neighbour.
     nodes = np.full(blocks, NOT_DRAWN)
     for part in parts:
         _put(nodes, part, np.full_like(part.levels, part.step))

@@ -144,7 +144,7 @@ def _shading() -> dict[str, Any]:
 def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
     """Values by name: bool, int, float, tuples of float, or lists for arrays.
 
-    ``moving``, ``near`` and ``sparse`` are no uniforms: shaders have variants for them.
+    ``moving``, ``near`` and ``sparse`` are not uniforms: shaders have variants for them.
     """
     geometry = textures.geometry
     # A power of two, so that it is exact.
@@ -196,7 +196,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
 def is_moving(textures: TextureSet, settings: Settings) -> bool:
     """Return whether the grains change in time: with a field that varies, or by the clock.
 
-    A field without a sign has no forward, so nothing streams; the paper's textures stand still.
+    A sign-free field has no forward, so nothing streams; the paper's textures stand still.
     """
     if textures.paper is not None:
         return False
@@ -289,7 +289,7 @@ def _distance(textures: TextureSet, settings: Settings, view: ViewState, pixel: 
 def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str]:
     """Sides of the paths, and kernel.
 
-    A field without a sign has no forward: it has both sides, and no kernel that falls towards one.
+    A sign-free field has no forward: it has both sides, and no kernel that falls towards one.
     Streaklets have the kernel that makes a head and a tail.
     """
     if is_sparse(textures, settings):

@@ -157,7 +157,7 @@ class TextureSet:
         return self.count_of(None)
 
     def count_of(self, lags: int | None) -> int:
-        """Return the number of layers of so many lags."""
+        """Return the number of layers of this many lags."""
         return 1 + self.sides * len(self.store.lags[:lags]) + self.in_cells
 
     @property
@@ -204,7 +204,7 @@ class TextureSet:
     def layers(self, step: int = 0, lags: int | None = None, dtype: type = np.float16) -> AnyArray:
         """Texels of the slice texture for one destination time, (layers, H, W, 4).
 
-        They are those of so many lags, the shortest, and of all by default. They are rounded to
+        They are those of this many lags, the shortest, and of all by default. They are rounded to
         half precision here, as drivers may cut digits off, which moves a critical point.
         """
         whole = self.store.at(step, lags)
@@ -316,7 +316,7 @@ class LayerPrefetch:
         self._ready: tuple[tuple[int, int | None], Future[Halves]] | None = None
 
     def prepare(self, step: int, lags: int | None = None) -> None:
-        """Begin to compute the layers of a step, at so many lags; one that does not exist is none.
+        """Begin to compute the layers of a step, if it exists, at this many lags.
 
         It stops where work in this thread would, as :func:`flowtex._util.progress.stoppable` says.
         """

@@ -154,7 +154,7 @@ class Clusters:
 
 
 def levels_of(field: FlowField, nodes: int) -> list[Clusters]:
-    """Return a field and its next levels, the last of which has so many nodes at most if it can."""
+    """Return a field and its next levels; the last has at most this many nodes, if possible."""
     levels = [Clusters.of(field)]
     while levels[-1].field.shape[1] > nodes:
         coarser = levels[-1].coarser()

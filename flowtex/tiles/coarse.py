@@ -10,9 +10,9 @@ from flowtex.tiles.clusters import levels_of
 
 
 def coarsened_field(field: FlowField, nodes: int) -> FlowField:
-    """Keep lines of nodes, the first and the last among them, so that so many nodes are left.
+    """Keep lines of nodes, the first and the last among them, so that this many nodes are left.
 
-    On triangles nodes become means over bins of space, of which there are so many at most. A
+    On triangles nodes become means over bins of space, of which there are this many at most. A
     smaller field is returned as it is, and one of triangles that is so large that it has levels.
     """
     if field.valid.size <= nodes:

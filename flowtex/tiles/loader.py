@@ -35,9 +35,9 @@ TRIANGLE_BYTES = 250
 MOST_THREADS = 4
 #: How often a tile that waits for its turn is looked at, whether it is still wanted.
 LOOK_INTERVAL_S = 0.1
-#: Seconds before the last request within which a tile must have been asked for, not to be given up.
+#: Seconds before the last request within which a tile must have been requested, not to be given up.
 GRACE_S = 2.0
-#: Seconds after which a tile that failed may be asked for again.
+#: Seconds after which a tile that failed may be requested again.
 RETRY_S = 10.0
 
 
@@ -57,7 +57,7 @@ def _turn() -> Iterator[None]:
 
 @dataclass(eq=False)
 class Tile:
-    """One tile with the layers of the destination times that were asked for.
+    """One tile with the layers of the destination times that were requested.
 
     ``textures`` are None where nothing of it is drawn; ``prepared`` is what whoever draws has made
     of them.
@@ -99,7 +99,7 @@ class TileLoader:
 
     ``prepare`` makes of textures, in a thread, what is needed to draw them beside their layers.
     ``notify`` is called, in a thread, whenever a tile has become ready or has failed. Errors are
-    kept in ``errors`` by tile; a tile that failed is tried again when it is asked for some seconds
+    kept in ``errors`` by tile; a tile that failed is tried again when it is requested some seconds
     later, for what went wrong may be a network. ``clock`` gives the seconds.
     """
 
@@ -117,7 +117,7 @@ class TileLoader:
         self._failed: dict[TileKey, float] = {}
         self._prepare, self._notify, self._clock = prepare, notify, clock
         self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
-        #: When each tile was asked for last, on a clock of requests.
+        #: When each tile was requested last, on a clock of requests.
         self._wanted: dict[TileKey, float] = {}
         self._asked = 0.0
         self._running: dict[tuple[TileKey, int], Future[None]] = {}
@@ -148,7 +148,7 @@ class TileLoader:
         """
         self._asked = self._clock()
         with self._lock:
-            # What has not begun waits behind what is asked for now.
+            # What has not begun waits behind what is requested now.
             later = [job for job, future in self._running.items() if future.cancel()]
             for job in later:
                 del self._running[job]
@@ -178,7 +178,7 @@ class TileLoader:
             return any(self._is_wanted(key) for key, _ in self._running)
 
     def wait(self) -> None:
-        """Wait for the tiles that were asked for."""
+        """Wait for the tiles that were requested."""
         while True:
             with self._lock:
                 futures = [f for (key, _), f in self._running.items() if self._is_wanted(key)]

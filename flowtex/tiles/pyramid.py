@@ -203,11 +203,11 @@ class Pyramid:
         return small_cell(self.root)
 
     def textures(self, key: TileKey, widening: int = 1) -> TextureSet | None:
-        """Return the textures of a tile, whose layers are traced when they are asked for.
+        """Return the textures of a tile, whose layers are traced when they are requested.
 
         ``None`` stands for a tile of which nothing is drawn. The halo is so many times as wide as
         paths of even speed need; :func:`is_cut` returns whether that was enough. Raises a KeyError
-        where there is no such tile.
+        where the tile does not exist.
         """
         first = [at * TILE_CELLS for at in key[1:]]
         shape = self.shape(key.level) if 0 <= key.level < self.depth else (0, 0)
@@ -344,7 +344,7 @@ class Pyramid:
 
 
 def is_cut(textures: TextureSet, step: int) -> bool:
-    """Whether paths of a tile end where its window does, though the surface goes on.
+    """Whether paths of a tile end where its window does, though the surface continues.
 
     Slices may have longer lags than are needed: they double. The last part of a path weighs little.
     What lies around a tile of triangles is as wide as its paths are long.
@@ -400,7 +400,7 @@ def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Fl
 
 
 def root_level(nodes: tuple[int, int]) -> int:
-    """Return the coarsest level of a field with so many nodes (J, I), which is traced whole."""
+    """Return the coarsest level of a field with this many nodes (J, I), which is traced whole."""
     level = 0
     while math.prod(level_shape(nodes, level)) > ROOT_NODES:
         level += 1
@@ -414,7 +414,7 @@ def level_shape(nodes: tuple[int, int], level: int) -> tuple[int, int]:
 
 
 def level_lines(count: int, level: int) -> Indices:
-    """Every 2^level-th of so many lines, and the last one."""
+    """Every 2^level-th of this many lines, and the last one."""
     lines = np.arange(0, count, 1 << level)
     return lines if lines[-1] == count - 1 else np.append(lines, count - 1)
 

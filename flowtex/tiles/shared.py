@@ -59,7 +59,7 @@ def ends_of(values: Floats, *, robust: bool) -> tuple[float, float] | None:
 
 
 def widened(ends: tuple[float, float] | None) -> tuple[float, float]:
-    """Return a range to colour by, where all values may be the same but for rounding, or none."""
+    """Return a range to colour by, where all values may be the same up to rounding, or none."""
     if ends is None:
         return 0.0, 1.0
     low, high = ends

@@ -57,7 +57,7 @@ class Structure:
         return self._every[1]
 
     def lines(self, step: int, saddles: int = MOST_SADDLES) -> Separatrices:
-        """Return the lines of so many saddles of a step, the strongest."""
+        """Return the lines of this many saddles of a step, the strongest."""
         with self._lock:
             count, lines = self._lines.get(step, (0, Separatrices()))
             if count < saddles:
@@ -70,7 +70,7 @@ class Structure:
             return Separatrices(line for line in lines if id(line.saddle) in kept)
 
     def find(self, step: int, points: int, saddles: int) -> None:
-        """Have what shows so many points, and the lines of so many saddles, of a step."""
+        """Have what shows this many points, and the lines of this many saddles, of a step."""
         if points:
             self.points(step)
         if saddles:

@@ -104,7 +104,7 @@ class Charts:
         return result
 
     def close(self, index: Floats) -> Bools:
-        """Whether positions (2, N) in index space are right beside a pole, (N,)."""
+        """Whether positions (2, N) in index space are close to a pole, (N,)."""
         index = self._poles.fold(index)
         close = [pole.depth(index) < min(CLOSE_CELLS, self.near) for pole in self._poles]
         return np.asarray(np.any(close, axis=0))
@@ -130,7 +130,7 @@ class Charts:
             if some.any():
                 there = pole.index(position[:, some])
                 if near is not None:
-                    # A path as long as from pole to pole is written anew.
+                    # A path as long as from pole to pole is written again.
                     beside = near[:, some]
                     far = np.abs(pole.depth(beside)) >= self._poles.lines - 1
                     beside = np.where(far, self._poles.fold(beside), beside)

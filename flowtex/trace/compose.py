@@ -5,7 +5,7 @@ one ends (hierarchical line integration, Hlawatsch, Sadlo and Weiskopf 2011). Do
 costs one look-up for each node, whatever the length, where integration would cost as many steps
 as the path has cells.
 
-A look-up between the nodes is as good as the slice is smooth there. Around a centre or beside a
+A look-up between the nodes is as good as the slice is smooth there. Around a centre or near a
 separatrix long paths of neighbours part, so each slice's second differences are compared with its
 length, and where they are large the path is continued in shorter, smooth pieces. What is left is of
 the order of the error that bilinear velocity has itself.
@@ -13,8 +13,8 @@ the order of the error that bilinear velocity has itself.
 A flow that varies is composed only when its lags are whole numbers of its equal time steps, from
 one step up: then each piece begins at a time for which there are slices.
 
-Right beside a pole nothing can be looked up between nodes, whose paths pass it on either side.
-There, and only there, paths are integrated.
+Close to a pole nothing can be looked up between nodes, whose paths pass it on either side. There,
+and only there, paths are integrated.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
 class SideSlices:
     """Slices of one direction, (2, M + 1, T, J, I), the first of them the slope at lag zero.
 
-    Their reach, and which paths have come right beside a pole, are (T, J, I). While paths are
+    Their reach, and which paths have come close to a pole, are (T, J, I). While paths are
     integrated, the nodes of all three are one axis.
     """
 
@@ -117,9 +117,9 @@ def compose(
 
     The slices of the first ``known`` of all lags (M,) are filled, and ``reach`` is infinite for
     paths that did not end within these. ``landing`` comes from :func:`landings`, ``run`` maps a
-    function over blocks of paths, and ``integrate`` follows paths right beside a pole, of which
-    more are marked. Direction -1 is backward, 1 forward. Paths end, and stay there, with the first
-    slice whose lag, times the unit, is ``longest`` or more, one number or one for each node.
+    function over blocks of paths, and ``integrate`` follows paths close to a pole, of which more
+    are marked. Direction -1 is backward, 1 forward. Paths end, and stay there, with the first slice
+    whose lag, times the unit, is ``longest`` or more, one number or one for each node.
     """
     wanted = np.maximum(np.searchsorted(lags, longest / unit) + 1, known)
     lookup = _SliceLookup(field, lags, unit, side, landing * int(direction), wanted)
@@ -137,15 +137,15 @@ class _Piece(NamedTuple):
     moved: Floats32  #: displacement, (2, n)
     covered: Floats32  #: lag that they cover
     ends: Floats32 | None  #: lag at which they end, beyond ``covered`` where they do not
-    steps: Indices | int  #: time steps that they go on, negative backward
+    steps: Indices | int  #: time steps that they continue, negative backward
 
 
 class _SliceLookup:
     """Slices that are known so far, looked up at any position.
 
     For each slice it is known where it is smooth enough, for its length, to be looked up between
-    nodes. Where a path comes right beside a pole it never is, because its neighbours pass the
-    pole on the other side: a slice is used up to the lag at which they do.
+    nodes. Where a path comes close to a pole it never is, because its neighbours pass the pole on
+    the other side: a slice is used up to the lag at which they do.
     """
 
     def __init__(
@@ -181,7 +181,7 @@ class _SliceLookup:
         self._longest = self._capped = np.empty(0, np.float32)
         self._endless = False
         self._first = np.float32(0)
-        #: Which nodes have a path that has come right beside a pole, (T, J, I).
+        #: Which nodes have a path that has come close to a pole, (T, J, I).
         self.polar = side.polar
 
     def judge(self, m: int, *, always: bool) -> None:

@@ -7,8 +7,8 @@ end. Positions at the lags come from the cubic Hermite polynomial through a step
 ends, of the order of the scheme, so the lags do not shorten the steps.
 
 A path that leaves the domain, enters a blanked cell or stops is ended there. That lag is its
-reach, and beyond it the path goes on straight: interpolation between a path that has ended and its
-neighbour that has not then stays true up to the reach.
+reach, and beyond it the path continues straight: interpolation between a path that has ended and
+its neighbour that has not then stays true up to the reach.
 
 Next to a pole a particle is followed in the plane there (see :mod:`flowtex.trace.charts`): it
 changes to another chart between two steps, and its positions are returned in index space.

@@ -75,8 +75,8 @@ class Sampler(ABC):
     ) -> Floats:
         """Rate of change of positions by lag for particles that have come ``lag`` (N,).
 
-        In a field without a sign, that of the two which leads ``ahead`` (2, N), where it is
-        given, whatever the direction.
+        In a sign-free field, that of the two which leads ``ahead`` (2, N), where it is given,
+        whatever the direction.
         """
         if chart is None or not chart.any():
             result = self._rate(self._patches[0], position, lag, direction)

@@ -235,7 +235,7 @@ class TraceSlices:
             with place.open("rb") as data, np.load(data, allow_pickle=False) as file:
                 arrays: dict[str, Any] = {name: file[name] for name in file.files}
         except (zipfile.BadZipFile, zlib.error, ValueError, EOFError, TypeError) as error:
-            # TypeError: a plain .npy file holds one array, which is no context manager.
+            # TypeError: a plain .npy file holds one array, which is not a context manager.
             raise FieldError(expected) from error
         needed = set(cls.__dataclass_fields__) - {"forward", "forward_reach"}
         names = set(arrays) - {"forward", "forward_reach"}

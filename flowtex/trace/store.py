@@ -1,4 +1,4 @@
-"""Trace slices by destination time, traced when they are first asked for.
+"""Trace slices by destination time, traced when they are first requested.
 
 A field of many time steps is drawn at one time, so only the steps around that time are traced,
 and those used last are cached; unless all of them fit in memory and can be composed, which is
@@ -37,11 +37,11 @@ class SliceStore:
 
     With ``lines="streamlines"`` each destination time of a field that varies is traced as a steady
     field; the parameter, that of :func:`flowtex.trace`, counts then. With slices of all steps that
-    were traced already nothing is traced; in a field without a sign they lead to both sides.
-    ``compose`` allows to compose all steps together, which is quicker than step by step, but slower
-    for one or two of them. ``longest`` is the greatest length that is traced, in the mesh's units,
-    a quarter of the surface by default, ``cell`` the size of small cells of the surface that the
-    field is a part of, and ``nodes`` (J, I) are those that :func:`flowtex.trace` is to follow.
+    were traced already nothing is traced; in a sign-free field they lead to both sides. ``compose``
+    allows to compose all steps together, which is quicker than step by step, but slower for one or
+    two of them. ``longest`` is the greatest length that is traced, in the mesh's units, a quarter
+    of the surface by default, ``cell`` the size of small cells of the surface that the field is a
+    part of, and ``nodes`` (J, I) are those that :func:`flowtex.trace` is to follow.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class SliceStore:
         if slices is None:
             self.parameter = parameter if self.streamlines else "time"
             self.lags, self.unit = drawn_lags(field, self.parameter, longest, cell)
-            # On a globe the lags that are long enough beside a pole are many times that elsewhere.
+            # On a globe the lags that are long enough near a pole are many times that elsewhere.
             poles = field.surface.poles
             closed = poles is not None and poles.both
             self.long_enough = (longest or longest_path(field)) if closed else np.inf
@@ -86,7 +86,7 @@ class SliceStore:
 
     @property
     def traced(self) -> list[TraceSlices]:
-        """Slices that it holds, of the steps that were asked for last."""
+        """Slices that it holds, of the steps that were requested last."""
         return self._cache.values()
 
     @property
@@ -100,7 +100,7 @@ class SliceStore:
         return self._whole is None or self._whole.forward is not None
 
     def at(self, step: int, lags: int | None = None) -> TraceSlices:
-        """Slices of one destination time, T = 1, at so many lags; at all by default."""
+        """Slices of one destination time, T = 1, at this many lags; at all by default."""
         wanted = len(self.lags[:lags])
         with self._lock:
             kept = self._cache.peek(step)

@@ -231,7 +231,7 @@ def paths(
 
 
 def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> None:
-    """Refuse what has no meaning in a field without a sign."""
+    """Refuse what has no meaning in a sign-free field."""
     if field.sign_free and not two_sided:
         msg = "two_sided is False; expected True, because a sign-free field has two equal sides"
         raise FieldError(msg)
@@ -282,7 +282,7 @@ def _parameter(field: FlowField, parameter: str) -> str:
 
 
 def _in_single(cells: Floats) -> Floats:
-    """Limit displacements: a path that has ended goes on straight, however fast it was."""
+    """Limit displacements: a path that has ended continues straight, however fast it was."""
     return np.asarray(np.clip(cells, -MOST_CELLS, MOST_CELLS))
 
 

@@ -51,7 +51,7 @@ def preview_png(
     """Draw a small picture and return it as PNG.
 
     By default the whole surface is shown, at the first time. ``scene`` has the view's data with
-    few nodes, when they are at hand; one pixel is computed for ``coarser`` along each side.
+    few nodes, when they are available; one pixel is computed for ``coarser`` along each side.
     """
     scene = scene or view.coarse_data(NODES)
     camera = camera or scene.first_camera(size[0] / size[1]).to_dict()

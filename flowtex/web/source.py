@@ -28,7 +28,7 @@ from flowtex.scene import steps_of
 from flowtex.textures import TextureSet
 from flowtex.tiles import TileKey
 
-#: Memory of the tiles that are kept to be handed over again, and of a node of them, in bytes.
+#: Memory of the tiles that are kept to be sent again, and of a node of them, in bytes.
 BUDGET_BYTES, NODE_BYTES = 400_000_000, 200
 #: Parts that are made at once, for all browsers together.
 MOST_THREADS = max(os.cpu_count() or 1, 4)
@@ -52,7 +52,7 @@ class _Tile:
 
 
 class TileSource:
-    """Gives the parts of a scene, of which those of tiles are made when they are asked for.
+    """Gives the parts of a scene, of which those of tiles are made when they are requested.
 
     The same in other colours may take the place of the ``scene`` at any time. All methods may be
     called from any thread.
@@ -81,7 +81,7 @@ class TileSource:
         return parts
 
     def tile(self, key: TileKey, steps: Sequence[int]) -> ClientData | None:
-        """Return a tile as it is handed over, or ``None`` where nothing of it is drawn."""
+        """Return a tile as it is sent, or ``None`` where nothing of it is drawn."""
         scene = self.scene
         textures = self._tiles.get(key, lambda: _made(scene, key, steps)).textures
         if textures is None:
@@ -109,7 +109,7 @@ class TileSource:
         return (_marks_pool if kind else _pool).submit(make)
 
     def tiles(self) -> Iterator[Parts]:
-        """Give the parts of all tiles that are handed over without asking, coarse ones first."""
+        """Give the parts of all tiles that are sent without asking, coarse ones first."""
         scene, steps = self.scene, range(self.scene.steps)
         keys: list[TileKey] = []
         level = [] if scene.pyramid is None else scene.pyramid.children(None)
@@ -128,7 +128,7 @@ class TileSource:
 
 
 def _made(scene: ClientData, key: TileKey, steps: Sequence[int]) -> _Tile:
-    """Make a tile, where its slices are handed over with a halo that does for these steps."""
+    """Make a tile, where its slices are sent with a halo that does for these steps."""
     if scene.pyramid is None:
         msg = f"tile {tuple(key)} does not exist: the surface is sent as a whole"
         raise LookupError(msg)

@@ -26,10 +26,10 @@ AXES = ("ticks", "scale", "none")
 class WebView:
     """A scene for a client in a browser.
 
-    Of the time steps so many are handed over, evenly chosen with the first and the last among
-    them; paths are traced through all of them all the same. ``own`` names the settings and what of
-    the appearance are this view's alone, where it stands beside another. ``bodies`` are drawn with
-    the flow.
+    Of the time steps so many are sent, evenly chosen with the first and the last among them; paths
+    are traced through all of them all the same. ``own`` names the settings and what of the
+    appearance are this view's alone, where it stands beside another. ``bodies`` are drawn with the
+    flow.
     """
 
     def __init__(
@@ -58,12 +58,12 @@ class WebView:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns of nodes of what is handed over."""
+        """Rows and columns of nodes of what is sent."""
         pyramid = self.scene.pyramid
         return self.field.shape if pyramid is None else pyramid.shape(pyramid.depth)
 
     def page_data(self) -> ClientData:
-        """Return the same with the values of all scalars, where nobody can be asked for them."""
+        """Return the same with the values of all scalars, for pages without a server."""
         data, names = self.data(), self.scene.scalar_names
         others = tuple(
             (n, steps_of(data.field, name))
@@ -78,7 +78,7 @@ class WebView:
         return replace(data.recoloured(colours), marks=marks if kinds else None)
 
     def coarse_data(self, nodes: int) -> ClientData:
-        """Return the same with so many nodes at most, for a first picture."""
+        """Return the same with at most this many nodes, for a first picture."""
         return self._data(self.scene.coarsened(nodes))
 
     def _data(self, scene: Scene, pyramid: Pyramid | None = None) -> ClientData:
@@ -109,7 +109,7 @@ class WebView:
 
 
 def marks_of(scene: Scene) -> Marks | None:
-    """Return the critical points and separatrices of a scene, found when they are asked for."""
+    """Return the critical points and separatrices of a scene, found when they are requested."""
     return None if scene.field.sign_free else Marks(scene.structure)
 
 
@@ -201,7 +201,7 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
 
 
 def even_steps(count: int, steps: int | None) -> tuple[int, ...]:
-    """Return so many of the numbers below a count, or none of them where all are asked for."""
+    """Return so many of the numbers below a count, or none of them where all are requested."""
     if steps is None:
         return ()
     expected = f"1 to {count}, the time steps of the field"

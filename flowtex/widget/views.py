@@ -123,7 +123,7 @@ class Views:
     def picture(
         self, size: tuple[int, int], camera: dict[str, Any], timeout_s: float
     ) -> bytes | None:
-        """Return a small picture of all views as PNG, if there is one in so many seconds."""
+        """Return a small picture of all views as PNG, if there is one in this many seconds."""
         each = (size[0] // len(self.feeds), size[1] // len(self.feeds))  # in the same shape
         if timeout_s > 0:
             for feed in self.feeds:

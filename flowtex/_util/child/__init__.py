@@ -1,4 +1,4 @@
-"""Work in a process of its own, which may die without taking anything along."""
+"""Work in a separate process, which may die without taking anything along."""
 
 from __future__ import annotations
 

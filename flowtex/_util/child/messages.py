@@ -25,7 +25,7 @@ _TYPE = re.compile(r"[<>|][biuf]\d{1,2}")
 
 
 class MessageError(ValueError):
-    """What came is no message."""
+    """What came is not a message."""
 
 
 def write_message(stream: IO[bytes], value: Any, arrays: Sequence[AnyArray] = ()) -> None:

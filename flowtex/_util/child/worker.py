@@ -43,7 +43,7 @@ def command(function: Callable[..., Any], **arguments: Any) -> list[str]:
 
 
 def spawned(entry: str, memory: int, lasting: bool) -> None:  # noqa: FBT001 by name alone
-    """Answer the requests that come on the standard input, in a process of its own."""
+    """Answer the requests that come on the standard input, in a separate process."""
     reads, writes = os.dup(0), os.dup(1)
     settle(memory, lasting=lasting)
     serve(entry, os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))

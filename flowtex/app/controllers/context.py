@@ -65,4 +65,4 @@ class Controller:
         """Take over the part of a saved state that belongs to this controller."""
 
     def close(self) -> None:
-        """End what goes on."""
+        """End what is running."""

@@ -280,7 +280,7 @@ class Data(Controller):
         return {k: v for k, v in {"file": self.name, **asdict(self.choice)}.items() if v}
 
     def close(self) -> None:
-        """End what goes on."""
+        """End what is running."""
         self._request.cancelled = True
         self.uploads.close()
         if self._opening is not None:

@@ -27,7 +27,7 @@ class FileBeside(Controller):
         self._data = data
         self._name, self._choice = "", Choice()
         self._active = False
-        #: What was asked for last, and the flow that is shown, whose traces stay with it.
+        #: What was requested last, and the flow that is shown, whose traces stay with it.
         self._request: LoadRequest | None = None
         self._flow: TracedFlow | None = None
         self._opening: asyncio.Task[None] | None = None
@@ -123,7 +123,7 @@ class FileBeside(Controller):
             self.take_file()
 
     def close(self) -> None:
-        """End what goes on."""
+        """End what is running."""
         self._forget()
         if self._opening is not None:
             self._opening.cancel()

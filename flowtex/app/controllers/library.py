@@ -3,8 +3,8 @@
 From the page comes a name, never a path. Names are looked up among those of the files that were
 found when the library was made or looked through again, so nothing outside them can be opened.
 Files that are open, and the flows made from them, are shared by all pages of a server. Each is open
-in a process of its own, which may crash; one that has changed since is opened anew when it is asked
-for.
+in a separate process, which may crash; one that has changed since is opened again when it is
+requested.
 """
 
 from __future__ import annotations
@@ -363,7 +363,7 @@ def _paths(flow: Any) -> tuple[Path, ...]:
 
 @dataclass(frozen=True)
 class _Files:
-    """What opens a file, or several that belong together, in a process of its own."""
+    """What opens a file, or several that belong together, in a separate process."""
 
     paths: tuple[Path, ...]
 

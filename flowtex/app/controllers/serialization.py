@@ -197,7 +197,7 @@ def to_python(
     size: tuple[int, int] = (1024, 768),
     picture: str | None = None,
 ) -> str:
-    """Return the lines of Python that draw a state again, where its file is at hand.
+    """Return the lines of Python that draw a state again, where its file is available.
 
     A window is opened, or a picture written to a file. ``source`` and ``source_beside`` are
     expressions that make the fields of the two views where they are not those of files, such as

@@ -191,7 +191,7 @@ class Sharing(Controller):
             self._restore_state(state)
 
     def close(self) -> None:
-        """End what goes on."""
+        """End what is running."""
         if self._job is not None:
             self._job.cancel()
         if self._task is not None:

@@ -1,9 +1,9 @@
-"""Files that one session hands out over HTTP: downloads, and parts for the browser's client.
+"""Files that one session serves over HTTP: downloads, and parts for the browser's client.
 
 A file's address is ``flowtex/<token>/<name>``, below the page. The token cannot be guessed and
 belongs to one session, so the address is all that is needed, and nobody else has it. What is
-handed out is looked up at each request. Downloads lie in a temporary folder that its owner alone
-can read; they are removed after a while, when they take too much room, and when the page closes.
+served is looked up at each request. Downloads lie in a temporary folder that its owner alone can
+read; they are removed after a while, when they take too much room, and when the page closes.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ KEY = "flowtex_routes"
 
 
 class Routes:
-    """What one session hands out, below a ``token`` that cannot be guessed."""
+    """What one session serves, below a ``token`` that cannot be guessed."""
 
     def __init__(self) -> None:
         self.token = new_secret()
@@ -59,7 +59,7 @@ class Routes:
 
     @classmethod
     def of(cls, server: Any) -> Routes:
-        """Return the routes of a trame server, made when they are first asked for.
+        """Return the routes of a trame server, made when they are first requested.
 
         They are served by :func:`flowtex.app.serve`, and as well where the server is started by
         trame itself.
@@ -97,8 +97,8 @@ class Routes:
         """Hand out files of many names; return the common part of their addresses.
 
         ``content`` is called with that part of a name, and raises a ``LookupError`` or a
-        ``ValueError`` where there is no such file. The stem is as the name of :meth:`give`, without
-        a full stop.
+        ``ValueError`` where the file does not exist. The stem is as the name of :meth:`give`,
+        without a full stop.
         """
         self._families[stem] = content
         return f"flowtex/{self.token}/{quote(stem)}."
@@ -135,7 +135,7 @@ class Routes:
         return web.Response(text="")
 
     def _find(self, name: str) -> Give | None:
-        """Return what is handed out under a name."""
+        """Return what is served under a name."""
         stem, _, rest = name.partition(".")
         if name in self._content or stem not in self._families:
             return self._content.get(name)
@@ -145,7 +145,7 @@ class Routes:
             return None
 
     async def answer(self, name: str) -> web.StreamResponse:
-        """Return what is asked for; ``HTTPNotFound`` where there is nothing."""
+        """Return what is requested; ``HTTPNotFound`` where there is nothing."""
         give = self._find(name)
         if give is None:
             raise web.HTTPNotFound
@@ -284,5 +284,5 @@ def plain_name(name: str) -> str:
 
 
 def _cut(text: str, most: int) -> str:
-    """Return the characters of a text that fit into so many bytes."""
+    """Return the characters of a text that fit into this many bytes."""
     return text.encode()[:most].decode(errors="ignore")

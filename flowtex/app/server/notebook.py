@@ -109,7 +109,7 @@ class Frame:
         self.height = height
 
     def __repr__(self) -> str:
-        # The address opens the page: a log is no place for it.
+        # The address opens the page: a log is not a place for it.
         return f"<flowtex page, {self.height} pixels high>"
 
     def _repr_html_(self) -> str:
@@ -145,7 +145,7 @@ class _Served:
     def address(self, proxy: str | None) -> str:
         port = self._socket.getsockname()[1]
         if proxy is not None:
-            # Jupyter's proxy hands on the name that the browser uses, and guards it by its token.
+            # Jupyter's proxy passes on the name that the browser uses, and guards it by its token.
             self._hosts.add(ANY)
         place = f"http://127.0.0.1:{port}" if proxy is None else f"{proxy}/{port}"
         return f"{place}/?secret={self._secret}"

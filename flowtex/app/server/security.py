@@ -6,7 +6,7 @@ has a secret of its own, which only the printed address carries, and a connectio
 site's page is refused. Who comes without the secret gets a page that says so (``door.html``).
 The page itself may load nothing from elsewhere.
 
-A site whose name leads to this machine all of a sudden (DNS rebinding) is no other site to a
+A site whose name leads to this machine all of a sudden (DNS rebinding) is the same site to a
 browser. So the server answers to addresses in numbers and to names that it knows, and no others.
 """
 
@@ -117,7 +117,7 @@ def guard(
             return await handler(request)
         except web.HTTPException:
             raise
-        except web.RequestPayloadError:  # such as what is no gzip though its head says so
+        except web.RequestPayloadError:  # such as a body that is not gzip
             raise web.HTTPBadRequest from None
         except Exception as error:
             if request.transport is None:  # nobody waits for the answer any more

@@ -1,4 +1,4 @@
-"""A store as it is handed on: its objects by their names, and nothing else."""
+"""A store as it is passed on: its objects by their names, and nothing else."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class ServedStore:
         return await self._read(name)
 
     def _check(self, name: str) -> None:
-        """Raise a LookupError for what is no object of an array; names lead nowhere else."""
+        """Raise a LookupError for what is not an object of an array; names lead nowhere else."""
         array, _, rest = name.partition("/c/")
         words, counts = rest.split("/"), self._counts.get(array, ())
         if len(words) != len(counts) or not all(map(_NUMBER.fullmatch, words)):

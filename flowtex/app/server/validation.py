@@ -42,7 +42,7 @@ def number(value: Any, low: float = -math.inf, high: float = math.inf) -> float 
 
 
 def clipped(value: Any, default: float, low: float, high: float) -> float:
-    """Return a number, moved to the nearest limit; the default for what is no number."""
+    """Return a number, moved to the nearest limit; the default for what is not a number."""
     checked = number(value)
     return default if checked is None else min(max(checked, low), high)
 
@@ -121,6 +121,6 @@ def _read(content: bytes, name: str) -> AnyArray:
 
 
 def _averaged(picture: Any, times: int) -> Any:
-    """Average blocks of pixels; those of a palette are no colours yet."""
+    """Average blocks of pixels; those of a palette are not colours yet."""
     plain = picture if picture.mode in ("L", "RGB", "RGBA") else picture.convert("RGBA")
     return plain.reduce(times)

@@ -195,7 +195,7 @@ class Element:
         return {"client": self._client, "area": area, "scenes": self._hand_over(), **self._told}
 
     def draw_by(self, painter: str) -> None:
-        """Let another painter draw; the page begins anew with it."""
+        """Let another painter draw; the page begins again with it."""
         self._call("paint", painter)
 
     def follow(self) -> None:
@@ -252,7 +252,7 @@ class Element:
         )
 
     def _hand_over(self) -> list[dict[str, Any]]:
-        """Hand over what the panes show in place of what was handed over before."""
+        """Hand over what the panes show in place of what was sent before."""
         viewport, present = self._viewport, self._present()
         panes, changes = viewport.panes, viewport.differences
         for scene in self._scenes[len(panes) :]:

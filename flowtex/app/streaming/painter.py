@@ -92,7 +92,7 @@ class Cost:
 
 
 def view_pixels(size: Mapping[str, Any]) -> tuple[int, int]:
-    """Width and height in pixels of a view of so many CSS pixels ``w``, ``h`` times ``p``."""
+    """Width and height in pixels of a view of this many CSS pixels ``w``, ``h`` times ``p``."""
     ratio = clipped(size.get("p"), 1.0, *PIXEL_RATIOS)
     width, height = (
         min(max(clipped(size.get(side), SIDES_PX[0], *SIDES_PX) * ratio, SIDES_PX[0]), SIDES_PX[1])
@@ -116,7 +116,7 @@ class PanePainter:
         self._state = 0
 
     def forget(self) -> None:
-        """Draw anew: what was drawn does not show the present state any more."""
+        """Draw again: what was drawn does not show the present state any more."""
         self._snapshot = self._under = None
         self.complete = False
         self._state += 1
@@ -294,7 +294,7 @@ class ViewPainter:
         return any(painter.drafting for painter in self.painters)
 
     def forget(self) -> None:
-        """Draw anew: what was drawn does not show the present state any more."""
+        """Draw again: what was drawn does not show the present state any more."""
         for painter in self._follow():
             painter.forget()
 

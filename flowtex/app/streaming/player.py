@@ -47,7 +47,7 @@ class Player:
     def go_to(self, time: float, page: str = "") -> None:
         """Show a time, or the nearest there is; time stands where that cannot be read.
 
-        Steps that are read when they are asked for are read beside the event loop: until then the
+        Steps that are read when they are requested are read beside the event loop: until then the
         time that is shown stays.
         """
         times = self._viewport.field.times

@@ -133,7 +133,7 @@ class PointReader:
 
 
 def _numbers(value: Any, count: int) -> list[float] | None:
-    """Return so many finite numbers that a page has sent; ``None`` for anything else."""
+    """Return this many finite numbers that a page has sent; ``None`` for anything else."""
     found = [number(v) for v in value] if isinstance(value, (list, tuple)) else []
     known = [v for v in found if v is not None]
     return known if len(known) == len(found) == count else None

@@ -1,9 +1,8 @@
 """The stream of pictures to the page: when to draw, and how well.
 
 One task draws. It sleeps until something asks for a picture, draws quick ones for as long as they
-are asked for, and the full one once nothing has moved for a moment. Requests are not queued: the
-next picture shows the latest state. They go
-the way of a remote controlled area (trame-rca).
+are requested, and the full one once nothing has moved for a moment. Requests are not queued: the
+next picture shows the latest state. They go the way of a remote controlled area (trame-rca).
 
 The scheduler of trame-rca 2.11 was tried in its place (1,000 x 700 pixels, two cores, software
 OpenGL). It takes the still picture in one piece, where this one is given up between two tiles:
@@ -96,7 +95,7 @@ class FrameStream:
         del origin, event
 
     def reset(self) -> None:
-        """Begin again, as when the page is loaded anew."""
+        """Begin again, as when the page is loaded again."""
         self.moved()
 
     def video_codecs(self) -> list[dict[str, Any]]:

@@ -284,7 +284,7 @@ class Viewport:
 
     @property
     def reads_late(self) -> bool:
-        """Whether steps of a flow are read when they are asked for, which may take long."""
+        """Whether steps of a flow are read when they are requested, which may take long."""
         return any(isinstance(p.handle.scene.field.velocity, LazySteps) for p in self.panes)
 
     def trace(self, time: float | None = None) -> None:
@@ -302,7 +302,7 @@ class Viewport:
                 scene.store.at(step)
                 if name is not None:
                     values = steps_of(scene.field, name)
-                    _ = values[min(step, len(values) - 1)]  # which keeps it at hand
+                    _ = values[min(step, len(values) - 1)]  # which keeps it available
 
     @property
     def clock(self) -> float:

@@ -199,7 +199,7 @@ def _sizes(array: Any) -> str:
 class Sides:
     """Sides of cells along an axis.
 
-    ``first`` and ``count`` number them as above, for so many cells; ``wraps`` where the axis goes
+    ``first`` and ``count`` number them as above, for this many cells; ``wraps`` where the axis goes
     around the Earth.
     """
 
@@ -264,6 +264,6 @@ def _line(name: str, datasets: Sequence[Any]) -> Any:
     for ds in datasets:
         if name in ds.coords and ds[name].ndim == 1 and ds[name].dtype.kind in "fiu":
             values = np.asarray(values_in(ds[name]), dtype=float)
-            # Indices of the nodes alone are no coordinates.
+            # Indices of the nodes alone are not coordinates.
             return None if np.array_equal(values, np.arange(len(values)) + values[0]) else values
     return None

@@ -23,7 +23,7 @@ POLAR = 66.0
 AROUND = 359.0
 #: Columns this near to a turn further than the first, in cells, are that one again.
 SAME_LINE = 0.01
-#: On a globe so many columns close around it, where the gap is no wider than this many cells.
+#: On a globe this many columns close around it, where the gap is no wider than this many cells.
 LEAST_RING, MOST_GAP = 8, 1.5
 #: Where a map is larger by this factor than it mostly is, it ends.
 LARGEST = 4.0

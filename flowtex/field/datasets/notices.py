@@ -1,4 +1,4 @@
-"""What was chosen of a dataset without being asked for, said to whoever called."""
+"""What was chosen of a dataset automatically, said to whoever called."""
 
 from __future__ import annotations
 

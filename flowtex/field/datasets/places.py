@@ -238,7 +238,7 @@ def _is_lonlat(a: Floats, b: Floats, lon: Any, lat: Any) -> bool:
 
 
 def _longitudes(lon: Floats, name: str) -> Floats:
-    """Return longitudes that go on along a row without a jump; those of a line have an order."""
+    """Return longitudes that continue along a row without a jump; those of a line have an order."""
     if not (np.ptp(lon, axis=0) == 0).all():  # as on a curvilinear grid
         return lon
     line = np.unwrap(lon[0], period=360.0)

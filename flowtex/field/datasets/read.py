@@ -72,9 +72,9 @@ class Recognised:
     ``pair`` are the two variables of the velocity, and ``along`` is along what they are:
     ``"earth"``, or ``"grid"``, where ``ahead`` gives the directions of rows and columns, 1 or -1.
     ``staggered`` says that they lie on the sides of cells. ``grid``, ``coordinates`` and ``notes``
-    are words: the kind of grid, names of the coordinates, and what was chosen without being asked
-    for. ``places`` are the nodes in the middle of cells; ``factor`` makes components m/s, and
-    ``mask`` is a variable that is positive where there is data.
+    are words: the kind of grid, names of the coordinates, and what was chosen automatically.
+    ``places`` are the nodes in the middle of cells; ``factor`` makes components m/s, and ``mask``
+    is a variable that is positive where there is data.
     """
 
     pair: Pair
@@ -315,7 +315,7 @@ def recognise(
                 ]
             parts.append(values)
         a, b = parts
-        if staggered:  # beside a wall one of them may be known alone
+        if staggered:  # near a wall one of them may be known alone
             nowhere = np.isnan(a) & np.isnan(b)
             a, b = (np.where(nowhere, np.nan, np.nan_to_num(p)) for p in (a, b))
             if not land:

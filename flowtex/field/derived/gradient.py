@@ -159,7 +159,7 @@ class _GridGradient:
 def _one_sided(
     data: Floats, valid: Bools, line: Indices, place: Indices, turn: Floats | None
 ) -> Floats:
-    """Return differences (C, N) beside a border or a gap; ``turn`` is what a closed axis adds."""
+    """Return differences (C, N) near a border or a gap; ``turn`` is what a closed axis adds."""
     last = data.shape[1] - 1
     here, result = data[:, line, place], np.full((len(data), len(line)), np.nan)
     usable, done = valid[line, place], np.zeros(len(line), dtype=bool)

@@ -17,7 +17,7 @@ from flowtex.field.formula.known import KNOWN
 
 #: Nodes along the longer side of a plane, and of a surface, around whose poles paths take long.
 NODES, SURFACE_NODES = 257, 129
-#: Nodes along the shorter side at least; the most that may be asked for.
+#: Nodes along the shorter side at least; the most that may be requested.
 LEAST_NODES, MOST_NODES = 33, 10_000
 #: Share of the size of a surface within which places are the same.
 SAME_PLACE = 1e-9

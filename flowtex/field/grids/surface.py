@@ -259,7 +259,7 @@ class GridSurface(Surface):
     def at(self, index: Floats) -> Floats:
         """Return positions in space (..., 3) of positions (..., 2) as (i, j) in index space.
 
-        Beyond a pole the surface goes on on its far side, and straight on beyond the border of
+        Beyond a pole the surface continues on its far side, and straight on beyond the border of
         another axis that does not close.
         """
         i, j = index.reshape(-1, 2).T

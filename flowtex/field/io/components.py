@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-#: Names of vectors that are no velocity.
+#: Names of vectors other than the velocity.
 NO_VELOCITY = re.compile(
     r".*normals?|.*texture.?coord.*|t_?coords?|coord(inate)?s?|points?|positions?", re.IGNORECASE
 )
@@ -51,7 +51,7 @@ def find_vectors(names: Sequence[str], *, pairs: bool = False) -> dict[str, tupl
     for name in names:
         for before, alphabet, after in _parses(name):
             parts = [before + token + after for token in alphabet]
-            # Four numbers that count up are no vector.
+            # Four numbered arrays are not a vector.
             more = [before + n + after for n in "0123"] if alphabet[0].isdecimal() else []
             if name != parts[0] or (more and known.issuperset(more)):
                 continue

@@ -54,7 +54,7 @@ class _CGNSReader:
         from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
         self._reader = reader
-        # With patches each zone is a tree of its own, and patches are no structured grids.
+        # With patches each zone is a tree of its own, and patches are not structured grids.
         reader.load_boundary_patch = False
         reader.enable_all_bases()
         reader.reader.UpdateInformation()
@@ -181,7 +181,7 @@ def _check_path(file: Path) -> None:
 
 
 def _at_time(source: Any, time: float) -> Any:
-    """Read the one step of a series that is asked for."""
+    """Read the one step of a series that is requested."""
     if isinstance(source, list):
         for step in time_steps(source):
             if step.time == time:

@@ -1,8 +1,8 @@
 """What a PyVista object holds: meshes, their times, and what they hide.
 
 A mesh, a block of a MultiBlock, a list of meshes and a reader of a time series all come down to a
-sequence of :class:`TimeStep`. Meshes are handed out one at a time, so that a long series is never
-in memory as a whole.
+sequence of :class:`TimeStep`. Meshes are yielded one at a time, so that a long series is never in
+memory as a whole.
 
 Meshes hide nodes and cells in several ways: VTK's ghost arrays on points and on cells, PLOT3D's
 ``IBlank``, and the mask of points that a sampling filter missed.

@@ -131,7 +131,7 @@ def find_solution(grid: Path) -> Path:
 
 
 def find_grid(solution: Path) -> Path | None:
-    """Find the grid beside a solution, or ``None`` where this is no solution."""
+    """Find the grid beside a solution, or ``None`` where this is not a solution."""
     if "q" not in solution.name.lower():
         return None
     beside = solution.parent.iterdir()

@@ -24,7 +24,7 @@ class Reader:
         self._count = 0
 
     def __call__(self, request: dict[str, Any]) -> Answer:
-        """Do what is asked for; the answer has its value and the warnings on the way."""
+        """Do what is requested; the answer has its value and the warnings on the way."""
         for number in request.pop("forgotten", ()):
             self._steps.pop(number, None)
         action = getattr(self, f"do_{request.pop('do')}")

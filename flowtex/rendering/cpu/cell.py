@@ -1,4 +1,4 @@
-"""Paths beside a critical point: ``shaders/common/cell.glsl`` for many fragments at once."""
+"""Paths near a critical point: ``shaders/common/cell.glsl`` for many fragments at once."""
 
 from __future__ import annotations
 

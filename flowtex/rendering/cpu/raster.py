@@ -6,8 +6,8 @@ matrix M; b = M^-1 (px, py, 1) has the three weights over w of a pixel, so a pix
 none is negative, 1 / w is their sum, and corners mix by b over that sum. Nothing has to be
 clipped, and the derivatives by the pixel follow from the same rows.
 
-A pixel that lies on an edge but for rounding is inside of the triangles on both sides, so that
-none is lost between them, and it belongs to one: the nearer, or else the first.
+A pixel that lies on an edge up to rounding is inside of the triangles on both sides, so that none
+is lost between them, and it belongs to one: the nearer, or else the first.
 """
 
 from __future__ import annotations

@@ -139,7 +139,7 @@ class FlowSurface:
         self.write_scalars()
 
     def write_scalars(self) -> None:
-        """Ask for the values anew, since they have changed."""
+        """Ask for the values again, since they have changed."""
         self._write_scalars(self._base, self._actor.mapper.dataset)
         for drawn in self._tiles.values():
             self._write_scalars(drawn.layer, drawn.mesh)
@@ -313,7 +313,7 @@ class FlowSurface:
         def prepare(textures: TextureSet) -> tuple[pv.PolyData, MeshLevels | TriangleBlocks]:
             surface = this()
             if surface is not None and surface._scalars is not None:
-                surface._scalars[1](textures.geometry.field)  # which keeps the values at hand
+                surface._scalars[1](textures.geometry.field)  # which keeps the values available
             _ = textures.unit, textures.cell, textures.critical_cell  # which are kept as well
             placed = corrects_places(textures)
             return surface_mesh(textures), mesh_levels_of(textures, placed=placed)

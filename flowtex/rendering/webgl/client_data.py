@@ -112,13 +112,13 @@ class Colours:
 
 @dataclass(frozen=True, eq=False)
 class ClientData:
-    """A flow and its colours, ready to be handed over.
+    """A flow and its colours, ready to be sent.
 
-    ``chosen`` are the numbers of the destination times that are handed over, increasing; all are
-    where it is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and
-    ``finest`` is the finest level of those that are handed over. Where the client ``traces``, it is
-    handed the velocity in place of slices, if it can trace them. ``bodies`` are other meshes, and
-    ``marks`` describe its structure.
+    ``chosen`` are the numbers of the destination times that are sent, increasing; all are where it
+    is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and ``finest``
+    is the finest level of those that are sent. Where the client ``traces``, it is handed the
+    velocity in place of slices, if it can trace them. ``bodies`` are other meshes, and ``marks``
+    describe its structure.
     """
 
     textures: TextureSet
@@ -133,13 +133,13 @@ class ClientData:
     @cached_property
     def traced(self) -> bool:
         """Whether the client traces the slices."""
-        # Pathlines lead through all steps, and not only through those that are handed over.
+        # Pathlines lead through all steps, and not only through those that are sent.
         is_whole = not self.chosen or self.textures.store.streamlines
         return self.traces and is_whole and velocity.can_trace(self.textures)
 
     @cached_property
     def formula(self) -> Formula | None:
-        """The formula that is handed over in place of the velocity."""
+        """The formula that is sent in place of the velocity."""
         return client_formula(self.textures) if self.traced and self.pyramid is None else None
 
     def _formula_header(self) -> Header:
@@ -174,7 +174,7 @@ class ClientData:
 
     @property
     def steps(self) -> int:
-        """Number of destination times that are handed over."""
+        """Number of destination times that are sent."""
         return len(self.chosen) or self.textures.store.steps
 
     @property
@@ -195,7 +195,7 @@ class ClientData:
         time: float | None = None,
         clock: float = 0.0,
     ) -> Header:
-        """Return all that is no array; plain Python, for JSON.
+        """Return all that is not an array; plain Python, for JSON.
 
         The camera is as :meth:`Camera.to_dict` has it, by default of the whole surface; the time
         is in the field's own unit, by default the first; the clock of the streaming in seconds.
@@ -330,7 +330,7 @@ class ClientData:
         return parts
 
     def tile(self, textures: TextureSet, values: Callable[[str], Floats]) -> ClientData:
-        """Return what is handed over of a tile; ``values`` gives those of a scalar at its nodes."""
+        """Return what is sent of a tile; ``values`` gives those of a scalar at its nodes."""
         colours = self.colours
         colours = replace(
             colours,
@@ -345,7 +345,7 @@ class ClientData:
         return {"geometry": self._geometry(), "slices": self._slices()}
 
     def source(self, step: int) -> int:
-        """Return the field's own number of a step that is handed over."""
+        """Return the field's own number of a step that is sent."""
         return self.chosen[step] if self.chosen else step
 
     def moment(self, time: float) -> tuple[int, ...]:
@@ -374,7 +374,7 @@ class ClientData:
 
     @property
     def _values(self) -> dict[int, Floats]:
-        """Nodal values at the times that are handed over, (steps or 1, J, I), by scalar."""
+        """Nodal values at the times that are sent, (steps or 1, J, I), by scalar."""
         colours = self.colours
         values = dict(colours.others)
         if colours.values is not None:

@@ -16,7 +16,7 @@ from flowtex.rendering.webgl.protocol import Header
 from flowtex.textures import TextureSet
 from flowtex.tiles import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
 
-#: Levels below the grid that is handed over: enough for the deepest zoom.
+#: Levels below the grid that is sent: enough for the deepest zoom.
 DEPTH = 20
 #: Before the name of a parameter among the settings, in the client as well.
 PREFIX = "formula."
@@ -45,7 +45,7 @@ def client_formula(textures: TextureSet) -> Formula | None:
 
 
 def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:
-    """Return what of a header is a formula's, for a root of so many nodes (J, I)."""
+    """Return what of a header is a formula's, for a root of this many nodes (J, I)."""
     shapes = [[(n - 1) * 2 ** (DEPTH - level) + 1 for n in shape] for level in range(DEPTH + 1)]
     return {
         "formula": {

@@ -38,7 +38,7 @@ class Marks:
     """What there is of the structure of a flow.
 
     ``kinds`` are the parts that can be had; where they are ``carried`` they come with each step,
-    and elsewhere when they are asked for.
+    and elsewhere when they are requested.
     """
 
     structure: Structure

@@ -203,7 +203,7 @@ def separatrices_between(
 ) -> Separatrices:
     """Follow the lines of a steady field whose critical points are known.
 
-    They have so many points at ``most``; :func:`separatrices` has the other arguments.
+    They have this many points at ``most``; :func:`separatrices` has the other arguments.
     """
     saddles = points.of_kind("saddle")
     if strongest is not None:

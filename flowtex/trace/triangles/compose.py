@@ -32,14 +32,14 @@ BLOCK = 8192
 MOST_CROSSED = 24
 #: Share of a triangle, and of a lag, by which rounding may miss it.
 ROUNDING = 1e-9
-#: Lags after which a path ends that goes on, so that one between ends beside those alone that do.
+#: Lags after which a path ends that continues, so that one between ends beside those alone that do.
 FAR = 1e4
 #: Share of a lag by which the ends of a triangle's three paths may lie apart to be interpolated.
 ENDS_SHARE = 0.25
 
 
 def known_lags(lags: Floats, cells: float) -> int:
-    """Return how many of lags (M,), of so many small cells a unit, are to be integrated.
+    """Return how many of lags (M,), of this many small cells a unit, are to be integrated.
 
     All, unless each is twice the one before.
     """
@@ -126,7 +126,7 @@ class Composition:
             begin, target, ends = self._piece(m, nodes, number, triangle, shares)
             triangle, shares, outside = search.find(begin, target)
             self._triangle[m, nodes], self._shares[:, nodes] = triangle, shares
-            # Beside a border that bends, the chord of paths that go on may lie outside.
+            # Beside a border that bends, the chord of paths that continue may lie outside.
             span = self.lags[number]
             ended = (ends <= span) | (outside & np.isfinite(ends))
             self.reach[nodes[ended]] = (lag + np.minimum(ends, span))[ended]

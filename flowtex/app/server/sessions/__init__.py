@@ -1,1 +1,1 @@
-"""Sessions of pages: their registry, and the kinds that live here and in processes of their own."""
+"""Sessions of pages: their registry, and the kinds that live here and in separate processes."""

@@ -39,7 +39,7 @@ class LimitedMessages(UnChunker):
         self._declared, self._areas = declared, areas
 
     def set_max_message_size(self, size: int) -> None:
-        """Allow messages of so many bytes, or as many as any may have."""
+        """Allow messages of this many bytes, or as many as any may have."""
         super().set_max_message_size(min(size, MESSAGE_BYTES))
 
     def process_chunk(self, chunk: bytes) -> Any:

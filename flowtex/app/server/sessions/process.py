@@ -1,8 +1,8 @@
-"""A session in a process of its own, as the server sees it and as it runs there.
+"""A session in a separate process, as the server sees it and as it runs there.
 
 The process is forked from one that has loaded the libraries, and listens on a socket without a
 file, at a name that the system chooses. The server in front keeps addresses, secrets and limits,
-and hands on messages and files. A crash ends one page; its memory is limited, and the system
+and passes on messages and files. A crash ends one page; its memory is limited, and the system
 shares the cores among processes.
 """
 
@@ -30,7 +30,7 @@ from flowtex.errors import FieldError
 OPENING_S, ENDING_S = 600.0, 30.0
 #: Seconds between two looks whether a session is to end.
 CHECK_S = 0.05
-#: Headers of a request, and of an answer, that are handed on.
+#: Headers of a request, and of an answer, that are passed on.
 ASKED = ("Content-Type", "Content-Length", "Range", "If-Range")
 ANSWERED = (
     *("Content-Type", "Content-Length", "Content-Range", "Content-Disposition"),
@@ -41,7 +41,7 @@ ANSWERED = (
 def process_opener(
     entry: str, preload: tuple[str, ...], request: dict[str, Any], opened: Callable[[Any], None]
 ) -> OpenSession:
-    """Return what opens sessions in processes of their own.
+    """Return what opens sessions in separate processes.
 
     Entry and preload are those of :class:`flowtex._util.child.Child`; the entry makes a
     :class:`HostedSession`, which is asked to open the request. ``opened`` is called with what is
@@ -79,7 +79,7 @@ class ProcessSession(Session):
             "http://localhost",
             connector=aiohttp.UnixConnector(f"\0{about['name']}", limit=0),
             timeout=aiohttp.ClientTimeout(),
-            skip_auto_headers=("Accept-Encoding",),  # what comes is handed on as it is
+            skip_auto_headers=("Accept-Encoding",),  # bodies pass unchanged
             auto_decompress=False,
         )
         super().__init__(_Files(about["files"], self._http), about["token"])

@@ -113,7 +113,7 @@ def _of_models(variables: Mapping[str, Any]) -> Iterator[Mesh]:
 
 
 def _spreads(c: Any) -> bool:
-    """Whether a coordinate is no array of zeros, as of the other kind that a model may write."""
+    """Whether a coordinate is not all zeros, as a model may write those it does not use."""
     values = np.asarray(values_in(c), dtype=float)
     return bool(np.nanmax(values, initial=-np.inf) > np.nanmin(values, initial=np.inf))
 

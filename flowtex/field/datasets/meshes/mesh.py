@@ -26,7 +26,7 @@ RADIANS = re.compile(r"^rad(ian)?s?$", re.IGNORECASE)
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A mesh of polygons; its numbers are read when they are asked for.
+    """A mesh of polygons; its numbers are read when they are requested.
 
     ``kind`` has words for the convention. ``x`` and ``y`` are coordinates of the nodes, or those of
     the corners of each face where ``corners``, the nodes of each face, is missing. ``counts`` is

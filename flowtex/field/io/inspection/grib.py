@@ -9,7 +9,7 @@ from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 
 MAGIC = b"GRIB"
-#: What is between messages is gone over in parts of so many bytes.
+#: What is between messages is gone over in parts of this many bytes.
 CHUNK_BYTES = 1 << 16
 #: Messages of GRIB 1 that are longer than three bytes can say count in units of 120.
 LONG_MESSAGE, LONG_UNIT = 0x800000, 120

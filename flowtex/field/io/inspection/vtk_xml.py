@@ -300,7 +300,7 @@ class _Block:
         check_memory(full, f"one block of {what}")
 
     def last(self, nbytes: int) -> int | None:
-        """Return the last value, an integer of so many bytes; ``None`` where it is not known."""
+        """Return the last value, an integer of this many bytes; ``None`` where it is not known."""
         if self.nbytes < nbytes:
             return 0
         if not self._sizes:
