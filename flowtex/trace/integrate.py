@@ -47,7 +47,7 @@ class Paths:
 
     positions: Floats  #: Positions in index space, (M, N, 2) as (i, j).
     reach: Floats  #: Lag at which each path ended, (N,), infinite where it goes on.
-    polar: Bools  #: Which paths came right beside a pole, (N,).
+    polar: Bools  #: Which paths came right near a pole, (N,).
     #: Which paths came where they are not to be followed, (N,): ``reach`` is the lag at which they
     #: did, and all their later positions are the one where they did.
     interrupted: Bools

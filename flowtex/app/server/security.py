@@ -66,9 +66,9 @@ def is_same(text: object, secret: str) -> bool:
 def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
     """Return the names that a server which listens on ``host`` is known by.
 
-    On JupyterHub, and behind another proxy of Jupyter's, that is any: the proxy hands on a name
+    On JupyterHub, and behind another proxy of Jupyter's, that is any: the proxy passes on a name
     that is not known here, and Jupyter's own token guards it. Raises a FieldError when what is
-    allowed is no name.
+    allowed is not a name.
     """
     names = [*LOCAL, host]
     if host in ("0.0.0.0", "::", ""):

@@ -182,7 +182,7 @@ def _pages(count: int) -> str:
 def _asked(body: bytes) -> tuple[str, str | None]:
     """Return the secret and the token that a door sends.
 
-    Raises a ValueError when they are no texts that can be sent, or missing.
+    Raises a ValueError when they are not texts that can be sent, or missing.
     """
     try:
         asked = json.loads(body)

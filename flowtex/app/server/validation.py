@@ -85,7 +85,7 @@ def sent_picture(sent: Any) -> tuple[bytes, str]:
 def decode_picture(content: bytes, name: str) -> AnyArray:
     """Read a picture, averaged to :data:`PICTURE_SIDE` on a side at most; one at a time.
 
-    Raises a SettingsError when it has too many pixels, or is no picture.
+    Raises a SettingsError when it has too many pixels, or is not a picture.
     """
     with _decoding:
         return _read(content, name)

@@ -90,7 +90,7 @@ class Colours:
     opacity: float = 1.0  #: How much of the background it hides, 0 to 1.
     bar: bool = True  #: Whether there is a legend.
     log_scale: bool = False  #: Whether the map goes by the logarithm.
-    #: Numbers and values of other scalars, handed over as well where nobody can be asked later.
+    #: Numbers and values of other scalars, sent as well where nobody can be asked later.
     others: tuple[tuple[int, Floats], ...] = ()
     number: int = 0  #: Number of the scalar among those of the field.
     #: What a person may choose to colour by: name, label, unit, automatic range, and whether it
