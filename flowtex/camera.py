@@ -517,7 +517,7 @@ def _side(center: Floats) -> tuple[Point, Point]:
 
 
 def _turned(vector: Floats, axis: Floats, degrees: float) -> Floats:
-    """Rotate a vector about an axis, by the right hand's rule."""
+    """Rotate a vector about an axis, by the right-hand rule."""
     axis = axis / np.linalg.norm(axis)
     angle = math.radians(degrees)
     along = axis * (axis @ vector)

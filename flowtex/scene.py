@@ -197,7 +197,7 @@ class Scene:
         return tuple(dict.fromkeys((SPEED, *self.field.scalars)))
 
     def label_of(self, name: str) -> str:
-        """Return the words for a scalar; they are those of what is drawn."""
+        """Return the name of a scalar for legends; they are those of what is drawn."""
         return self.whole.label_of(name)
 
     def title_of(self, name: str) -> str:

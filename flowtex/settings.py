@@ -155,7 +155,7 @@ class Setting:
 
     @property
     def expected(self) -> str:
-        """What a value must be, in words."""
+        """A description of valid values."""
         if self.kind is bool:
             return "True or False"
         if self.kind is str:

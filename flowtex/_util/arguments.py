@@ -1,4 +1,4 @@
-"""Arguments of public functions: checks that many have in common, and names that were meant."""
+"""Arguments of public functions: common checks, and suggestions for misspelt names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was chosen automatically, said to whoever called."""
+"""Notices about choices that flowtex made, issued at the caller's line."""
 
 from __future__ import annotations
 

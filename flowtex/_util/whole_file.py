@@ -74,7 +74,7 @@ class WholeFile:
             self._end()
 
     def keep(self) -> None:
-        """Put the new file in the place of the old one."""
+        """Replace the old file by the new one."""
         self.file.flush()
         os.fsync(self._raw.fileno())
         if os.name == "nt":  # Windows does not move a file that is open

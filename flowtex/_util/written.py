@@ -12,7 +12,7 @@ from flowtex.errors import FieldError
 
 
 class UnreadableError(FieldError):
-    """A text that stands for no value; the error says what was expected."""
+    """A text that means no value; the error says what was expected."""
 
 
 @dataclass(frozen=True)

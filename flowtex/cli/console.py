@@ -77,7 +77,7 @@ def announcer(
 
 
 def describe(field: FlowField) -> str:
-    """Return name and size of a field in words."""
+    """Return name and size of a field as text."""
     times = "" if field.steady else f", {len(field.times)} times"
     return f"{field.name or 'flow'}, {field.short_size}{times}"
 

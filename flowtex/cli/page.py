@@ -35,7 +35,7 @@ PRELOAD = (
     *("scipy.interpolate", "xarray", "cf_xarray", "netCDF4", "pyproj", "dask.array"),
 )
 
-#: The words of the command that runs.
+#: The arguments of the running command.
 words: ContextVar[Sequence[str]] = ContextVar("words", default=())
 #: Called with what a page shows, in a process that is a session.
 _host: ContextVar[Callable[[Any, str], None] | None] = ContextVar("host", default=None)

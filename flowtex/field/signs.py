@@ -1,7 +1,7 @@
-"""Fields without a sign: polarisation, principal directions, fibres; v and -v are the same.
+"""Sign-free fields: polarisation, principal directions, fibres; v and -v are the same.
 
-No choice of signs is continuous everywhere: around a half-integer singularity a vector comes back
-turned over. The signs at the nodes are chosen to agree with their neighbours as far as possible, so
+No choice of signs is continuous everywhere: around a half-integer singularity a vector returns
+reversed. The signs at the nodes are chosen to agree with their neighbours as far as possible, so
 that they disagree along a cut only. The corners of each cell are brought into line before anything
 is interpolated.
 
@@ -103,7 +103,7 @@ def corner_signs(vectors: AnyArray) -> NDArray[np.int8] | None:
 
 
 def weighted_axis(vectors: Floats, weights: Floats) -> Floats:
-    """Return the weighted mean of vectors (N, C), each turned over to agree with the first."""
+    """Return the weighted mean of vectors (N, C), each reversed if it opposes the first."""
     signs = np.where(vectors @ vectors[0] < 0, -1.0, 1.0)
     return np.asarray((weights * signs) @ vectors)
 

@@ -43,7 +43,7 @@ OUTER = "outer"
 class Source:
     """What can be chosen of a file, a mesh or a field, from which one field after another is made.
 
-    ``name`` is a word for captions, ``nbytes`` the size in memory, and ``identity`` the state of
+    ``name`` is for captions, ``nbytes`` the size in memory, and ``identity`` the state of
     the files when they were opened; empty without files.
     """
 
@@ -62,7 +62,7 @@ class Source:
         self.default_plane = ""
         #: Ends of a volume along the axes across which it can be cut.
         self.ends: dict[str, tuple[float, float]] = {}
-        #: Other axes along which there is a choice, and words for each place.
+        #: Other axes with a choice, and a text for each entry.
         self.axes: dict[str, tuple[str, ...]] = {}
         #: Whether a part of the file is read when a field is requested.
         self.reads_late = False
@@ -106,7 +106,7 @@ class Source:
         return number if 0 <= number < self.planes.get(axis, 0) else None
 
     def plane_text(self, plane: str) -> str:
-        """Return words for a plane, such as ``"k = 20"`` or ``"500 hPa"``."""
+        """Return the text for a plane, such as ``"k = 20"`` or ``"500 hPa"``."""
         axis, _, number = plane.partition("=")
         words = self.axes.get(axis, ())
         if number.isdecimal() and int(number) < len(words):
@@ -288,7 +288,7 @@ class FlowSource(Source):
 
 
 def _choices(mesh: Any, *, series: bool) -> dict[str, Any]:
-    """Return the blocks that may be chosen, those that are meant first; none for a single one."""
+    """Return the blocks that may be chosen, the default ones first; none for a single one."""
     if isinstance(mesh, (list, tuple)):
         return {}
     meant, how = drawn_parts(mesh, series=series)

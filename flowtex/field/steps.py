@@ -109,7 +109,7 @@ def first_step(values: Any) -> Any:
 
 
 def typical_steps(count: int) -> list[int]:
-    """Return the steps that stand for all of so many: the first, the middle and the last one."""
+    """Return steps that represent all of this many: the first, the middle and the last one."""
     return sorted({0, (count - 1) // 2, count - 1})
 
 

@@ -62,7 +62,7 @@ def read_bodies(plotter: Any, shown: FlowHandle) -> tuple[Bodies, list[str]]:
 
 
 def _actors(plotter: Any, shown: FlowHandle) -> Iterator[tuple[str, Any]]:
-    """Give what can be seen on a plotter, but for the flow and its legend."""
+    """Yield what a plotter shows, except the flow and its legend."""
     flows = {id(handle.actor) for handle in plotter.flowtex}
     bars, title = dict(plotter.scalar_bars.items()), shown._bar_title
     bar = None if title is None else bars.get(title)

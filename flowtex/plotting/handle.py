@@ -253,7 +253,7 @@ class FlowHandle(AppearanceAttributes):
         self._surface.write_scalars()
 
     def _show_appearance(self, *anew: str) -> None:
-        """Follow the appearance; what of the actor was changed by hand and not here stays.
+        """Follow the appearance; direct changes of the actor stay.
 
         What follows from the field is shown ``again`` where that is another one.
         """

@@ -21,12 +21,12 @@ SCALAR_BAR: dict[str, Any] = {
     "label_font_size": 14,
     "unconstrained_font_size": True,
 }
-#: Arguments by which somebody places or sizes a bar by hand.
+#: Arguments by which users set the position or size of a bar.
 BY_HAND = (
     *("width", "height", "position_x", "position_y", "vertical", "interactive"),
     *("title_font_size", "label_font_size"),
 )
-#: Arguments by which somebody chooses what is behind a bar, and the usual plate behind its texts:
+#: Arguments by which users set the background of a bar, and the default plate behind its texts:
 #: one behind the whole bar would cover as much as the title is wide.
 BEHIND, PLATE, OPACITY = ("fill", "background_color", "color"), (1.0, 1.0, 1.0), 0.8
 #: Height of the text: a share of the view's, within limits in points; a title's is larger.

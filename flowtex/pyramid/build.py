@@ -58,7 +58,7 @@ from flowtex.pyramid.workers import PART_BYTES, TILE_BYTES, Cluster, Threads
 from flowtex.tiles import TileKey
 from flowtex.tiles.pyramid import level_lines, level_shape
 
-#: So many failures one after the other end a build: the store is full, or nobody may write there.
+#: So many failures one after the other end a build: the store is full, or write-protected.
 MOST_FAILURES = 20
 #: What a field is known again by, and how it is drawn.
 IDENTITY = (

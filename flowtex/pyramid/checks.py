@@ -29,7 +29,7 @@ Check = Callable[[Any], bool]
 
 
 def sealed(about: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the description of a pyramid with its seal; no dictionary without is believed."""
+    """Return the description of a pyramid with its seal; a dictionary without one is rejected."""
     return {**about, "seal": _seal(about)}
 
 

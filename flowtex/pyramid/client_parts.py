@@ -1,4 +1,4 @@
-"""What a browser is handed of a tile: files of its surface, of its flow, and of its values.
+"""The data of a tile for browsers: files of its surface, of its flow, and of its values.
 
 The flow is the velocity, from which the client traces, where it can. Where it cannot, along
 pathlines, it is slices, with a halo that does for the first, middle and last step.
@@ -39,7 +39,7 @@ VALUE_SHARE = 2.0**-17
 
 
 def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Sequence[int]) -> None:
-    """Write what a browser is handed of a tile at some times; at the first its surface too."""
+    """Write the data of a tile for browsers at some times; at the first its surface too."""
     of = pyramid.about["fingerprint"]
     textures = _textures(pyramid, key)
     data, at = None, key[1:]

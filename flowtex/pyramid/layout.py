@@ -16,7 +16,7 @@
 
 Velocities and scalars are float32, positions float64; of velocities the first 13 bits are kept.
 Whoever draws makes tiles of a region of a level, with the halo that their paths need, and traces
-them; the root is one tile. A browser is handed what it makes them of, in files of parts: the
+them; the root is one tile. Browsers read the data for them in files of parts: the
 surface of a tile, with all that is the same at all times, the flow of one time, and the values of
 one scalar, so that it takes what it shows with one request each. The flow is the velocity where the
 browser can trace it, and slices where it cannot; see client_parts.py. Scalar 0 is the speed, which

@@ -1,4 +1,4 @@
-"""The lease of a store: whoever builds it holds one, so that nobody else builds it meanwhile.
+"""The lease of a store: the process that builds it holds one, so no other builds it.
 
 It is an object of the store with the name of its holder and the time at which that was last there.
 A holder renews it; one that is not renewed, or whose process has ended, is stale and taken over.
@@ -27,7 +27,7 @@ RENEWAL_S, STALE_S = 20.0, 120.0
 class Lease:
     """The right to build a store, held inside a ``with``; a PyramidError when another holds it.
 
-    The ``clock`` has to be the same on all machines but for some seconds.
+    The ``clock`` must agree on all machines to within some seconds.
     """
 
     def __init__(self, place: str, clock: Callable[[], float] = time.time) -> None:
@@ -62,7 +62,7 @@ class Lease:
                     sync(self._store.delete(LEASE))
 
     def check(self) -> None:
-        """Raise a PyramidError where somebody else has taken the lease over."""
+        """Raise a PyramidError if another process has taken over the lease."""
         if not self._holder and self._clock() - self._renewed > STALE_S:
             self.renew()
         if self._holder:
@@ -108,7 +108,7 @@ class Lease:
             told: dict[str, Any] = json.loads(found.to_bytes())
             if isinstance(told["at"], (int, float)):
                 return told
-        return {"at": -math.inf}  # it was cut off, so nobody holds it
+        return {"at": -math.inf}  # it was cut off, so it is not held
 
     def _write(self, *, create: bool) -> None:
         from zarr.core.buffer import default_buffer_prototype

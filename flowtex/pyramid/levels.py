@@ -364,7 +364,7 @@ def _format_of(array: Any) -> dict[str, Any]:
 
 
 def _wait(reading: Coroutine[Any, Any, Any]) -> Any:
-    """Return what is read; it is given up where the work around it was cancelled."""
+    """Return what is read; it is dropped if the surrounding work was cancelled."""
 
     async def watched() -> Any:
         task = asyncio.ensure_future(reading)

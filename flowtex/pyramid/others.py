@@ -28,7 +28,7 @@ from flowtex.tiles.pyramid import ROOT_NODES, level_lines, root_level
 
 #: Nodes of a level may be so many times as far apart as those that are drawn.
 WIDER = 1.5
-#: Bytes of a chunk, and nodes of the coarsest level, from which on somebody waits for them.
+#: Bytes of a chunk, and nodes of the coarsest level, beyond which users have to wait.
 SLOW_BYTES, SLOW_NODES = 8_000_000, 16 * ROOT_NODES
 #: Bytes of the steps of a tile that are kept.
 KEPT_BYTES = 64_000_000
@@ -176,7 +176,7 @@ def _between(wanted: Floats, line: Floats, turn: float | None) -> tuple[Indices,
     """Return the numbers in a line of the two nodes around each place, (2, N).
 
     The share of the second one comes with them. Where places lie farther apart than nodes, the
-    nearest one stands for both: what is read then is evenly spaced.
+    nearest one is used for both: what is read then is evenly spaced.
     """
     if turn is not None:
         line = np.unwrap(line, period=turn)

@@ -30,7 +30,7 @@ _URL = re.compile(r"^(?!file:)([A-Za-z][A-Za-z0-9+.-]+):[/\\]{1,2}(?=[^/\\])")
 _FILE_URL = re.compile(r"^file:/{1,3}(?=[^/])")
 _WEB, _AZURE = ("http", "https"), ("abfs", "abfss", "adl", "az", "azure")
 _SCHEMES = ("s3", "s3a", "gs", *_AZURE, *_WEB)
-#: Seconds after which a server that says nothing is given up, and a connection that is not made;
+#: Time-outs in seconds for a server's answer and for a connection;
 #: and how often it is asked again.
 SILENCE_S, CONNECT_S, MOST_REPEATS, FIRST_PAUSE_S = 10.0, 5.0, 2, 0.2
 #: Names of other data that a message lists.

@@ -167,7 +167,7 @@ def write_part(
 
 
 def make_tile(place: str, run: str, task: TileTask) -> None:
-    """Write what a browser is handed of a tile."""
+    """Write the data of a tile for browsers."""
     write_tile(_writable(place, run), _pyramid(place, run), task.key, task.steps)
 
 

@@ -23,7 +23,7 @@ from flowtex._util.vectors import dot, norm
 from flowtex.textures import TextureSet
 from flowtex.tiles import BLOCK_CELLS, block_places
 
-#: Distance on the screen between a node and the triangle that stands for it.
+#: Distance on the screen between a node and the triangle that replaces it.
 MAX_ERROR_PIXELS = 0.05
 #: What counts of an error of the outline, a quarter of a pixel across it; and of one along the
 #: surface, half a pixel: noise is looked up where a point lies, and only paths belong to a

@@ -1,4 +1,4 @@
-"""The uniforms of the shaders, whoever compiles them.
+"""The uniforms of the shaders, for all renderers.
 
 One function turns a texture set, the settings and the state of the view into the uniforms that
 ``shaders/common/uniforms.glsl`` declares. A renderer only passes them on.
@@ -61,7 +61,7 @@ class ViewState:
     #: Pixels drawn, along a side, for one that the settings speak of: a picture of twice the
     #: density has grains of twice as many pixels, and shows the same.
     density: float = 1.0
-    #: Length that a pixel drawn covers at the focus; 0 stands for as near as can be.
+    #: Length that a pixel drawn covers at the focus; 0 means as near as possible.
     pixel: float = 0.0
     #: Number of lags of the slices that are drawn with, the shortest; ``None`` for all.
     lags: int | None = None

@@ -32,8 +32,8 @@ class TriangleGeometry(DrawnSurface):
     nodes: slice | Indices  #: Numbers of the nodes that are drawn, (n,), or all of them.
     triangles: Indices  #: Nodes at the corners of what is drawn, (m, 3), as numbers among these.
     whole: Surface  #: The surface that a tile is a part of, whose middle, size and frame it has.
-    #: Blocks that each triangle lies in, (m,): bit b stands for the block at row b // C of C
-    #: columns, and column b % C.
+    #: Blocks that each triangle lies in, (m,): bit b is the block at row b // C of C columns, and
+    #: column b % C.
     blocks: NDArray[np.uint16]
     #: Centre, radius and longest side of a triangle of each block, (rows, C, 5).
     block_places: Floats

@@ -26,7 +26,7 @@ from flowtex.field.triangles.topology import triangle_normals
 FIRST_EDGES = 2.0
 #: Passes in which the edge of a node becomes that of its surroundings.
 SMOOTHING = 3
-#: Rounds in which triangles that are turned over are sought.
+#: Rounds of the search for inverted triangles.
 UNTANGLING = 4
 #: Bins along the surface's extent, at most; three numbers of them have room in one of 64 bits.
 MOST_BINS = 2**18
@@ -36,7 +36,7 @@ MOST_LEFT = 0.7
 
 @dataclass(frozen=True, eq=False)
 class Clusters:
-    """Nodes of a level, each of which stands for some nodes of the field.
+    """Nodes of a level, each of which represents some nodes of the field.
 
     ``whole`` is the field that has all nodes, ``field`` the one at this level, and ``triangles``
     (M, 3) are those of it that are drawn, which face alike. ``number`` (N,) is the node of this
@@ -125,7 +125,7 @@ class Clusters:
     def _compact(self, cluster: Indices) -> Indices:
         """Have each node (n,) in the nearest of the clusters beside it.
 
-        What lay apart in one bin is then with its neighbours, and hardly a triangle turns over.
+        Separate parts in one bin then join their neighbours, and hardly any triangle is inverted.
         """
         points, count = self.field.points[0], int(cluster.max()) + 1
         center = _sums(points, cluster, count) / np.bincount(cluster)[:, None]
@@ -226,7 +226,7 @@ def _once(corners: Indices) -> Indices:
 
 
 def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bools) -> Indices:
-    """Move nodes of triangles that are turned over to the middle of those beside them.
+    """Move nodes of inverted triangles to the middle of their neighbours.
 
     Triangles that stay so, as at a border, are left out: others cover what they do.
     """

@@ -35,7 +35,7 @@ TRIANGLE_BYTES = 250
 MOST_THREADS = 4
 #: How often a tile that waits for its turn is looked at, whether it is still wanted.
 LOOK_INTERVAL_S = 0.1
-#: Seconds before the last request within which a tile must have been requested, not to be given up.
+#: Seconds before the last request within which a tile must have been requested, or it is dropped.
 GRACE_S = 2.0
 #: Seconds after which a tile that failed may be requested again.
 RETRY_S = 10.0
@@ -59,7 +59,7 @@ def _turn() -> Iterator[None]:
 class Tile:
     """One tile with the layers of the destination times that were requested.
 
-    ``textures`` are None where nothing of it is drawn; ``prepared`` is what whoever draws has made
+    ``textures`` are None where nothing of it is drawn; ``prepared`` is what the renderer has made
     of them.
     """
 
@@ -142,7 +142,7 @@ class TileLoader:
         return key in self.errors
 
     def request(self, keys: Sequence[TileKey], steps: Sequence[int]) -> None:
-        """Ask for tiles in this order, and give up those that nobody has asked for lately.
+        """Request tiles in this order, and drop those without a recent request.
 
         A picture may be drawn in several parts, each of which asks for its own.
         """
@@ -184,7 +184,7 @@ class TileLoader:
                 futures = [f for (key, _), f in self._running.items() if self._is_wanted(key)]
             if not futures:
                 return
-            wait(futures)  # of which some may stand in line again meanwhile
+            wait(futures)  # some of which may wait again by now
 
     def close(self) -> None:
         """Stop, without waiting for what is being made."""

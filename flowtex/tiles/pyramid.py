@@ -69,7 +69,7 @@ class TileKey(NamedTuple):
 
     @property
     def parent(self) -> TileKey:
-        """The tile that this one refines; at the depth of the root it stands for the root."""
+        """The tile that this one refines; at the depth of the root it is the root."""
         return TileKey(self.level + 1, self.row // 2, self.column // 2)
 
 
@@ -205,7 +205,7 @@ class Pyramid:
     def textures(self, key: TileKey, widening: int = 1) -> TextureSet | None:
         """Return the textures of a tile, whose layers are traced when they are requested.
 
-        ``None`` stands for a tile of which nothing is drawn. The halo is so many times as wide as
+        ``None`` means a tile of which nothing is drawn. The halo is so many times as wide as
         paths of even speed need; :func:`is_cut` returns whether that was enough. Raises a KeyError
         where the tile does not exist.
         """

@@ -97,7 +97,7 @@ _structures: WeakCache[Structure] = WeakCache()
 
 
 def shared_structure(field: FlowField) -> Structure:
-    """Return the structure of a field, one for all who ask while somebody has it."""
+    """Return the structure of a field, which all users of the field share."""
     # A structure keeps its field alive, so the number of the field is its own meanwhile.
     return _structures.get(id(field), lambda: Structure(field))
 

@@ -39,7 +39,7 @@ class Patch(NamedTuple):
     pole: Pole | None = None
     #: First line of the grid that counts from the pole.
     offset: int = 0
-    #: Signs of the corners of each cell, (4, J * I), where the first two arrays have no sign.
+    #: Signs of the corners of each cell, (4, J * I), where the first two arrays are sign-free.
     signs: NDArray[np.int8] | None = None
 
     def without_sign(self, vectors: Floats | None = None) -> Patch:

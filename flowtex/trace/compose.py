@@ -60,7 +60,7 @@ def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
     """Time steps that each lag of a time-varying field spans, 0 for a part of one, (M,).
 
     ``None`` when paths cannot be composed: the steps are not equal, or the lags are not multiples
-    of the first one that is a whole number of them; or the field has no sign, so that slices of
+    of the first one that is a whole number of them; or the field is sign-free, so that slices of
     nodes that point either way cannot be interpolated; or it is on triangles, where displacements
     between nodes do not lie on the surface.
     """

@@ -62,7 +62,7 @@ class SliceStore:
         self.field = field
         #: Whether each destination time is traced as a steady field.
         self.streamlines = field.steady or chosen_lines(field, lines) == "streamlines"
-        #: Whether the slices were traced by somebody else.
+        #: Whether the slices were traced elsewhere.
         self.given = slices is not None
         self._whole = slices
         self._compose = compose
@@ -166,7 +166,7 @@ def _held(first: int, last: int, step: int, most: int) -> list[int]:
 
 
 _stores: WeakCache[SliceStore] = WeakCache()
-#: Slices in use by the numbers that they are made of: whoever reads these again has the same ones.
+#: Slices in use by the numbers that they are made of: reading these again gives the same ones.
 _slices: WeakCache[TraceSlices] = WeakCache()
 
 

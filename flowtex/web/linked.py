@@ -63,7 +63,7 @@ class StoreLink:
 
 
 def linked_data(view: WebView) -> ClientData:
-    """Return what a page is handed of a view whose tiles lie in a store.
+    """Return the data of a page for a view whose tiles are in a store.
 
     Raises a FieldError when the flow is not one of a store, or the store has other paths.
     """

@@ -1,4 +1,4 @@
-"""How a flow travels to a browser: whoever carries it asks one source for parts by name.
+"""How a flow travels to a browser: the host requests parts by name from one source.
 
 ::
 
@@ -109,7 +109,7 @@ class TileSource:
         return (_marks_pool if kind else _pool).submit(make)
 
     def tiles(self) -> Iterator[Parts]:
-        """Give the parts of all tiles that are sent without asking, coarse ones first."""
+        """Yield the parts of all tiles that are sent without a request, coarse ones first."""
         scene, steps = self.scene, range(self.scene.steps)
         keys: list[TileKey] = []
         level = [] if scene.pyramid is None else scene.pyramid.children(None)

@@ -1,4 +1,4 @@
-"""A scene as a browser is handed it: the header and the arrays that the client draws."""
+"""A scene as it is sent to a browser: the header and the arrays that the client draws."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class WebView:
         return self.scene.field
 
     def data(self) -> ClientData:
-        """Return what the client is handed; makes noise textures, and traces nothing."""
+        """Return the data for the client; makes noise textures, and traces nothing."""
         scene = self.scene
         return self._data(scene, scene.pyramid)
 
@@ -100,7 +100,7 @@ class WebView:
         self.scene.follow(before)
 
     def recoloured(self, data: ClientData) -> ClientData:
-        """Return what the client has been handed with the colours of this moment."""
+        """Return the data of the client with the current colours."""
         return data.recoloured(colours_of(self.scene, data.field, self._background))
 
     def close(self) -> None:

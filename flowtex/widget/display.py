@@ -183,7 +183,7 @@ def _shell() -> Any:
 
 
 def _kernel_shell() -> Any:
-    """Return the shell of a notebook's kernel; what stands for one in Solara displays nothing."""
+    """Return the shell of a notebook's kernel; Solara's substitute for one displays nothing."""
     shell = _shell()
     shows = hasattr(shell, "display_formatter") and getattr(shell, "kernel", None) is not None
     return shell if shows else None

@@ -1,8 +1,8 @@
 """Sends a client its arrays: coarse ones first, then all, then what it asks for.
 
 Two workers do what takes time. One sends the client what shows the scene that there is; the other
-makes the next scene, the whole one after a coarse one or that of new settings, and puts it in the
-place of the first when it can be shown. What a client asks for is made by the scene's source.
+makes the next scene, the whole one after a coarse one or that of new settings, and replaces the
+first by it when it can be shown. What a client asks for is made by the scene's source.
 
 An array that was sent to some page already is offered by its digest and not sent: a page that
 shows the same mesh many times holds it once, and asks for what it lacks.
@@ -45,7 +45,7 @@ VERY_LARGE_NODES = 600_000
 BETWEEN_STEADY, BETWEEN_VARYING = 100_000, 16_000
 #: Bytes that go in one message together.
 MESSAGE_BYTES = 2_000_000
-#: Seconds between the times at which what nobody has acknowledged is sent once more.
+#: Seconds after which data without an acknowledgement are sent again.
 RESEND_WAITS_S = (2.5, 4.0, 8.0, 16.0)
 #: Seconds in which a client asks for what it has just been sent, as the header comes first.
 COMING_S = 2.0
@@ -106,7 +106,7 @@ class Feed:
     def start(self) -> None:
         """Send what is shown first, without being asked, and then make the whole of it.
 
-        Until the cell that shows a widget has come to its end nobody can ask.
+        Requests arrive only after the cell that shows a widget has ended.
         """
         self._send_first(urgency=2)
         self._answers.do(self._refine)
@@ -212,7 +212,7 @@ class Feed:
         self._refine()
 
     def close(self) -> None:
-        """Stop; a trace that is being made comes to its end and is not sent."""
+        """Stop; a trace in progress ends and is not sent."""
         self._closed = True
         self._timer.cancel()
         self._answers.close()
@@ -263,7 +263,7 @@ class Feed:
             self._replace(make(), order)
 
     def _replace(self, scene: ClientData, order: int | None = None) -> None:
-        """Put a scene in the place of the present one, unless another than ``order`` is wanted.
+        """Replace the current scene, unless another than ``order`` is wanted.
 
         Without one it is shown in any case: the flow may change faster than a scene is made.
         """

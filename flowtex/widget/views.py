@@ -1,7 +1,7 @@
 """The view of a widget, or two beside each other that differ in some settings.
 
-Both are one widget: the second has the settings of the first but for those that are its own, and
-the browser links their cameras, so that they move in one frame.
+Both are one widget: the second has the settings of the first except its own, and the browser links
+their cameras, so that they move in the same frame.
 """
 
 from __future__ import annotations

@@ -97,6 +97,6 @@ class Worker:
             return
         try:
             job()
-        except Exception as error:  # whoever asked is in another thread
+        except Exception as error:  # the caller is in another thread
             if not self._closed:
                 self._failed(error)

@@ -55,7 +55,7 @@ def settle(memory: int, *, lasting: bool) -> None:
     Nothing is read or printed; what lasts may print on the standard error.
     """
     device = os.open(os.devnull, os.O_RDWR)
-    for standard in (0, 1) if lasting else (0, 1, 2):  # what C libraries print is for nobody
+    for standard in (0, 1) if lasting else (0, 1, 2):  # output of C libraries is dropped
         os.dup2(device, standard)
     with suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text(OOM_SCORE, encoding="utf-8")
@@ -115,7 +115,7 @@ def _kind(error: Exception) -> str:
 
 
 def _listen(reads: IO[bytes], requests: SimpleQueue[tuple[int, Any]], cancelled: set[int]) -> None:
-    """Take requests and cancellations; nobody waits for answers once there are no more."""
+    """Take requests and cancellations; no process waits for answers then."""
     try:
         while (message := read_message(reads, 0)) is not None:
             value = message[0]

@@ -196,7 +196,7 @@ class Data(Controller):
         return traced
 
     def _show(self, flow: LoadedFlow, request: LoadRequest) -> None:
-        """Put another flow in the place of the one that is shown; where that fails, it stands."""
+        """Replace the flow shown by another one; where that fails, it stands."""
         before = self._current, self._goal
         new, old = flow.choice, self.choice
         same = (flow.name, new.block, new.vectors) == (self.name, old.block, old.vectors)
@@ -222,7 +222,7 @@ class Data(Controller):
         self.context.complain(without_folder(str(error), self.name))
 
     def _show_choice(self) -> None:
-        """Let the page show what is chosen; not while it has gone on to something else."""
+        """Let the page show what is chosen; not while it does something else."""
         values = {"file": self.name, **self._options()}
         if self._goal != (self.name, self.choice):
             values = {name: values[name] for name in ("name", "about")}

@@ -45,7 +45,7 @@ class LoadRequest:
         return self.cancelled or self.superseded
 
     async def in_thread(self, worker: Executor, work: Callable[[], T], *, quick: bool) -> T:
-        """Do some work for it off the event loop; ``Stopped`` where nobody wants the result.
+        """Do some work for it off the event loop; ``Stopped`` if the result is no longer wanted.
 
         Quick work is finished, once it has begun, though something else was requested.
         """

@@ -1,4 +1,4 @@
-"""A log that nobody can fill: a fault is written a few times a minute, and at a length."""
+"""A log of limited size: a fault is written a few times a minute, and at a length."""
 
 from __future__ import annotations
 

@@ -3,8 +3,8 @@
 The head of a request has to arrive within :data:`HEAD_S`, also the next one of a connection that
 is kept, and an answer has to be found within :data:`ANSWER_S`. When there are as many connections
 as there may be, a newcomer takes the place of another one: of the address that has most of them,
-the oldest that waits for a request, or else the oldest that is being answered. Those of pages,
-which last, give way to nobody. So connections that were opened to keep others out end each other.
+the oldest that waits for a request, or else the oldest that is being answered. Those of pages last,
+and are not closed for others. So connections that were opened to keep others out end each other.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ ANSWERING = web.AppKey("answering", dict[web.RequestHandler, asyncio.Timeout])
 
 
 def limit_time(application: web.Application) -> None:
-    """End requests that take too long, but for those that are kept."""
+    """End requests that take too long, except those that are kept."""
     answering = application[ANSWERING] = {}
 
     @web.middleware

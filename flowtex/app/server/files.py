@@ -1,9 +1,9 @@
 """Files that one session serves over HTTP: downloads, and parts for the browser's client.
 
 A file's address is ``flowtex/<token>/<name>``, below the page. The token cannot be guessed and
-belongs to one session, so the address is all that is needed, and nobody else has it. What is
-served is looked up at each request. Downloads lie in a temporary folder that its owner alone can
-read; they are removed after a while, when they take too much room, and when the page closes.
+belongs to one session, so the address alone gives access. What is served is looked up at each
+request. Downloads lie in a temporary folder that its owner alone can read; they are removed after a
+while, when they take too much room, and when the page closes.
 """
 
 from __future__ import annotations
@@ -197,7 +197,7 @@ def add_route(application: web.Application, find: Callable[[str], Handler | None
 class Downloads:
     """The files that one application offers to save.
 
-    One that nobody has asked for is removed after a lifetime in seconds.
+    One that has not been requested is removed after a lifetime in seconds.
     """
 
     def __init__(

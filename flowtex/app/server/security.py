@@ -1,13 +1,13 @@
 """What keeps others out of the page.
 
-trame lets in whoever knows the secret, but its own is a public constant, and it asks no web page
-where it comes from: any page open in the same browser could drive the program. So every start
-has a secret of its own, which only the printed address carries, and a connection from another
-site's page is refused. Who comes without the secret gets a page that says so (``door.html``).
-The page itself may load nothing from elsewhere.
+trame admits everybody who knows the secret, but its default is a public constant, and it does not
+check the origin of a web page: any page open in the same browser could drive the program. So every
+start has a secret of its own, which only the printed address carries, and a connection from another
+site's page is refused. Who comes without the secret gets a page that says so (``door.html``). The
+page itself may load nothing from elsewhere.
 
-A site whose name leads to this machine all of a sudden (DNS rebinding) is the same site to a
-browser. So the server answers to addresses in numbers and to names that it knows, and no others.
+A site whose name suddenly points to this machine (DNS rebinding) is the same site to a browser. So
+the server answers to addresses in numbers and to names that it knows, and no others.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from aiohttp import web
 from flowtex.app.server.connections import limit_time
 from flowtex.errors import FieldError
 
-#: Names of this machine, for itself alone.
+#: Names of this machine that only it can use.
 LOCAL = frozenset({"localhost"})
 #: Stands for every name.
 ANY = "*"
@@ -120,7 +120,7 @@ def guard(
         except web.RequestPayloadError:  # such as a body that is not gzip
             raise web.HTTPBadRequest from None
         except Exception as error:
-            if request.transport is None:  # nobody waits for the answer any more
+            if request.transport is None:  # the client no longer waits for the answer
                 raise web.HTTPBadRequest from None
             if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
                 raise web.HTTPNotFound from None

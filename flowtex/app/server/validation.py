@@ -1,6 +1,6 @@
 """Checks of what a page sends: numbers, names and pictures.
 
-A page may send anything in the place of a number or a name. What does not fit is dropped or
+A page may send anything instead of a number or a name. What does not fit is dropped or
 clipped here, so that no handler has to check again; pictures take no more room than they may.
 """
 

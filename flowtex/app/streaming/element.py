@@ -1,4 +1,4 @@
-"""The Python side of ``<flowtex-view>``: what the page is handed, and what a person does there.
+"""The Python side of ``<flowtex-view>``: the data sent to the page, and the user's actions there.
 
 The page asks for files of parts: of the whole surface, and of tiles, at some times;
 :mod:`flowtex.web.source` says what is in them. The page says which of two painters draws: the
@@ -52,7 +52,7 @@ SOME = {
     "controls": ("cmap", "maps", "lonlat", "coastlines", "graticule"),
     "colours": ("cmap", "maps"),
 }
-#: Directions in which nodes lie farthest that stand for all of a surface.
+#: Directions whose farthest nodes represent the whole surface.
 DIRECTIONS = 400
 #: Names of what a page may choose of the appearance, and the kinds of their values.
 CHOICES: dict[str, tuple[type, ...]] = {
@@ -138,7 +138,7 @@ class HandedScene:
         return content
 
     def _tell(self, key: TileKey | None, error: Exception) -> None:
-        """Log, once each, what could not be made; coarser tiles are in the place of others."""
+        """Log, once each, what could not be made; coarser tiles replace others."""
         if key not in self._told:
             self._told.add(key)
             what = "the surface" if key is None else f"tile {tuple(key)}"
@@ -288,7 +288,7 @@ class Element:
             self._by = ""
 
     def take_camera(self, values: Any, page: Any = "") -> bool:
-        """Look from a camera that somebody sent; tells whether it sees something."""
+        """Set a camera sent by a page; tells whether it sees something."""
         viewport = self._viewport
         try:
             camera = Camera.from_dict(values, viewport.camera)

@@ -68,7 +68,8 @@ class Cost:
     def learn(self, seconds: float, pixels: int, samples: int) -> None:
         """Take account of a picture that took ``seconds``."""
         price = max(seconds - FIXED_S, 1e-5) / max(pixels * (samples + BASE_SAMPLES), 1)
-        # Slower is believed at once, faster by and by: a picture that is late is felt.
+        # A slower measurement counts at once, a faster one gradually: a picture that is late is
+        # felt.
         self._price += (price - self._price) * (0.7 if price > self._price else 0.3)
 
     def seconds(self, pixels: float, samples: int) -> float:
@@ -162,7 +163,7 @@ class PanePainter:
     def full(self) -> Generator[Bytes, None, None]:
         """Draw the full picture over the quick one; yield it so far after each tile.
 
-        The array is the same one each time. Between two tiles the drawing may be given up.
+        The array is the same one each time. Drawing may be cancelled between two tiles.
         """
         width, height = self.pane.size
         view, state = self.pane.plane_view(), self._state

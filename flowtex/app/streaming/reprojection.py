@@ -1,7 +1,7 @@
 """A picture of a flat surface, seen again from another view.
 
 Without perspective a plane is mapped to the view by an affine map, so what was drawn already can
-be moved to its new place exactly: a drag follows the hand however long a new picture takes.
+be moved to its new place exactly: a drag follows the pointer however long a new picture takes.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ are requested, and the full one once nothing has moved for a moment. Requests ar
 next picture shows the latest state. They go the way of a remote controlled area (trame-rca).
 
 The scheduler of trame-rca 2.11 was tried in its place (1,000 x 700 pixels, two cores, software
-OpenGL). It takes the still picture in one piece, where this one is given up between two tiles:
+OpenGL). It takes the still picture in one piece, where this one is cancelled between two tiles:
 messages of the page waited for 0.4 to 2.6 s (here 0.05 to 0.3 s), and a dragged double gyre came
 at 17 pictures a second (here 25). Where the network is slow it drops the last, sharp picture as
 well, and its JPEGs at rest have colours at half the resolution.
@@ -59,7 +59,7 @@ class FrameStream:
         self.playing = self.paused = self.moving = False
         #: Whether the surface is fitted to another size of the view, which a page does itself.
         self.fits = True
-        #: Tells whether anyone looks; nothing is drawn for nobody.
+        #: Tells whether anyone looks; without viewers nothing is drawn.
         self.watched: Callable[[], bool] = lambda: True
         #: Signal with a FieldError when a part of the data, such as a later step, cannot be read.
         self.data_failed = Signal()

@@ -150,7 +150,7 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
 
 
 def _level_beside(array: xr.DataArray) -> str:
-    """Return words for a level that has been chosen before, whose coordinate is one number."""
+    """Return the text of a level that was selected before, whose coordinate is a scalar."""
     for name, coordinate in array.coords.items():
         is_number = not coordinate.dims and coordinate.dtype.kind in "fiu"
         if is_number and axis_kind(array, str(name)) == LEVEL:
@@ -196,7 +196,7 @@ def drawn_steps(section: Section, array: xr.DataArray) -> tuple[Any, list[int]]:
 
 
 def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
-    """Return words for the values along other axes than time with a choice, the level first."""
+    """Return texts for the values along all axes with a choice except time, the level first."""
     found: dict[str, tuple[str, ...]] = {}
     surface = horizontal_dims(array)
     for dim in map(str, array.dims):

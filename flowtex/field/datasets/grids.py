@@ -22,7 +22,7 @@ from flowtex.field.datasets.pairs import Pair
 from flowtex.field.datasets.places import Places, find_places
 from flowtex.field.io.inspection.limits import values_in
 
-#: Paddings of SGRID, and the first side that they stand for.
+#: Paddings of SGRID, and the first side that they mean.
 PADDINGS = {"none": 0, "high": 0, "low": -1, "both": -1}
 #: Names of masks in the middle of cells, 1 at sea.
 MASKS = ("mask_rho", "mask_t", "tmask", "tmaskutil", "wet", "wet_c")

@@ -1,4 +1,4 @@
-"""What was chosen of a dataset automatically, said to whoever called."""
+"""Notices about choices in a dataset, issued at the caller's line."""
 
 from __future__ import annotations
 

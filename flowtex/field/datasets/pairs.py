@@ -73,8 +73,8 @@ class Pair:
     """Two variables that are the components of a velocity.
 
     ``along`` gives the directions: ``"earth"`` for eastward and northward, ``"grid"`` for those of
-    the grid, and ``""`` if unknown. ``why`` says how the two were found, and ``rank`` how
-    likely they are the velocity that is meant, 0 the most.
+    the grid, and ``""`` if unknown. ``why`` says how the two were found, and ``rank`` how likely
+    they are the velocity, 0 being the most likely.
     """
 
     u: xr.DataArray
@@ -205,7 +205,7 @@ def _match(u: xr.DataArray, v: xr.DataArray) -> bool:
 
 
 def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
-    """Return how likely a pair is the velocity that is meant; ``None`` for what is none."""
+    """Return how likely a pair is the velocity; ``None`` for what is none."""
     try:
         is_velocity = to_metres_per_second(u) is not None
     except FieldError:

@@ -1,7 +1,7 @@
 """A dataset on lines of longitude and latitude, or of x and y, any region of which is read alone.
 
 What concerns the whole is decided before: the two variables, the map, the order of its columns. A
-region then is the same, bit for bit, whoever reads it, and nothing else is read for it. Names of
+region is then the same, bit for bit, in every process, and nothing else is read for it. Names of
 files and arrays that are read late are all that is needed for that, so a process elsewhere can.
 """
 
@@ -174,7 +174,7 @@ def region_lines(places: Places, name: str | None) -> RegionLines | None:
 
 
 def numbers_in(array: Any) -> Floats:
-    """Return the values of a variable as float64; what stands for missing data is NaN."""
+    """Return the values of a variable as float64; missing data are NaN."""
     values = values_in(array)
     if values.dtype.kind not in "fiub":
         msg = f"{getattr(array, 'name', 'a variable')!r} has type {values.dtype}; expected numbers"

@@ -63,7 +63,7 @@ def derived_unit(name: str, time_unit: str) -> str:
 
 
 def speed_unit(length: str, time: str) -> str:
-    """Return the word for the unit of speed; empty when one of the units is not known."""
+    """Return the unit of speed; empty when one of the units is not known."""
     if not length or not time:
         return ""
     if time.startswith(f"{length} / "):

@@ -73,7 +73,7 @@ def grid_nodes(
     ok &= finite_nodes(v) & ~masked_velocity
     if shown is not None:
         ok &= np.nan_to_num(shown) != 0
-    # What stands for missing data must not be computed with.
+    # Fill values must not take part in computations.
     v[:, ~ok] = np.nan
     raise_faults(range_faults(p, v, ok) or node_faults(p, ok))
     p[~known_positions(p, ok)] = np.nan

@@ -77,7 +77,7 @@ def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, t
 
 def find_closure(points: Floats) -> Closure:
     """Decide from the geometry whether the first axis of (N, M, 3) nodes closes."""
-    # Numbers that are not lengths stand for missing data.
+    # Values that cannot be lengths are missing data.
     if largest(points) > LENGTHS[1]:
         points = np.where(np.abs(points) <= LENGTHS[1], points, np.nan)
     extent = _extent(points)

@@ -2,8 +2,8 @@
 
 The surface is a map from index space, (i, j) in cells, to space. Its tangents at the nodes are
 central differences, and :meth:`GridSurface.at` interpolates with Catmull-Rom cubics whose slopes at
-the nodes are those same tangents, so a displacement in index space and the displacement in space
-that it stands for agree to second order however much the cells are stretched. Both work on a
+the nodes are those same tangents, so a displacement in index space and the corresponding
+displacement in space agree to second order however much the cells are stretched. Both work on a
 copy of the nodes with one ghost line on each side: the periodic image where the axis closes on
 itself, the far side of a pole, a quadratic extrapolation where the axis ends.
 """

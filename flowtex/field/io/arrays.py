@@ -1,7 +1,7 @@
-"""What a source gives of a flow: arrays that are not checked yet, and words for them.
+"""What a source gives of a flow: arrays that are not checked yet, and their names and units.
 
 The names are those of the arguments of :meth:`FlowField.from_arrays` and
-:meth:`FlowField.from_triangles`, which :meth:`FlowField.of` hands them to.
+:meth:`FlowField.from_triangles`, to which :meth:`FlowField.of` passes them.
 """
 
 from __future__ import annotations

@@ -83,7 +83,7 @@ def _parses(name: str) -> Iterator[tuple[str, str, str]]:
 
 
 def _plausible(stem: str, alphabet: str, before: str, *, velocity: bool) -> bool:
-    """Whether a component may be meant: x, y and z are places, and numbers count anything."""
+    """Whether a word may be a component: x, y and z are places, and numbers count anything."""
     if alphabet[0] in "uU":
         return velocity or not stem
     if alphabet[0].isdecimal():

@@ -103,7 +103,7 @@ def parts_of(mesh: Any) -> dict[str, Any]:
 def drawn_parts(
     mesh: Any, *, series: bool = False, cut: bool = False
 ) -> tuple[dict[str, Any], Literal["steps", "together", "choose"]]:
-    """Return the blocks of a mesh that are meant where none is named, and how they belong together.
+    """Return the blocks of a mesh to draw by default, and how they belong together.
 
     Volumes are cut ``together``, and surfaces are drawn so. Structured grids come before what is
     around them. Those with the same nodes are time ``steps``, unless the mesh is itself one step
@@ -144,7 +144,7 @@ def _same_nodes(meshes: list[Any]) -> bool:
 
 
 def part_size(mesh: Any) -> str:
-    """Return words for the size of a mesh."""
+    """Return the size of a mesh as text."""
     if is_structured(mesh):
         return " x ".join(map(str, mesh.dimensions)) + " nodes"
     return f"{mesh.n_points:,} points, {mesh.n_cells:,} cells"
@@ -210,7 +210,7 @@ def _blocks(mesh: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeSt
 def _single(
     item: Any, label: str, block: int | str | None = None, *, cut: bool = False
 ) -> TimeStep:
-    """Return the mesh that is meant by a mesh or a MultiBlock, or the block of that name."""
+    """Return the mesh to draw of a mesh or a MultiBlock, or the named block."""
     mesh = _wrapped(item, label)
     if block is not None:
         part, time = pick(mesh, block), _time(mesh)

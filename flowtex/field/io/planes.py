@@ -11,7 +11,7 @@ plane          i is     j is
 ``i = n``      j        k
 =============  =======  =======
 
-Nothing is mirrored for the sake of a right-handed surface: index (i, j) of the plane is that of
+Nothing is mirrored to obtain a right-handed surface: index (i, j) of the plane is that of
 the mesh.
 
 Values of cells come to the nodes as the mean of the visible cells around each node, on both
@@ -95,7 +95,7 @@ def plane_faults(dimensions: tuple[int, int, int], plane: Any) -> list[str]:
 
 
 def choose_plane(dimensions: tuple[int, int, int], plane: str | None) -> Plane:
-    """Return the plane that is meant; :func:`plane_faults` returned none before."""
+    """Return the selected plane; :func:`plane_faults` returned none before."""
     if plane is None and min(dimensions) == 1:
         return Plane(dimensions, dimensions.index(1), 0)
     if plane is None:

@@ -57,7 +57,7 @@ class BlockSummary(NamedTuple):
 class FileSummary:
     """What a file holds.
 
-    ``grid`` is the type of its mesh: of the block that is meant where it has several. ``size`` is a
+    ``grid`` is the type of its mesh: of the default block if it has several. ``size`` is a
     text, ``cells`` counts the cells of an unstructured mesh by kind, ``bounds`` are ((x, x), (y,
     y), (z, z)), and ``volume`` says whether a volume can be cut. ``blocks`` are those that hold
     something, when there are several; ``candidates`` are names of what may be the velocity,

@@ -111,7 +111,7 @@ def missing_arrays(mesh: Any, vectors: MeshArray) -> list[str]:
 
 
 def choose_vectors(mesh: Any, vectors: str | None) -> MeshArray:
-    """Return the vectors that are meant; :func:`vector_faults` returned none before."""
+    """Return the selected vectors; :func:`vector_faults` returned none before."""
     if vectors is None:
         chosen = _preferred(mesh)[0]
         others = [array for array in candidates(mesh) if array != chosen]
@@ -126,7 +126,7 @@ def choose_vectors(mesh: Any, vectors: str | None) -> MeshArray:
 
 
 def vector_faults(mesh: Any, vectors: Any) -> list[str]:
-    """Faults in a choice of vectors; ``None`` stands for the only ones there are."""
+    """Faults in a choice of vectors; ``None`` means the only ones."""
     arrays = catalogue(mesh)
     listed = ", ".join(map(str, arrays)) or "none"
     if vectors is None:

@@ -24,7 +24,7 @@ from flowtex.field.metric import IndexVelocity
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.topology import SHARP, flipped, neighbours, triangle_normals
 
-#: Greatest share of a second corner, by which no next triangle is meant.
+#: Greatest coordinate of a second corner, just below the next triangle's number.
 MOST_SHARE = 1 - 1e-7
 
 

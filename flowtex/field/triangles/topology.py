@@ -10,7 +10,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 #: Nodes on borders closer than this share of the surface's extent are one.
 SAME_NODE_SHARE = 1e-9
 #: Edges of a triangle without area that are shorter than this share of the longest are a point.
-#: Sections have them beside nodes that lie in the plane but for the rounding of single precision.
+#: Sections have them near nodes that lie in the plane up to rounding in single precision.
 NEEDLE_SHARE = 1e-4
 #: Cosine of the angle between the normals of a node and a triangle below which there is an edge.
 SHARP = 0.86

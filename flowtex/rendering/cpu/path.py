@@ -53,7 +53,7 @@ class TriangleSlices(Slices):
 class AxisSlices(Slices):
     """The slice texture of a field in which v and -v mean the same, at its finest level.
 
-    Texels around a fragment that point against the others are turned over: their two sides
+    Texels around a fragment that point against the others are reversed: their two sides
     change places, and their slopes the sign.
     """
 
@@ -68,7 +68,7 @@ class AxisSlices(Slices):
         base = np.floor(at)
         s, t = (at - base).T
         weights = ((1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t)
-        # The side that a texel which is turned over is taken from instead.
+        # The other side, from which a reversed texel is taken.
         other = np.asarray(layer) + np.where(np.asarray(layer) > self.lags, -1, 1) * self.lags
         other = np.where(np.asarray(layer) == 0, 0, other)
         together, result = np.zeros((len(s), 3)), np.zeros((len(s), 4))

@@ -395,7 +395,7 @@ class FlowLayer:
         """Draw other triangles; :meth:`MeshLevels.triangles` has the parameters."""
         triangles = self.mesh_levels.triangles(levels, borders)
         if (levels < 0).any():
-            # The mesh is as large as ever to whoever asks for its bounds.
+            # The bounds of the mesh do not change.
             outermost = self._textures.geometry.outermost
             triangles = np.concatenate([triangles, np.repeat(outermost[:, None], 3, axis=1)])
         set_triangles(self._mesh, triangles)
@@ -414,7 +414,7 @@ class FlowLayer:
             mine.SelectColorArray(name)
 
     def _follow_colours(self) -> None:
-        """Take the colours of the mapper, whoever has changed them."""
+        """Use the colours of the mapper, which users may have changed."""
         before, self._colours = self._colours, MappedColours.of(self._mapper, self._mesh)
         if (before and before.state) != (self._colours and self._colours.state):
             self._retire("u_shares", "u_colours")

@@ -92,7 +92,7 @@ class FlowSurface:
     def load_in_background(self, notify: Callable[[], None]) -> None:
         """Draw frames with the tiles that are ready, and notify from a thread when more are.
 
-        Otherwise a frame waits for the tiles that it asks for, but in a window that somebody uses.
+        Otherwise a frame waits for the tiles that it requests, except in an interactive window.
         """
         self._notify = notify
 
@@ -269,7 +269,7 @@ class FlowSurface:
         if window.GetOffScreenRendering() or interactor is None or not interactor.GetInitialized():
             return False
         if self.busy:
-            # VTK draws in the window's own thread, which looks again by and by.
+            # VTK draws in the window's thread, which checks at intervals.
             observers: list[int] = []
 
             def look(caller: Any, event: str) -> None:

@@ -1,4 +1,4 @@
-"""WebGL2: what the client in the browser is handed."""
+"""WebGL2: the data for the client in the browser."""
 
 from __future__ import annotations
 

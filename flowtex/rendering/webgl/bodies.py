@@ -14,7 +14,7 @@ from flowtex._util.array_types import Bytes, Floats, Indices
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.geometry import DrawnSurface
 
-#: Vertices of all meshes together, and labels, that a browser is handed at most.
+#: Most vertices of all meshes together, and most labels, that are sent to a browser.
 MOST_VERTICES, MOST_LABELS = 500_000, 500
 #: Greatest component of a normal in eight bits.
 NORMAL_MAX = 127

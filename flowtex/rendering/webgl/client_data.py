@@ -1,4 +1,4 @@
-"""What a client in a browser is handed to draw a flow by itself.
+"""The data from which a client in a browser draws a flow.
 
 The header has the numbers from which the client computes the uniforms, so that it answers a slider
 without asking; see :mod:`flowtex.rendering.uniforms` for what they are. Arrays come in the smallest
@@ -75,7 +75,7 @@ SINGLE_MAX = float(np.finfo(np.float32).max)
 class Colours:
     """How the surface is coloured."""
 
-    #: What it is coloured by, ``None`` for a plain surface, and words for the legend.
+    #: Name of the scalar, ``None`` for a plain surface, and text for the legend.
     name: str | None = None
     unit: str = ""
     values: Floats | None = None  #: Values at all nodes of the field, (T or 1, J, I).
@@ -96,7 +96,7 @@ class Colours:
     #: What a person may choose to colour by: name, label, unit, automatic range, and whether it
     #: varies.
     choices: tuple[Mapping[str, Any], ...] = ()
-    #: Name of the colour map, empty for one that has none, and whether nobody has chosen its range.
+    #: Name of the colour map, empty if it has no name, and whether its range is automatic.
     cmap: str = ""
     auto: bool = True
     label: str = ""
@@ -116,9 +116,9 @@ class ClientData:
 
     ``chosen`` are the numbers of the destination times that are sent, increasing; all are where it
     is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and ``finest``
-    is the finest level of those that are sent. Where the client ``traces``, it is handed the
-    velocity in place of slices, if it can trace them. ``bodies`` are other meshes, and ``marks``
-    describe its structure.
+    is the finest level of those that are sent. If the client ``traces``, it receives the velocity
+    instead of slices, where it can trace them. ``bodies`` are other meshes, and ``marks`` describe
+    its structure.
     """
 
     textures: TextureSet

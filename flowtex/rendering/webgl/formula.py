@@ -1,4 +1,4 @@
-"""What a client is handed of a formula, in place of velocities at nodes.
+"""The data of a formula for the client, instead of velocities at nodes.
 
 The client computes the rates at the nodes that it draws, and those of any level below: there is no
 finest one. ``client/src/formula.ts`` is the other side.

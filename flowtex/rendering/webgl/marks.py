@@ -1,4 +1,4 @@
-"""Critical points and separatrices as a browser is handed them: two parts of each time step.
+"""Critical points and separatrices for browsers: two parts of each time step.
 
 ``critical/3`` has a row for each point of step 3, (K, 4): where it is, and the number of its kind.
 ``separatrices/3`` has one for each point of its lines, (N, 4): its position, and a number that

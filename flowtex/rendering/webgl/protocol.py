@@ -57,7 +57,7 @@ def parts_file(parts: Mapping[str, AnyArray], *, planes: bool = False) -> bytes:
     """Return parts as one file.
 
     It is the length of the descriptions as four bytes, the descriptions in JSON with the number of
-    bytes of each part, and the arrays one after the other; as ``planes`` where gzip follows, but
+    bytes of each part, and the arrays one after the other; as ``planes`` if gzip follows, except
     for texts.
     """
     infos, buffers = [], []

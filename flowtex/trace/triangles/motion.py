@@ -211,7 +211,7 @@ class SteadyMotion(Motion):
         speed = np.where(flow.speed[0, 0] > floor, flow.speed[0, 0], 0.0)
         self.table = _table(self.mesh, flow.components[0, 0], speed)
         #: Rates at which particles come near a line in each triangle, and get on along it, (2, T);
-        #: equal ones stand for none.
+        #: equal ones mean none.
         self.pulls = _pulls(direction * self.table[:, 2:6].T)
         self._has_line = self.pulls[0] != self.pulls[1]
 

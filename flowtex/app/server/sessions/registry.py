@@ -37,7 +37,7 @@ REPLACE_AFTER_S = 30.0
 #: Seconds that a page may take to load, between its session and its connection.
 LOADING_S = 120.0
 #: Seconds for which a page that asks for its session waits for the connection of its earlier self
-#: to end. When it does not, somebody has made a copy of the tab.
+#: to end. When it does not, the tab has been copied.
 RECONNECT_WAIT_S = 2.0
 #: Seconds between two signs of life of a connection.
 HEARTBEAT_S = 20.0
@@ -257,7 +257,7 @@ class Sessions:
             _log.exception("a session could not be ended in full")
 
     async def sweep(self, every: float = 5.0) -> None:
-        """End sessions that nobody has come back to, for as long as the task lives."""
+        """End sessions that no page has reopened, as long as the task runs."""
         while True:
             await asyncio.sleep(min(every, max(60 * self.idle / 4, 0.05)))
             for token in list(self._by_token):

@@ -28,8 +28,8 @@ RADIANS = re.compile(r"^rad(ian)?s?$", re.IGNORECASE)
 class Mesh:
     """A mesh of polygons; its numbers are read when they are requested.
 
-    ``kind`` has words for the convention. ``x`` and ``y`` are coordinates of the nodes, or those of
-    the corners of each face where ``corners``, the nodes of each face, is missing. ``counts`` is
+    ``kind`` is the name of the convention. ``x`` and ``y`` are coordinates of the nodes, or those
+    of the corners of each face where ``corners``, the nodes of each face, is missing. ``counts`` is
     the number of corners of each face, where these differ, and ``first`` the index of the first
     node.
     """

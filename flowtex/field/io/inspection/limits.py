@@ -38,7 +38,7 @@ def check_memory(nbytes: int, what: str) -> None:
 
 
 def size_text(nbytes: int) -> str:
-    """Return a number of bytes in words, such as ``"1.5 GB"``."""
+    """Return a number of bytes as text, such as ``"1.5 GB"``."""
     size, units = float(min(nbytes, 10**30)), ["bytes", "kB", "MB", "GB", "TB", "PB"]
     while size >= 1000 and len(units) > 1:
         size, units = size / 1000, units[1:]

@@ -97,7 +97,7 @@ Cut = Slice | Contour
 
 
 def find_cut(slice: Any, contour: Any) -> Cut | None:
-    """Return the cut that is meant, or ``None`` for none."""
+    """Return the requested cut, or ``None``."""
     if slice is not None and contour is not None:
         msg = f"slice is {slice!r} and contour is {contour!r}; choose one of the two"
         raise FieldError(msg)
@@ -207,7 +207,7 @@ def surface_of(
     triangles = np.asarray(mesh.regular_faces, dtype=np.intp)
     if cut is not None:
         # Where a plane goes through the corners of cells, there are triangles without area. Those
-        # with a short side tell which points are as good as one; nobody need know of the others.
+        # with a short side tell which points are as good as one; callers need not know the others.
         points = np.asarray(mesh.points, dtype=np.float64)
         told = solid_triangles(points, triangles) | needle_edges(points, triangles).any(axis=1)
         triangles = triangles[told]
