@@ -37,10 +37,12 @@ tests() {
     [ $code -eq 0 ] || [ $code -eq 5 ]
 }
 
-# uv compiles no bytecode and pytest rewrites what it collects: what one process leaves, each worker
-# of a fresh clone would do again, in 14 seconds.
-compiled() {
-    "$bin/pytest" --collect-only -qq >/dev/null 2>&1
+# browser_files: the files with tests that need a browser, so that those workers collect no others.
+#
+# uv compiles no bytecode and pytest rewrites what it collects: what this process leaves, each worker of a
+# fresh clone would do again, in 14 seconds.
+browser_files() {
+    "$bin/pytest" --collect-only -qq -m browser 2>/dev/null | sed -n 's/^\(tests.*\.py\): .*/\1/p'
 }
 
 # ended PID NAME LOG: wait for what runs aside, and show what it said.
@@ -60,12 +62,16 @@ aside="$types $client"
 
 fast="not browser and not slow"
 case $which in
-all | fast) compiled ;;
+all | fast) with_browser=$(browser_files) ;;
+esac
+case " $* " in
+*" tests"*) with_browser= ;; # the arguments name files
 esac
 case $which in
 all)
     # Tests with a browser mostly wait for what a person would see, so they share the cores with the others.
-    (tests -n auto --maxprocesses 2 -m browser "$@") >"$logs/browser" 2>&1 &
+    # shellcheck disable=SC2086 # a list of files
+    (tests -n auto --maxprocesses 2 -m browser "$@" $with_browser) >"$logs/browser" 2>&1 &
     browser=$!
     aside="$aside $browser"
     tests -n "$(workers "$bin")" -m "not browser" "$@" || failed="$failed, tests"

@@ -31,6 +31,6 @@ apt_install() {
     fi
 }
 
-# workers BIN: how many processes share the tests; one more than there are cores, as some tests wait for
+# workers BIN: how many processes share the tests; two more than there are cores, as some tests wait for
 # processes that they start.
-workers() { "$1/python" -c 'import os; print(min((os.cpu_count() or 1) + 1, 4))'; }
+workers() { "$1/python" -c 'import os; print(min((os.cpu_count() or 1) + 2, 6))'; }
