@@ -1,4 +1,5 @@
-// Where arrows stand on a surface: flowtex/rendering/arrow_seeds.py in the browser, which tells how.
+// Where arrows stand on a surface: flowtex/rendering/arrow_seeds.py in the browser; that file
+// explains the method.
 
 import type { Data, Geometry, Header } from "./protocol.ts";
 import type { TileView } from "./tilechoice.ts";
@@ -55,7 +56,7 @@ export class ArrowSeeds {
     });
   }
 
-  /** The seeds of a view that are so many pixels apart, and some more. */
+  /** The seeds of a view that are this many pixels apart, and some more. */
   seen(view: View, spacing: number): Seed[] {
     if (!this.last || !this.covers(this.last.wanted, [view, spacing])) {
       this.last = { wanted: [view, spacing], seeds: this.make([view, spacing]) };

@@ -23,7 +23,7 @@ const [MOST_TICKS, BAR_PX, BAR_SHARE] = [9, 140, 0.3];
 const MIDDLE_SHARE = 0.02;
 const COORDINATES = ["x", "y", "z"];
 
-/** A name, without its unit where there is no room for that. */
+/** A name, without its unit if there is no room for it. */
 const fitting = (name: string, room: number) =>
   name.length * LETTER_PX > room ? name.replace(/ .*/, "") : name;
 

@@ -76,7 +76,7 @@ export class Camera {
   private readonly homeHeight: number;
   private readonly nearest: number;
 
-  /** `flat` tells whether a drag pans; otherwise it rotates. */
+  /** `flat` says whether a drag pans; otherwise it rotates. */
   constructor(state: CameraState, limits: CameraLimits, flat: boolean, aspect = 1, globe = 0) {
     this.state = copyOf(state);
     this.start = copyOf(state);

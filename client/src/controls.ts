@@ -13,7 +13,7 @@ export function hasStreaming({ slices, paper, variant }: Header): boolean {
   return slices.steps === 1 && !paper && !isSignFree({ variant });
 }
 
-/** Where a setting changes anything; `rebuild` tells whether textures can be made anew. */
+/** Where a setting changes anything; `rebuild` says whether textures can be made again. */
 const USES: Record<string, (header: Header, rebuild: boolean) => boolean> = {
   motion: hasStreaming,
   speed: hasStreaming,
@@ -77,7 +77,7 @@ export class Controls {
     this.viewer = viewer;
   }
 
-  /** Make the controls that a scene has use for; tells whether they are others than before. */
+  /** Make the controls that a scene has use for; returns whether they have changed. */
   build(header: Header): boolean {
     const rebuild = this.viewer.options.rebuild ?? false;
     const rows = header.table.filter((each) => isUseful(each, header, rebuild));
@@ -152,7 +152,7 @@ export class Controls {
     const value = () => fromSlider(Number(input.value));
     const write = (shown: Value) => void (output.textContent = numberText(Number(shown)));
     this.viewer.lifetime.listen(input, "input", () => write(value()));
-    // What has to be traced or built anew waits until the hand lets go.
+    // Changes that need new traces or textures wait until the pointer is released.
     const kind = row.affects === "uniform" ? "input" : "change";
     this.viewer.lifetime.listen(input, kind, () => this.viewer.choose(row.name, value()));
     const show = (shown: Value) => {

@@ -1,4 +1,4 @@
-// Elements and words of the page.
+// Elements and texts of the page.
 
 export function dom<K extends keyof HTMLElementTagNameMap>(
   kind: K,

@@ -84,7 +84,7 @@ export class EarthLayer {
     return earth ? EARTH_LINES.filter((name) => earth[name] && this.parts.has(name)) : [];
   }
 
-  /** Draw the lines one above the other, each into a picture of its own that `take` is called for. */
+  /** Draw the lines one above the other, each into its own picture, for which `take` is called. */
   drawLines(view: EarthView, take: () => void): void {
     const { header, graphics } = this;
     const { earth, shaders } = header;

@@ -1,14 +1,14 @@
 // <flowtex-view>: a scene in any page, or two beside each other that move together.
 //
-// A host sets `options` and then `scenes`, or makes the views by `open` and hands over headers and parts
-// itself. Events report what a person does. Each view draws in a shadow of its own.
+// A host sets `options` and then `scenes`, or makes the views by `open` and passes headers and
+// parts itself. Events report what a person does. Each view draws in a shadow of its own.
 
 import type { Header, NamedPart } from "./protocol.ts";
 import type { Options } from "./options.ts";
 import type { Source } from "./sources/source.ts";
 import { Viewer } from "./viewer.ts";
 
-/** A scene with the parts that are there, and where others come from. */
+/** A scene with the parts that are loaded, and the source of others. */
 export interface SceneData {
   header: Header;
   parts: NamedPart[];
@@ -55,7 +55,7 @@ export class FlowtexView extends HTMLElement {
     return this.shown;
   }
 
-  /** Show scenes; a view whose source stays goes on with what it has. */
+  /** Show scenes; a view whose source stays keeps its data. */
   set scenes(scenes: SceneData[]) {
     const sources = scenes.map(({ source }) => source);
     const isSame = this.shown.length === scenes.length && this.shown.every(({ source }, n) => source === sources[n]);

@@ -1,5 +1,5 @@
-// How the texture at a point comes about, below a live view: sliders of what enters, the samples that
-// are met along the path with their weights, and their sum. Its looks are the page's.
+// How the texture at a point is computed, below a live view: sliders of what enters, the samples
+// that are met along the path with their weights, and their sum. Its looks are the page's.
 
 import { dom, numberText } from "./dom.ts";
 import type { FlowtexView } from "./element.ts";

@@ -2,7 +2,7 @@
 // that are followed along them. What a point is called is as in flowtex/trace/structure/critical_points.py.
 
 export type Pair = [x: number, y: number];
-/** The rates of change at a place; not finite where there are none. */
+/** The rates of change at a place; not finite if they do not exist. */
 export type Rate = (x: number, y: number) => Pair;
 /** Least and greatest x and y. */
 export type Ends = [x: Pair, y: Pair];
@@ -27,7 +27,10 @@ export interface Separatrix {
 
 /** Cells in which zeros are looked for along the longer side, steps of Newton's method and how far they may lead. */
 const [CELLS, NEWTON_STEPS, FAR_CELLS] = [160, 40, 2];
-/** Speed over that at the corners of its cell, at which a zero is one; a determinant that is none, and places that are one. */
+/**
+ * Speed over that at the corners of its cell, at which a zero is one; tolerances for a zero
+ * determinant and for equal positions.
+ */
 const [ZERO_SHARE, SINGULAR, SAME_CELLS] = [1e-7, 1e-7, 1e-3];
 /** Growth of a spiral, as a share of its rotation, up to which it is a centre. */
 const CENTRE_SHARE = 0.05;

@@ -119,7 +119,7 @@ class Grid {
     return toFrame(frame, subtract([x, y, 0], center as Vector));
   }
 
-  /** The flow at the nodes of a window, as Python hands it over, and the speed. */
+  /** The flow at the nodes of a window, as Python sends it, and the speed. */
   flow({ level, from, to }: Window, step: number, parameters: Values) {
     const [rows, columns] = [to[0] - from[0] + 1, to[1] - from[1] + 1];
     const { speed: { typical }, slices } = this.header;
@@ -136,7 +136,7 @@ class Grid {
         values[xName] = this.at(1, level, from[1] + i);
         const [u, v] = this.rates.map((rate) => rate(values));
         const speed = Math.hypot(u, v);
-        // Where there is no value nothing moves.
+        // Where it is undefined the velocity is zero.
         if (!(speed > 0 && speed < 1e30)) continue;
         speeds[n] = speed;
         data.set([((u / dx) * size) / speed, ((v / dy) * size) / speed, speed / typical], 3 * n);
@@ -189,7 +189,7 @@ export class FormulaSource {
   private readonly header: Header;
   private readonly grid: Grid;
   private parameters: Values = {};
-  /** Says which numbers digests stand for. */
+  /** Says which numbers belong to digests. */
   private state = "";
 
   constructor(header: Header, formula: FormulaHeader) {
@@ -198,7 +198,7 @@ export class FormulaSource {
     this.follow(header.settings);
   }
 
-  /** Take parameters from settings; tells whether they are others than before. */
+  /** Take parameters from settings; returns whether they have changed. */
   follow(settings: Settings): boolean {
     const own = Object.entries(settings).filter(([name]) => name.startsWith(PARAMETER));
     this.parameters = Object.fromEntries(own.map(([name, value]) => [name.slice(PARAMETER.length), Number(value)]));

@@ -18,7 +18,7 @@ export class HeldParts {
     this.graphics = graphics;
   }
 
-  /** Hold a part; tells whether it is another one than before. */
+  /** Hold a part; returns whether it has changed. */
   set(part: NamedPart): boolean {
     const { name, digest } = part;
     if (digest && this.all.get(name)?.digest === digest) return false;

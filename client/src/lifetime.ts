@@ -65,7 +65,7 @@ export class Lifetime {
   }
 }
 
-/** Call at most once in so many milliseconds, the last time for certain. */
+/** Call at most once in this many milliseconds; the last call always takes place. */
 export function throttled<T>(
   later: (call: () => void, delay: number) => unknown,
   wait: number,

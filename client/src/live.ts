@@ -1,20 +1,27 @@
 // Views among the text of a page, such as a documentation: one client for all of them. A view is an
 // element of the class "flowtex-live" with a still picture in it; its scene, a script beside the page,
-// is loaded when the element comes into sight, and given up again when it is far from it. With
+// is loaded when the element comes into sight, and unloaded again when it is far away. With
 // "data-plays" it streams, and "data-label" is what it is called by those who do not see it.
 
 import { FlowtexView, type SceneData } from "./element.ts";
 import { Explanation } from "./explanation.ts";
 import { partOfText, type Header, type NamedPart, type PartInfo } from "./protocol.ts";
 
-/** A scene as its script hands it over; equal parts have their text once, large ones a script of their own. */
+/**
+ * A scene as its script passes it; equal parts have their text once, large ones have their own
+ * script.
+ */
 interface Packed {
   /** Of a second header there is what differs from the first. */
   headers: Header[];
   parts: [view: number, info: PartInfo, text: string | null][];
 }
 
-/** Heights of the window that a view may be away when it is loaded, and before it is given up. */
+/**
+                                                             * Distances, in heights of the window,
+                                                             * within which a view is loaded, and
+                                                             * beyond which it is unloaded.
+                                                             */
 const LOADED_HEIGHTS = 0.5;
 const KEPT_HEIGHTS = 2;
 
@@ -32,7 +39,10 @@ declare global {
   }
 }
 
-/** Run a script, which hands over what it has. A script, as pages that lie in a folder may not fetch files. */
+/**
+                 * Run a script, which passes its content. A script, as pages that lie in a folder
+                 * may not fetch files.
+                 */
 function handedOver<T>(address: string, takers: Map<string, (what: T) => void>): Promise<T> {
   const name = address.replace(/^.*\//, "").replace(/\.js$/, "");
   const begun = underway.get(address) as Promise<T> | undefined;
@@ -108,7 +118,7 @@ class LiveView {
     }
   }
 
-  /** Take the still away once all is drawn, and let stream what is meant to. */
+  /** Remove the still once all is drawn, and start the streaming. */
   private watch(): void {
     const { element } = this;
     const look = () => {

@@ -3,7 +3,7 @@
 import type { Earth } from "./protocol.ts";
 import type { Vector } from "./vectors.ts";
 
-/** What stands for no point, before each line. */
+/** A value that is not a point, before each line. */
 export const BREAK = 1e30;
 /** Steps that a side of the box has. */
 const STEPS = 65535;

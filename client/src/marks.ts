@@ -1,5 +1,5 @@
 // Critical points and separatrices above the flow, of the step that is nearest to the time that is shown.
-// flowtex/rendering/webgl/marks.py is the other side, and has how the parts tell of them.
+// flowtex/rendering/webgl/marks.py is the other side, and describes their parts.
 
 import { atEnds } from "./bodies.ts";
 import { projection, type Camera } from "./camera.ts";

@@ -268,7 +268,7 @@ export function join(
   }
 }
 
-/** Give each side of a part's blocks one level, the coarsest along it; tells whether that changed any. */
+/** Give each side of a part its coarsest level; returns whether any changed. */
 function bordersOf({ step, row, column, shape, levels }: Region, lines: Lines[]) {
   const size = 1 << step;
   const borders = new Int8Array(4 * levels.length);

@@ -1,6 +1,6 @@
 // Modules whose types are found under another name.
 
-// esbuild hands a style sheet over as its text.
+// esbuild imports a style sheet as its text.
 declare module "*.css" {
   const text: string;
   export default text;

@@ -25,7 +25,7 @@ export interface Explainer {
   clear(): void;
 }
 
-/** A point as a host has read it, with the path through it where that was asked for. */
+/** A point as a host has read it, with the path through it if requested. */
 export interface Reading {
   point: Point;
   path?: PointPath;
@@ -48,7 +48,7 @@ export interface Options {
   onClock?: (clock: number) => void;
   onPlaying?: (playing: boolean) => void;
   onPoint?: (point: Point) => void;
-  /** What tells how the texture at the chosen point comes about; its samples are drawn as well. */
+  /** The explanation of the texture at the chosen point; its samples are drawn as well. */
   explainer?: Explainer;
   /** Where what is lacking comes from. */
   source?: Source;
@@ -57,11 +57,11 @@ export interface Options {
   /** Something cannot be shown, and why. */
   onError?: (problem: string, detail: string) => void;
   onSetting?: (name: string, value: Value) => void;
-  /** Whether parts are still on their way, which nobody has to ask for. */
+  /** Whether parts are still arriving without being requested. */
   isComing?: () => boolean;
   /** A host that knows more of a point than is here. */
   reader?: Reader;
-  /** Whether the host draws, and hands over pictures. */
+  /** Whether the host draws, and sends pictures. */
   streamed?: boolean;
   /** A painter of the host's own. */
   painter?: (view: View) => Painter;
@@ -73,7 +73,7 @@ export interface Options {
   onAxes?: (kind: AxesKind) => void;
   /** Whether nothing but the picture is shown. */
   bare?: boolean;
-  /** Whether the host makes textures anew where a setting asks for it. */
+  /** Whether the host makes new textures if a setting needs them. */
   rebuild?: boolean;
   controls?: boolean;
   /** Whether outlines are smoothed; by default where it takes little time. */

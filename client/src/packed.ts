@@ -1,4 +1,4 @@
-// A scene that lies in a page, or in a module of its own, as text.
+// A scene as text in a page, or in its own module.
 
 import { FlowtexView } from "./element.ts";
 import type { Header, Value } from "./protocol.ts";

@@ -32,7 +32,7 @@ export interface View {
   /** Whether the full picture is shown, and whether the view is on the screen. */
   readonly sharp: boolean;
   readonly isVisible: boolean;
-  /** Whether a hand moves the view or a control. */
+  /** Whether the user is moving the view or a control. */
   readonly isHeld: boolean;
   /** Pixels of the canvas along one of the page. */
   readonly ratio: number;
@@ -64,7 +64,7 @@ export interface Painter {
   /** Change the size of the canvas, which a view does by itself otherwise. */
   resize?(width: number, height: number): void;
   dispose?(): void;
-  /** Have ready what shows some steps, if there is time; tells whether they can be played. */
+  /** Have ready what shows some steps, if there is time; returns whether they can be played. */
   make?(steps: number[], until: number): boolean;
   /** Draw the same picture once more, as more of the surface is there. */
   refine?(): void;

@@ -86,7 +86,10 @@ export class Panel {
   private readonly parameters = dom("div", { class: "parameters" });
   private readonly head = dom("div", { class: "head glass", hidden: "" }, [this.title, this.parameters, this.readout]);
   private readonly note = dom("div", { class: "note", hidden: "", role: "alert" });
-  /** What goes on, whose beginning is read out, and how far it is, which would be read again and again. */
+  /**
+   * What is in progress, whose start is read out by screen readers, and its progress, which would
+   * be read repeatedly.
+   */
   private readonly doing = dom("span", { role: "status" });
   private readonly count = dom("span", { "aria-hidden": "true" });
   private readonly busy = dom("div", { class: "busy", hidden: "" }, [this.doing, this.count]);
@@ -247,7 +250,7 @@ export class Panel {
     if (this.timeText.textContent !== text) this.timeText.textContent = text;
   }
 
-  /** The time that is shown, in words. */
+  /** The time shown, as text. */
   private moment(header: Header): string {
     const { player } = this.viewer;
     return this.date(header) ?? withUnit(numberText(player.time), header.slices.timeUnit);
@@ -275,7 +278,7 @@ export class Panel {
     this.legend.showKinds(kinds);
   }
 
-  /** Show the point under the pointer, or the place of the Earth where there are no data. */
+  /** Show the point under the pointer, or its longitude and latitude if it has no data. */
   read(point: Point | null, ground: readonly number[] | null = null): void {
     const { header } = this.viewer;
     this.readout.replaceChildren();
@@ -346,7 +349,11 @@ export class Panel {
     this.gear.setAttribute("aria-pressed", String(this.isOpen));
   }
 
-  /** Show that parts are on their way, paths being traced, tiles to come or details left out, if any. */
+  /**
+                                                              * Show that parts are arriving, paths
+                                                              * are traced, tiles are missing or
+                                                              * details are left out, if so.
+                                                              */
   wait(missing: string[], isMade: boolean, isCoarse = false, isFinding = false): void {
     const { viewer, busy } = this;
     const { pending = 0, wanted = 0 } = viewer.tiles ?? {};

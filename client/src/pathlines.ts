@@ -13,7 +13,7 @@ export interface Dot {
   grey: number;
 }
 
-/** A path in pixels, lines downstream; it is `directed` unless the flow has no sign. */
+/** A path in pixels, lines downstream; it is `directed` unless the flow is sign-free. */
 export interface PathLines {
   /** The whole path, and the part of it that is summed. */
   path: Line[];

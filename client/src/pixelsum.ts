@@ -1,4 +1,4 @@
-// How the texture at a point comes about: its samples, their weights and noise, and the sum. It is
+// How the texture at a point is computed: its samples, their weights and noise, and the sum. It is
 // what shaders/common/texture.glsl does at the finest level of the slices, in double precision.
 
 import type { Camera } from "./camera.ts";
@@ -26,7 +26,7 @@ export interface PixelPlace {
   rows: number;
 }
 
-/** What flowtex/probe.py tells as well. */
+/** The same as flowtex/probe.py computes. */
 export interface PixelSum {
   /** In the order in which the flow passes them. */
   samples: Sample[];

@@ -1,4 +1,4 @@
-// Time and clock, and how they go on.
+// Time and clock, and how they advance.
 
 import type { Header, Settings } from "./protocol.ts";
 import { momentOf, type Moment } from "./uniforms.ts";
@@ -78,8 +78,8 @@ export class Player {
   }
 
   /**
-   * Go on to the moment `now`, in milliseconds; tells whether anything moved. `ready` tells whether the
-   * steps of a moment are there: what is on the way is waited for, not jumped over.
+   * Go on to the moment `now`, in milliseconds; returns whether anything moved. `ready` says
+   * whether the steps of a moment are loaded: what is on the way is waited for, not jumped over.
    */
   advance(now: number, ready: (steps: [number, number]) => boolean): boolean {
     const passed = this.lastFrame ? Math.min((now - this.lastFrame) / 1000, LONGEST_GAP_S) * this.pace : 0;

@@ -49,7 +49,7 @@ export interface PointerHost extends PanelHost {
   readonly canPick: boolean;
   point(x: number, y: number): Point | null;
   ground(x: number, y: number): Vector | null;
-  /** Draw and report a camera that was moved by hand. */
+  /** Draw and report a camera that the user has moved. */
   reportCamera(): void;
 }
 
@@ -57,7 +57,7 @@ export class Pointers {
   readonly down = new Map<number, Place>();
   private readonly viewer: PointerHost;
   private isOther = false;
-  /** What a host was asked for last. */
+  /** The last request to a host. */
   private asked: object | null = null;
   private press = { x: 0, y: 0, time: 0, isDrag: false };
   private lastLook = 0;
@@ -226,7 +226,7 @@ export class Pointers {
     event.stopPropagation();
   }
 
-  /** Do what a key says; tells whether it says anything. */
+  /** Do what a key says; returns whether it says anything. */
   private command({ key, shiftKey }: KeyboardEvent): boolean {
     const { viewer } = this;
     const { camera, panel, options } = viewer;

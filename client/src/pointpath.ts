@@ -71,7 +71,7 @@ export function layersAt(at: PathPlace): Layers {
   return (layer) => {
     const sum: Four = [0, 0, 0, 0];
     texels.forEach(([, weight], n) => {
-      // Of a node that is turned over the two sides change places.
+      // The two sides of a reversed node are swapped.
       const other = layer + (layer > slices.lags.length ? -1 : 1) * slices.lags.length;
       const from = signs[n] < 0 && layer > 0 ? other : layer;
       steps.forEach((step, k) => {
@@ -85,7 +85,7 @@ export function layersAt(at: PathPlace): Layers {
   };
 }
 
-/** -1 for the nodes that point against the others, in a field without a sign. */
+/** -1 for the nodes that point against the others, in a sign-free field. */
 function signsOf(tangents: Four[]): number[] {
   let together: Vector = [0, 0, 0];
   return tangents.map(([x, y, z]) => {

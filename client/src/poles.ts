@@ -23,7 +23,10 @@ export class Poles {
   private readonly cells: number;
   private readonly lines: number;
 
-  /** Of nodes in so many rows and columns; `rays` are cells along the lines that lead to each pole. */
+  /**
+   * Of nodes in this many rows and columns; `rays` are cells along the lines that lead to each
+   * pole.
+   */
   constructor(poles: PoleHeader[], nodes: [number, number], rays: ArrayLike<number>) {
     const [rows, columns] = nodes;
     this.poles = poles;

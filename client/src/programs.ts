@@ -3,7 +3,7 @@
 import { FIRST_PRICE_MS } from "./quality.ts";
 import type { Uniform } from "./uniforms.ts";
 
-/** Before a shader's text, which has neither version nor precisions of its own. */
+/** Before a shader's text, which has neither version nor precisions. */
 const PREAMBLE = "#version 300 es\nprecision highp float;\nprecision highp int;\n";
 const ATTRIBUTES = [
   "flowtexPosition",

@@ -31,7 +31,7 @@ export interface DrawContext {
   readonly settings: Settings;
   readonly camera: Camera | null;
   readonly player: { varies: boolean; playing: boolean };
-  /** Whether a hand moves the view or a control. */
+  /** Whether the user is moving the view or a control. */
   readonly isHeld: boolean;
   /** Pixels of the canvas along one of the page. */
   readonly ratio: number;
@@ -127,7 +127,7 @@ export class ProgressiveRenderer {
     for (const canvas of [this.back, this.last, this.coarse, this.front]) canvas.width = canvas.height = 0;
   }
 
-  /** Go on with the picture until a time; tells whether it is complete. */
+  /** Go on with the picture until a time; returns whether it is complete. */
   draw(program: Program, shown: Moment, until: number): boolean {
     const moving = this.isMoving;
     if (this.draftVersion !== this.version) return this.draft(program, shown, moving);
@@ -291,8 +291,8 @@ export class ProgressiveRenderer {
   }
 
   /**
-   * The first drawing is slow by itself, and what it costs with hardly a pixel is paid by each. That is
-   * measured anew where there are other triangles: of many, strips of few rows would take minutes.
+   * The first drawing is slow by itself, and what it costs with hardly a pixel is paid by each.
+   * This is measured again for other triangles: of many, strips of few rows would take minutes.
    */
   private warm(program: Program, shown: Moment): void {
     const triangles = this.layers.reduce((sum, layer) => sum + layer.triangles, 0);

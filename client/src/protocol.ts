@@ -7,7 +7,7 @@ import { toHalf } from "./half.ts";
 
 /** Form of header and parts that this client reads. */
 export const FORMAT = 6;
-/** Share of the larger end of a range below which a legend tells the other one as 0. */
+/** Share of the larger end of a range below which a legend shows the other one as 0. */
 const ZERO_SHARE = 1e-5;
 
 export type Value = boolean | number | string;
@@ -165,7 +165,7 @@ export interface BodiesHeader {
 export const MARKS = { critical: "critical_points", separatrices: "separatrices" } as const;
 export type MarkKind = keyof typeof MARKS;
 
-/** How the number of a line tells of it: as in Python. */
+/** How the number of a line describes it: as in Python. */
 export const LINE = { saddle: 8, orbit: 4, leaving: 2 };
 
 /** What there is of critical points and separatrices, and how they look: flowtex/rendering/webgl/marks.py. */
@@ -194,7 +194,7 @@ export interface Dates {
   step: number;
 }
 
-/** The tiles of a large surface, which has been handed over at its coarsest level, the root. */
+/** The tiles of a large surface, which has been sent at its coarsest level, the root. */
 export interface PyramidHeader {
   /** Level of the root, and the finest level of which there are tiles. */
   depth: number;
@@ -216,7 +216,7 @@ export type TileHeader = Pick<Header, "geometry" | "slices">;
 export interface StoreHeader {
   /** Whole, or from the page on. */
   url: string;
-  /** What the store tells of itself. */
+  /** The description in the store. */
   format: string;
   fingerprint: string;
   parameter: string;
@@ -322,7 +322,7 @@ export interface Header {
     /** Number of the scalar among those of the field, and what can be chosen in its place. */
     number: number;
     choices: { name: string; label: string; unit: string; low: number; high: number; steps: number }[];
-    /** Whether the map goes by the logarithm, and whether nobody has chosen its range. */
+    /** Whether the map is logarithmic, and whether its range is automatic. */
     log: boolean;
     auto: boolean;
     /** Name of the map, names of those in the part "maps", and of those with a middle. */
@@ -359,7 +359,7 @@ export interface Header {
   mesh: MeshLimits;
   /** What is added to the time of the first view, in a second one; null if that has its own. */
   timeShift?: number | null;
-  /** What stands at the borders of the picture; what suits the surface where nobody says. */
+  /** What stands at the borders of the picture; by default what suits the surface. */
   axes?: AxesKind | null;
   /** Null for a flow that is elsewhere. */
   earth: Earth | null;
@@ -376,7 +376,7 @@ export interface Header {
   camera: CameraState | null;
   time: number;
   clock: number;
-  /** Counts the scenes that came one in the place of the other. */
+  /** Counts the scenes that replaced one another. */
   generation?: number;
   /** Settings in which two views differ, and those that are this view's own. */
   differs?: string[];
@@ -401,7 +401,7 @@ export function shareOf({ low, high, log }: Header["scalars"]): (value: number) 
   return (value) => Math.log(Math.max(value, low) / low) / span;
 }
 
-/** The ends of the colours as a legend tells them: an end that is 0 but for rounding is 0. */
+/** The ends of the colours as a legend shows them: an end that is 0 up to rounding is 0. */
 export function legendLimits({ low, high, log }: Header["scalars"]): [number, number] {
   const least = log ? 0 : ZERO_SHARE * Math.max(Math.abs(low), Math.abs(high));
   const told = (value: number) => (Math.abs(value) < least ? 0 : value);
@@ -413,7 +413,7 @@ export function isSignFree(header: Pick<Header, "variant">): boolean {
   return header.variant.includes("FLOWTEX_SIGNFREE");
 }
 
-/** Time step in the name of a part, such as 3 of "slices/3"; NaN where there is none. */
+/** Time step in the name of a part, such as 3 of "slices/3"; NaN where it is missing. */
 export function stepOf(name: string): number {
   return Number(name.split("/")[1]);
 }

@@ -10,7 +10,8 @@ const DRAFT_SAMPLES = 9;
 export const COARSEST_SCALE = 0.2;
 /** Greatest distance of two samples in a draft, in grains. */
 const DRAFT_SPACING = 1.4;
-/** Milliseconds for a picture while a hand moves the view, and at most while an animation plays. */
+/** Milliseconds for a picture while the user moves the view, and at most while an animation plays.
+*/
 const MOVING_MS = 55;
 const PLAYING_MS = 125;
 /** Share of the width from which an animation has its grain: below it time is better spent on pixels. */
@@ -43,7 +44,7 @@ export function quality(
 }
 
 /**
- * Milliseconds for a picture in motion. A hand feels what is late, so there pixels are left out; an eye
+ * Milliseconds for a picture in motion. Users notice a delay, so pixels are left out then; an eye
  * that watches an animation sees grains that are blurred before it minds fewer pictures a second.
  */
 export function movingTime(
@@ -90,7 +91,7 @@ export function learnedPrice(
   factor: number,
 ): number {
   const latest = Math.max(spent - fixed, 0.05) / (pixels * (samples + PIXEL_COST) * factor);
-  // Slower is believed at once, faster by and by: a picture that is late is felt.
+  // A slower measurement counts at once, a faster one gradually: a picture that is late is felt.
   return price + (latest - price) * (latest > price ? 0.7 : 0.3);
 }
 

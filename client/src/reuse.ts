@@ -1,5 +1,5 @@
 // A full picture serves for a moved view: without perspective a plane is mapped to the view by an
-// affine map, so that a drag follows the hand on any machine.
+// affine map, so that a drag follows the pointer on any machine.
 
 import type { mat2d as Mat2d } from "gl-matrix";
 import * as mat2d from "gl-matrix/esm/mat2d.js";

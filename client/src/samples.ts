@@ -1,5 +1,5 @@
-// How the texture at a point comes about, in a card: the samples along its path, enlarged, and bars of
-// their weights in the greys that they meet.
+// How the texture at a point is computed, in a card: the samples along its path, enlarged, and bars
+// of their weights in the greys that they meet.
 
 import type { Camera } from "./camera.ts";
 import { dom } from "./dom.ts";

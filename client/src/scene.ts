@@ -118,7 +118,8 @@ export class Scene {
     return (steps > 1 ? [before, after] : [0, 0]).map((step) => `scalars/${step}${end}`);
   }
 
-  /** Whether a part is there and of this scene: while one is built anew those of the last come first. */
+  /** Whether a part is there and of this scene: while one is rebuilt those of the last come first.
+  */
   private fits(name: string): boolean {
     const part = this.parts.get(name);
     if (!part) return false;
@@ -139,8 +140,8 @@ export class Scene {
   }
 
   /**
-   * Make the parts of some steps that are not handed over, as far as there is time; tells whether all are
-   * there. Nothing that they are made of may be missing.
+   * Make the parts of some steps that are not sent, as far as there is time; returns whether all
+   * are ready. Nothing that they are made of may be missing.
    */
   make(steps: number[], until: number): boolean {
     const { slices, geometry } = this.header;

@@ -4,7 +4,7 @@ import type { Painter, View } from "./painter.ts";
 
 export class StreamedPainter implements Painter {
   private readonly view: View;
-  /** Whether the host has drawn what it was last asked for. */
+  /** Whether the host has drawn the last request. */
   private isPainted = true;
 
   constructor(view: View) {

@@ -1,4 +1,4 @@
-// Round numbers along an axis or a legend, and the texts that tell them apart.
+// Round numbers along an axis or a legend, and distinct texts for them.
 
 /** Steps between ticks, as multiples of a power of ten, of which each is at most 2.5 times the one before. */
 const STEPS = [1, 2, 2.5, 5];

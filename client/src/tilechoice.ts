@@ -162,8 +162,8 @@ export function wantedTiles(chosen: Choices): string[] {
 
 /**
  * The tiles to show of those that are ready, and the ones that cover parts of each. A tile is replaced by
- * finer ones where these cover all of it that is in view; until then what is there of a coarser level is
- * shown. The root is always ready.
+ * finer ones where these cover all of it that is in view; until then the tiles of a coarser level
+ * are shown. The root is always ready.
  */
 export function cover(chosen: Choices, ready: (name: string) => boolean): Map<string, string[]> {
   const shown = new Map<string, string[]>();

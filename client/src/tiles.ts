@@ -1,4 +1,4 @@
-// What a view shows of a surface: all of it, or of a large one the root and the tiles that are there.
+// What a view shows of a surface: all of it, or the root and the loaded tiles of a large one.
 //
 //   camera --> Pyramid.choose --> wanted tiles --> Requests --> Source
 //                     |                                       |
@@ -34,9 +34,12 @@ import type { Moment } from "./uniforms.ts";
 
 /** Milliseconds from a change of what is wanted to the request. */
 const REQUEST_MS = 60;
-/** Milliseconds that tiles may take of a picture on their way to the graphics card. */
+/** Milliseconds of a picture that the upload of tiles may take. */
 const LOAD_MS = 25;
-/** Memory of the tiles in bytes where nobody says, and of a byte that came, here and on the graphics card. */
+/**
+ * Default memory of the tiles in bytes, and memory for each received byte, here and on the graphics
+ * card.
+ */
 const BUDGET_BYTES = 900e6;
 const BYTES_HELD = 3.5;
 /** Time steps of a tile that are held. */
@@ -81,7 +84,7 @@ export class Tiles {
   private readonly root: Scene;
   private readonly tiles = new Map<string, Tile>();
   private pyramid: Pyramid | null = null;
-  /** What the last picture has asked for and shown. */
+  /** What the last picture has requested and shown. */
   private chosen: { choices: Choices; steps: number[]; names: string } = {
     choices: new Map(),
     steps: [],
@@ -100,7 +103,7 @@ export class Tiles {
     this.root = root;
   }
 
-  /** Tell whether a part of a tile is there. */
+  /** Return whether a part of a tile is loaded. */
   has(name: string, part: string): boolean {
     return this.tiles.get(name)?.parts.has(part) ?? false;
   }
@@ -141,7 +144,7 @@ export class Tiles {
     if (String([...shown.keys()]) !== names) this.host.refine();
   }
 
-  /** Draw in other colours, of which a part of the header tells; what they need is asked for. */
+  /** Draw in other colours, given by a part of the header; what they need is requested. */
   recolour(colours: Partial<Header> = {}): void {
     const { steps } = this.chosen;
     for (const tile of this.tiles.values()) {
@@ -283,7 +286,7 @@ export class Tiles {
     return true;
   }
 
-  /** Ask for what is missing, and for nothing else, once the view has come to rest a little. */
+  /** Request what is missing, and nothing else, once the view has been still for a moment. */
   private ask(): void {
     const { requests, lifetime } = this.host;
     if (!requests || this.isWaiting || !(this.missing.length || this.hasAsked)) return;

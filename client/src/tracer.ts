@@ -312,7 +312,7 @@ export class Tracing {
     return result;
   }
 
-  /** The flow of a step on the graphics card, with that of the last one that was asked for. */
+  /** The flow of a step on the graphics card, with that of the last one requested. */
   private flowTexture(step: number): WebGLTexture {
     const { width, height } = this.poles.size;
     const gl = this.graphics.context;

@@ -9,10 +9,10 @@ import { cross, dot, length, subtract, unit, type Vector } from "./vectors.ts";
 const SHARES = [0, 0, 1, 0, 0, 1];
 /** Cosine of the angle between the normals of a node and a triangle below which there is an edge. */
 const SHARP = 0.86;
-/** Greatest share of a second corner, by which no next triangle is meant. */
+/** Greatest coordinate of a second corner, just below the next triangle's number. */
 const MOST_SHARE = 1 - 1e-7;
 
-/** Values of nodes, so many of each, at the vertices of triangles. */
+/** Values of nodes, this many of each, at the vertices of triangles. */
 export function atVertices<T extends Data>(values: T, triangles: Data, size: number): T {
   const result = new (values.constructor as new (length: number) => T)(size * triangles.length);
   let n = 0;
@@ -22,7 +22,7 @@ export function atVertices<T extends Data>(values: T, triangles: Data, size: num
   return result;
 }
 
-/** Shares of the corners at the vertices of so many triangles. */
+/** Barycentric coordinates at the vertices of this many triangles. */
 export function vertexShares(count: number): Float32Array {
   return Float32Array.from({ length: SHARES.length * count }, (_, n) => SHARES[n % SHARES.length]);
 }

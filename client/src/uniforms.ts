@@ -85,7 +85,7 @@ export function isSparse(header: Header, settings: Settings): boolean {
   return !header.paper && settings.texture === "streaklets";
 }
 
-/** Whether arrows are drawn: a field without a sign has none, nor has a noise's texture. */
+/** Whether arrows are drawn: a sign-free field has none, nor has a noise texture. */
 export function hasArrows(header: Header, settings: Settings): boolean {
   return Number(settings.arrows) > 0 && !isSignFree(header) && !header.paper;
 }

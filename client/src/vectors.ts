@@ -1,4 +1,4 @@
-// Vectors of three numbers in double precision: gl-matrix, with results in arrays of their own.
+// Vectors of three numbers in double precision: gl-matrix, with results in new arrays.
 
 import type { mat3 as Mat3, mat4 as Mat4, ReadonlyVec3 } from "gl-matrix";
 // The modules themselves: of the whole library a bundle would hold every function.

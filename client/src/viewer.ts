@@ -85,7 +85,7 @@ export class Viewer implements User, View {
     // For hosts: whether the picture is the full one, the number of full ones so far, and of tiles and of
     // parts of the present time that are not there yet.
     Object.assign(root.dataset, { sharp: "false", frames: "0", tiles: "0", lacking: "0" });
-    // JupyterLab has shortcuts of its own for the keys that move the view.
+    // JupyterLab also uses the keys that move the view.
     root.setAttribute("data-lm-suppress-shortcuts", "true");
     root.setAttribute("role", "application");
     this.panel = new Panel(this);
@@ -162,7 +162,7 @@ export class Viewer implements User, View {
     this.change();
   }
 
-  /** Draw the same arrays in other colours, of which a part of the header tells. */
+  /** Draw the same arrays in other colours, given by a part of the header. */
   recolour(changes: Partial<Header>): void {
     if (!this.header) return;
     const colours = this.grounded(changes);
@@ -218,7 +218,7 @@ export class Viewer implements User, View {
     this.change();
   }
 
-  /** Have the flow computed anew. */
+  /** Have the flow computed again. */
   private renew(): void {
     this.held.clear((name) => /^(flow|scalars|critical|separatrices)\//.test(name));
     this.requests.stop();
@@ -253,7 +253,7 @@ export class Viewer implements User, View {
     this.change(true);
   }
 
-  /** Draw what a camera sees that was moved by hand, and report it to the host. */
+  /** Draw the view of a camera that the user has moved, and report it to the host. */
   reportCamera(): void {
     this.holdDraft();
     this.change(true);
@@ -506,7 +506,7 @@ export class Viewer implements User, View {
     return this.find(x, y)?.point ?? null;
   }
 
-  /** Place of the Earth at (x, y), also where there are no data. */
+  /** Longitude and latitude at (x, y), also without data. */
   ground(x: number, y: number): Vector | null {
     const { header, camera } = this;
     return header && camera && groundAt(header, camera, x, y);

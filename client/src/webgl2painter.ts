@@ -19,7 +19,7 @@ export class WebGL2Painter implements Painter {
   shown: Moment | null = null;
   private readonly view: View;
   private readonly renderer: ProgressiveRenderer;
-  /** Steps that the player goes on to. */
+  /** Steps that the player shows next. */
   private next: number[] = [];
 
   constructor(view: View) {

@@ -47,7 +47,7 @@ interface Message extends Partial<Omit<Loaded, "kind">> {
 }
 
 /**
- * The parts of a message, which the page holds for as long as nobody has taken them; what was only
+ * The parts of a message, which the page keeps until they are taken; what was only
  * offered, and is not there, is named in `lacking`.
  */
 interface Delivery {
@@ -208,7 +208,7 @@ class WidgetView {
     const { root } = this.first;
     if (root.dataset.live || root.dataset.failed) return;
     root.dataset.live = "true";
-    // Made by flowtex/widget/display.py, in an output of its own.
+    // Made by flowtex/widget/display.py, in its own output.
     const still = `[data-flowtex~="${String(this.model.get("_key"))}"]`;
     const output = ":is(.jp-OutputArea-child, .output_area)";
     this.sheet.insertRule(`${still}, ${output}:has(> * > ${still}) { display: none !important }`);
@@ -288,7 +288,7 @@ class WidgetView {
     if (!viewer) return;
     const generation = viewer.header ? (viewer.header.generation ?? 0) : -1;
     if (delivery.generation > generation) return void this.early.push(delivery);
-    // Slices that the kernel has made anew meanwhile are on their way.
+    // Slices that the kernel has made again meanwhile are arriving.
     const isOld = (name: string) => delivery.generation !== generation && name.includes("/");
     for (const part of delivery.parts) if (!isOld(part.name)) viewer.setPart(part);
     const names = delivery.lacking.filter((name) => !isOld(name));

@@ -67,7 +67,10 @@ export const server = {
   push: (frame: object): void => void frame,
 };
 
-/** Observers, of sizes and of changes, in the order of their making; `tell` is what the browser would do. */
+/**
+ * Observers, of sizes and of changes, in the order of their making; `tell` does what the browser
+ * would do.
+ */
 export const observers: FakeObserver[] = [];
 
 export class FakeObserver {
@@ -168,6 +171,6 @@ export function shown(
   return { told, draw, exposed, leave: () => ends.forEach((call) => call()) };
 }
 
-/** An event with what tells more about it. */
+/** An event with its details. */
 export const eventOf = (kind: string, more: object = {}) =>
   Object.defineProperties(new Event(kind, { cancelable: true }), Object.getOwnPropertyDescriptors(more));

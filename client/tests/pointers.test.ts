@@ -19,7 +19,7 @@ class Held extends FakeElement {
   readonly setPointerCapture = () => undefined;
 }
 
-/** A view that writes down what it is asked for. */
+/** A view that records requests. */
 function viewed({ flat = true, guarded = false, camera = true, more = {} } = {}) {
   const log: unknown[][] = [];
   const note =

@@ -21,7 +21,7 @@ const ABOUT = { format: "form", fingerprint: "print", parameter: "arclength", li
 const TILE = "tile/0/0/0";
 const FLOW = "0/flow/c/0/0/0/0";
 
-/** What the server has, what it was asked for, and how it fails: a status, or to answer at all. */
+/** What the server has, its requests, and how it fails: a status, or to answer at all. */
 let files: Map<string, Uint8Array<ArrayBuffer>>;
 let asked: string[];
 let fault: (path: string) => number | Error | null;

@@ -97,7 +97,7 @@ FlowtexStroke flowtexStroke(mat4 matrix, vec3 position, vec3 normal, vec2 coordi
   float step_ = FLOWTEX_ARROW_LENGTH * pace * u_apart / float(u_pieces); // in pixels
   float spacing = step_ / max(length(along), FLOWTEX_ARROW_SHORTEST * pixels.x);
   bool inCell = flowtexEnterCell(coordinate, spacing * float(u_pieces));
-  // The seed is in the middle, where the path goes on to both sides.
+  // The seed is in the middle if the path continues on both sides.
   float straight = 1.0;
   int before = flowtexPieces(coordinate, base, -1, spacing, inCell, straight);
   int beyond = flowtexPieces(coordinate, base, 1, spacing, inCell, straight);

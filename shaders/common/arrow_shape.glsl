@@ -15,7 +15,7 @@ float flowtexArrowDistance(vec2 place, float size)
   return min(line, max(flank, back));
 }
 
-// A dark arrow with a light edge, or where `tint` tells so one of its colour with a dark edge.
+// A dark arrow with a light edge, or with `tint` one of its colour with a dark edge.
 vec4 flowtexArrow(vec2 place, float size, float share, vec4 tint)
 {
   float away = flowtexArrowDistance(place, size);

@@ -6,7 +6,7 @@
 // agree on the direction.
 
 #ifdef FLOWTEX_CELLS
-// What velocities are told by, for a point that lies x, y cells away: 1, x, y and x y between four
+// Basis functions of the velocity, for a point x, y cells away: 1, x, y and x y between four
 // nodes; between the three of a triangle x and y are shares of its corners, and there is no x y.
 #ifdef FLOWTEX_TRIANGLES
 const int FLOWTEX_CELL_NODES = 3;
@@ -51,7 +51,7 @@ struct FlowtexCell
 
 FlowtexCell flowtexCell;
 
-// Sets the cell of a fragment whose path is so long to each side; tells whether it has a share.
+// Sets the cell of a fragment whose path is so long to each side; returns whether it has a share.
 bool flowtexEnterCell(vec2 coordinate, float reach)
 {
 #ifdef FLOWTEX_TRIANGLES

@@ -58,7 +58,7 @@ vec4 flowtexSparse(vec4 even)
 #endif
 
 // Values of four lattice points from their scattered keys, even over all whole numbers with a sign
-// at every moment. In motion each is a mixture of two triangle waves with phases of their own.
+// at every moment. In motion each is a mixture of two triangle waves with different phases.
 vec4 flowtexGrains(uvec4 key, vec2 turns)
 {
   vec4 grains = vec4(ivec4(key * FLOWTEX_HASH_FACTORS.y));

@@ -42,13 +42,13 @@ vec4 flowtexLayer(vec2 coordinate, int layer, float level)
     + shares.z * flowtexFetch(2, layer);
 }
 #elif defined(FLOWTEX_SIGNFREE)
-// In a field without a sign the nodes around a fragment may point either way, and filtering would
+// In a sign-free field the nodes around a fragment may point either way, and filtering would
 // cancel them. So the four texels are fetched one by one and those that point against the others
-// are turned over: their two sides change places, and their slopes the sign. A coarser level has
-// lost what cancels, so it is always the finest, which does no harm but to cost.
+// are reversed: their two sides change places, and their slopes the sign. A coarser level has lost
+// what cancels, so it is always the finest, which does no harm but to cost.
 ivec2 flowtexTexel;  // lower left one of the four
 vec2 flowtexPart;    // how far the fragment is from it to the next
-vec4 flowtexSigns;   // -1 for those that are turned over
+vec4 flowtexSigns;   // -1 for those that are reversed
 
 vec4 flowtexFetch(ivec2 right, int layer, float sign_)
 {
@@ -66,7 +66,7 @@ float flowtexTurn(inout vec3 together, ivec2 right)
   return sign_;
 }
 
-// Layer 0, the tangents, comes first: it says which of the four are turned over.
+// Layer 0, the tangents, comes first: it says which of the four are reversed.
 vec4 flowtexLayer(vec2 coordinate, int layer, float level)
 {
   if (layer == 0)

@@ -9,7 +9,7 @@
 //   vec2 flowtexPace(vec3 flow)
 // which is the rate of that in cells in a length, none where the flow has stopped, or in a time;
 //   bool flowtexOpen(ivec2 cell)
-// which tells whether a cell is not blanked.
+// which returns whether a cell is not blanked.
 
 //#include common/poles.glsl
 
@@ -77,7 +77,8 @@ vec2 flowtexMoved(vec2 start, vec2 moved, int pole, vec2 place, vec2 next)
   return pole < 0 ? moved + next : flowtexLeave(pole, place + next) - start;
 }
 
-// Goes on straight where a path has ended, and ends it where it is long enough; tells whether it goes on.
+// Goes on straight where a path has ended, and ends it where it is long enough; returns whether it
+// continues.
 bool flowtexGoesOn(inout FlowtexPath path, vec2 start, float unit, float from, float to)
 {
   if (path.reach >= FLOWTEX_ENDLESS && from * unit < u_longest)
@@ -124,7 +125,7 @@ void flowtexFollow(inout FlowtexPath path, vec2 start, float unit, float side, f
     ended = rests || ++steps >= FLOWTEX_MOST_STEPS || !flowtexAlive(there);
   }
   while (!ended && lag + h < to * (1.0 - FLOWTEX_LAG_ROUNDING));
-  // Without a graphics card what stands in a loop is run each time, whoever needs it.
+  // Without a graphics card the body of a loop is run each time, even if it is not needed.
   if (ended)
   {
     float low = flowtexInside(pole, place, next, vec2(0.0), 1.0);

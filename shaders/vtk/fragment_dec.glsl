@@ -23,7 +23,7 @@ vec2 flowtexPlaced; // texture coordinate of the fragment
 uniform sampler2DArray u_nodes;   // positions as they are given, from the middle of the surface, and normals
 uniform vec3 u_anchor;            // what positions are counted from there
 const int FLOWTEX_POSITIONS = 0, FLOWTEX_NORMALS = 1; // layers
-const float FLOWTEX_PLACE_FAR = 4.0;       // cells beyond which a correction is none
+const float FLOWTEX_PLACE_FAR = 4.0;       // cells beyond which no correction is made
 const float FLOWTEX_EXTENT = 1073741824.0; // finest cells of the noise in the size of the surface, 2^30
 const float FLOWTEX_LEAST_DEPTH = 1e-6;    // of the size, up to which it is rounding
 
@@ -59,7 +59,7 @@ void flowtexPlace(inout vec2 coordinate, inout vec3 position, inout vec3 normal,
   vec3 moved = -dot(across, off[0]) * ray;
   off -= outerProduct(ray, across * off);
 #endif
-  // Where cells have collapsed there is no number.
+  // Collapsed cells have no finite value.
   mat3x2 cells = transpose(mat2x3(cross(second, across), cross(across, first))) * off / dot(across, across);
   if (max(abs(cells[0].x), abs(cells[0].y)) <= FLOWTEX_PLACE_FAR)
   {

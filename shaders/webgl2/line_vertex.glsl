@@ -23,7 +23,7 @@ out vec2 flowtexPlace;  // pixels along the piece and across
 out float flowtexSize;  // its length
 out float flowtexSeen;
 
-const float FLOWTEX_BREAK = 1e29; // coordinates above are no point: a line begins or ends
+const float FLOWTEX_BREAK = 1e29; // coordinates above are not a point: a line begins or ends
 
 #ifdef FLOWTEX_MARK
 // Depth of a point that is brought nearer, where it is not cut off.

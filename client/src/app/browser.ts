@@ -1,8 +1,8 @@
 // The view of the page that trame serves: a Vue component around <flowtex-view>, whose module is loaded
 // beside the page. flowtex/app/streaming/element.py is the other side.
 //
-// Where there is no graphics card, or a person wishes so, the server draws: its pictures come by the stream of
-// trame-rca, whose events the view does not need, as it moves the camera by itself.
+// Without a graphics card, or if the user chooses so, the server draws: its pictures come by the
+// stream of trame-rca, whose events the view does not need, as it moves the camera by itself.
 
 import type { CameraState } from "../camera.ts";
 import type * as Client from "../core.ts";
@@ -116,7 +116,7 @@ class TrameView {
     document.addEventListener("keydown", listener, { signal: this.ended.signal });
   }
 
-  /** Begin, or go on with a painter that a person chooses. */
+  /** Begin, or continue with a painter that the user chooses. */
   async paint(painter?: Painter): Promise<void> {
     this.painter = chosen(painter) ?? bestPainter();
     const start = (await trame().trigger(this.props.begin, [this.painter])) as Beginning;
@@ -227,7 +227,7 @@ class TrameView {
     return (at, path) => trame().trigger(this.props.read, [n, { ...at, path }]) as Promise<Reading | null>;
   }
 
-  /** Tell the size of the picture of all views. */
+  /** Send the size of the picture of all views. */
   private resize(): void {
     const { view, area } = this;
     if (!view?.viewers.length || !area) return;

@@ -7,7 +7,7 @@ import { vue } from "./vue.ts";
 const DELAY_MS = 400;
 const GAP_PX = 10;
 
-/** Put a hint beside what it is about, on the side that is asked for, or below it, in the window. */
+/** Put a hint beside its subject, on the requested side, or below it, within the window. */
 function put(box: HTMLElement, owner: HTMLElement): void {
   const at = owner.getBoundingClientRect();
   const { offsetWidth: width, offsetHeight: height } = box;

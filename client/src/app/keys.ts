@@ -26,7 +26,7 @@ export const keys = {
     vue().onMounted(() => {
       // In the capturing phase, as the view keeps Escape for itself.
       window.addEventListener("keydown", onKeyDown, { capture: true });
-      // A link to a state holds it behind the #, of which browsers tell no server.
+      // A link to a state contains it after the #, which browsers do not send to servers.
       if (window.location.hash.length > 1) emit("linked", window.location.hash);
     });
     vue().onBeforeUnmount(() => window.removeEventListener("keydown", onKeyDown, { capture: true }));

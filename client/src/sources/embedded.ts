@@ -16,7 +16,7 @@ export interface PackedScene {
 
 /** The packed parts of one view. */
 export class Embedded implements Source {
-  /** Unpacking goes on in the page itself, and what is needed most comes first. */
+  /** Parts are unpacked in the page itself, the most needed ones first. */
   readonly atOnce = 1;
   readonly header: Header;
   /** Those of the whole. */

@@ -1,4 +1,4 @@
-// How parts travel to a view: whoever has them is its Source, and gives those of a tile, or of the whole
+// How parts travel to a view: its Source has them, and returns those of a tile, or of the whole
 // surface, at time steps. A view asks for what it shows by its Requests, the most needed first.
 //
 //   messages.ts   a kernel answers         embedded.ts   text in an exported page
@@ -12,8 +12,8 @@ import type { StoreError } from "./store.ts";
 import { nameOf, type TileKey } from "../tilechoice.ts";
 
 /**
- * Gives the parts of a tile at time steps, or those of the whole, or of its marks of a kind; what is there
- * already may be left out.
+ * Gives the parts of a tile at time steps, or those of the whole, or of its marks of a kind;
+ * existing ones may be left out.
  */
 export type LoadTile = (
   key: TileKey | null,
@@ -90,7 +90,7 @@ class Queue {
     this.taker = taker;
   }
 
-  /** Load in this order, and nothing that was asked for before and is not among it. */
+  /** Load in this order, and drop earlier requests that are not among these. */
   want(jobs: Job[]): void {
     this.jobs = jobs;
     const names = new Set(jobs.map(String));
@@ -141,7 +141,7 @@ class Queue {
     const [key, steps] = job;
     this.failed.add(String(job));
     setTimeout(() => this.next(), FAILED_MS + SPARE_MS);
-    // A coarser tile takes the place of another, but where nobody answers.
+    // A coarser tile replaces another, unless the server does not answer.
     const isAway = (error as Partial<StoreError>).fault === "unreachable";
     const name = key && !isAway ? nameOf(key) : undefined;
     this.taker.lack(wordsOf(key ? COARSE : ABSENT_STEP, error), name, steps);
@@ -190,7 +190,7 @@ export class Requests {
     this.formula = header.formula ? new FormulaSource(header, header.formula) : null;
   }
 
-  /** Follow the settings; tells whether they change what is given. */
+  /** Follow the settings; returns whether they change the result. */
   follow(settings: Settings): boolean {
     return this.formula?.follow(settings) ?? false;
   }
@@ -201,12 +201,12 @@ export class Requests {
     this.source?.open?.().catch((error) => taker.lack(wordsOf(ALL_COARSE, error)));
   }
 
-  /** Tiles are lacking, in the order of need; no others that were asked for before are needed. */
+  /** Tiles are lacking, in the order of need; no others that were requested before are needed. */
   wantTiles(keys: TileKey[], steps: number[]): void {
     this.tiles.want(keys.map((key) => [key, steps]));
   }
 
-  /** Time steps of the whole are lacking; a few that were asked for before may be needed again. */
+  /** Time steps of the whole are lacking; a few that were requested before may be needed again. */
   wantSteps(steps: number[]): void {
     const before = this.wholes.jobs.flatMap(([, some]) => some);
     if (steps.every((step) => before.includes(step))) return;
@@ -214,7 +214,7 @@ export class Requests {
     this.wholes.want(wanted.map((step) => [null, [step]]));
   }
 
-  /** Marks of time steps are lacking; no others that were asked for before are needed. */
+  /** Marks of time steps are lacking; no others that were requested before are needed. */
   wantMarks(marks: [kind: MarkKind, step: number][]): void {
     const jobs = marks.map(([kind, step]): Job => [null, [step], kind]);
     if (String(jobs) !== String(this.marks.jobs)) this.marks.want(jobs);

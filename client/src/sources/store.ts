@@ -1,5 +1,5 @@
-// A Zarr store behind any web server: objects are taken whole, asked for again where a server or the
-// network fails, and their check sums are tried.
+// A Zarr store behind any web server: objects are read whole, requested again if a server or the
+// network fails, and their checksums are verified.
 
 import * as zarr from "zarrita";
 
@@ -7,7 +7,10 @@ import * as zarr from "zarrita";
 const PAUSES_MS = [300, 1000, 3000];
 /** Milliseconds without a byte after which an answer counts as lost. */
 const STALL_MS = 20_000;
-/** What a server says of an object that is not there; buckets do not tell that from a private one. */
+/**
+ * What a server says of an object that is not there; buckets do not distinguish that from a private
+ * one.
+ */
 const ABSENT = [401, 403, 404, 410];
 const OK = 200;
 const BUSY = 429;
@@ -19,10 +22,10 @@ const SUM_BYTES = 4;
 const NUMBER_BYTES = 8;
 const MOST_CHUNK_BYTES = 1 << 28;
 
-/** What is wrong: nothing is there, it is not what was written, or nobody answers. */
+/** What is wrong: the object is missing or corrupt, or the server does not answer. */
 export type StoreFault = "missing" | "broken" | "unreachable" | "other";
 
-/** A fault in words for everybody, with what it was in detail. */
+/** An error with a plain message, and its details. */
 export class StoreError extends Error {
   readonly fault: StoreFault;
   readonly detail: string;
@@ -157,7 +160,7 @@ function paused(wait: number, signal: AbortSignal): Promise<void> {
   });
 }
 
-/** The bytes of an answer, and its status; given up where nothing more comes. */
+/** The bytes of an answer, and its status; cancelled if no more arrives. */
 async function answer(url: string, signal: AbortSignal): Promise<[status: number, bytes: Uint8Array]> {
   const controller = new AbortController();
   const stop = () => controller.abort();
@@ -178,7 +181,7 @@ async function answer(url: string, signal: AbortSignal): Promise<[status: number
   }
 }
 
-/** The bytes of an object, or nothing where there is none; asks again where nobody answers. */
+/** The bytes of an object, or nothing if it does not exist; repeats requests without an answer. */
 async function object(url: string, signal: AbortSignal): Bytes {
   for (let trial = 0; ; trial += 1) {
     let said = "no server answers";
@@ -227,7 +230,7 @@ export class Objects implements zarr.AsyncReadable {
     return bytes;
   }
 
-  /** Metadata of an array or a group, kept for all who ask, whoever of them goes. */
+  /** Metadata of an array or a group, kept for all callers, even if one cancels. */
   private description(key: string): Bytes {
     const known = this.described.get(key);
     if (known) return known;

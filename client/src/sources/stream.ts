@@ -1,5 +1,5 @@
-// A source of parts that reads them from the store that they lie in: flowtex/pyramid/layout.py tells what is
-// where, and flowtex/pyramid/client_parts.py what the surface of a tile is.
+// A source of parts that reads them from the store that they lie in: flowtex/pyramid/layout.py
+// describes the layout, and flowtex/pyramid/client_parts.py the surface of a tile.
 
 import { fromHalf } from "../half.ts";
 import {
@@ -36,10 +36,10 @@ const REASONS: Record<Exclude<StoreFault, "other">, string> = {
 
 /** What of a store has to be that of the page. */
 const IDENTITY = ["format", "fingerprint", "parameter", "lines"] as const;
-/** Tells whether a part is there, of a tile or of the whole. */
+/** Returns whether a part of a tile or of the whole is loaded. */
 type Has = (part: string) => boolean;
 
-/** Flows that are on their way, by their steps. */
+/** Flows that are loading, by their steps. */
 type Flows = Map<number, Promise<NamedPart[]>>;
 type Place = Pick<Header, "geometry" | "slices">;
 
@@ -73,7 +73,7 @@ function arePoles({ nodes, longest = 0, poles = [] }: TraceHeader): boolean {
   );
 }
 
-/** Refuse what is told of a tile where it cannot be drawn. */
+/** Refuse the description of a tile that cannot be drawn. */
 function checkHeader(own: TileHeader, { geometry: whole, slices: all }: Header): void {
   const { geometry, slices } = own;
   const { shape, rows, columns } = geometry;
@@ -174,7 +174,7 @@ function speedOf(flow: NamedPart, { geometry, slices }: Place, typical: number):
   return { name: "", data, shape: [rows, columns], digest: `${flow.digest} speed` };
 }
 
-/** An error with its reason in words for everybody, once. */
+/** An error with a plain reason, once. */
 function explained(error: unknown): StoreError {
   const known = storeError(error);
   if (known.fault === "other" || known.detail !== known.message) return known;
@@ -319,7 +319,7 @@ export class Stream implements Source {
     return { header, parts: [told, ...parts.values()] };
   }
 
-  /** What is told of a tile, with what is the same in all of them. */
+  /** The description of a tile, with what all tiles have in common. */
   private tileHeader(part: NamedPart | undefined): TileHeader | null {
     const own = JSON.parse(new TextDecoder().decode(part?.data as Uint8Array | undefined));
     if (own === null) return null;
