@@ -14,12 +14,16 @@ import xarray as xr
 from xarray.plot import FacetGrid
 
 import flowtex
+from flowtex._util.arguments import checked_number
 from flowtex.field import FlowField
+from flowtex.field.locate import locate
+from flowtex.field.point_values import PointValues, values_at
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from flowtex.offscreen.figure import FlowImage
+    from flowtex.pyramid import Built
     from flowtex.widget import FlowWidget
 
 __all__ = ["FlowtexAccessor"]
@@ -180,6 +184,43 @@ class FlowtexAccessor:
             figure = images[0].axes.figure
             figure.colorbar(images[0], ax=beside, **{"label": label, **(cbar_kwargs or {})})
         return images[0] if panels is None else panels
+
+    def probe(self, x: float, y: float, **options: Any) -> PointValues | None:
+        """Return the values of the flow at a point; ``None`` beside the data.
+
+        Parameters
+        ----------
+        x, y
+            Longitude and latitude in degrees; of data without them, coordinates of the data.
+        **options
+            As for :meth:`flowtex.FlowField.from_xarray`, such as ``level=500`` or
+            ``time="2000-01-02"``. By default the last time.
+
+        Raises
+        ------
+        FieldError
+            When ``x`` or ``y`` is not a finite number, or the dataset is not a flow.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> import flowtex.xarray
+        >>> values = flowtex.examples.weather().flowtex.probe(7.4, 46.9, level=250)
+        >>> f"{values.eastward:.0f} m/s to the east, {values.northward:.0f} m/s to the north"
+        '22 m/s to the east, -17 m/s to the north'
+        """
+        field, expected = self.field(**options), "a finite number"
+        point = np.array(
+            [checked_number(*one, -1e300, 1e300, expected=expected) for one in (("x", x), ("y", y))]
+        )
+        if field.projection is not None:
+            point = field.projection.positions(*point)
+        at = locate(field, point) if np.isfinite(point).all() else None
+        return None if at is None else values_at(field, at)
+
+    def pyramid(self, store: Any, **options: Any) -> Built:
+        """Build a pyramid of the flow, as :func:`flowtex.pyramid.build` does."""
+        return flowtex.pyramid.build(self._dataset, store, **options)
 
     def widget(self, **options: Any) -> FlowWidget:
         """Return a :class:`flowtex.FlowWidget` of the flow."""

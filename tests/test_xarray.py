@@ -37,6 +37,22 @@ def test_a_dataset_has_the_calls_of_the_package(opengl: Any, tmp_path: Path) -> 
         flowtex.render(flowtex.examples.double_gyre(), globe=True)
 
 
+def test_values_are_told_at_a_place_of_the_earth(tmp_path: Path) -> None:
+    lon, lat = np.arange(-20.0, 21.0, 2.0), np.arange(40.0, 61.0, 2.0)
+    ds = winds(lon, lat)
+    ds["u"][:], ds["v"][:] = 3.0 + 0.1 * ds["lon"], -1.0
+    for place, tolerance in (((4.0, 50.0), 1e-6), ((5.0, 51.0), 0.02)):  # a node, and in a cell
+        at = ds.flowtex.probe(*place, projection="robinson")
+        expected = (3.0 + 0.1 * place[0], -1.0)
+        assert (at.eastward, at.northward) == pytest.approx(expected, abs=tolerance)
+        assert at.lonlat == pytest.approx(place, abs=tolerance)
+    for beside in ((50.0, 51.0), (5.0, 95.0)):
+        assert ds.flowtex.probe(*beside, globe=True) is None
+    with pytest.raises(FieldError, match="y is inf; expected a finite number"):
+        ds.flowtex.probe(5.0, np.inf)
+    assert ds.flowtex.pyramid(tmp_path / "flow.zarr", progress=False).made > 0
+
+
 def test_a_dataset_is_plotted_with_the_words_of_xarray(opengl: Any) -> None:
     del opengl
     import matplotlib.pyplot as plt
