@@ -2,8 +2,8 @@
 Kelvin's cat's eyes
 ===================
 
-Where two streams pass each other their border rolls up into a row of vortices. Stuart found a
-steady flow of that kind in 1967, which solves Euler's equations exactly. Colours are the vorticity.
+The shear layer between two streams rolls up into a row of vortices. This steady flow of that kind
+(Stuart, 1967) solves Euler's equations exactly. Colours show the vorticity.
 """
 
 import numpy as np

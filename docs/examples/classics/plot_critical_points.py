@@ -2,9 +2,10 @@
 Critical points
 ===============
 
-Where a flow stands still it is a saddle, a node, a focus or a centre, told by the eigenvalues of
-its gradient. This field has them at the zeros of a polynomial, between the nodes of the grid; lines
-leave the saddles and come to them. Zoom into one: it is sharp a thousand times closer.
+A critical point, where the velocity is zero, is a saddle, a node, a focus or a centre, depending on
+the eigenvalues of the velocity gradient. The critical points of this field are the zeros of a
+polynomial, between the nodes of the grid; separatrices start and end at the saddles. Zoom into a
+point: the texture is sharp at a thousand times the size.
 """
 
 import numpy as np

@@ -2,8 +2,8 @@
 An electric dipole
 ==================
 
-Field lines go from one charge to the other. Near a charge the field grows beyond all bounds, so
-the colours go by the logarithm, ``log_scale=True``; the texture does not care for its strength.
+Field lines connect two charges. The field is unbounded near a charge, so the colours are
+logarithmic, ``log_scale=True``; the texture does not depend on the strength of the field.
 """
 
 import numpy as np

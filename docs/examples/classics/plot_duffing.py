@@ -2,8 +2,8 @@
 Duffing's oscillator
 ====================
 
-A steel strip between two magnets bends to one or to the other. In its phase portrait two wells
-take turns: with a little friction the bands that lead to either of them wind around each other. A
+A steel strip between two magnets bends towards one of them. Its phase portrait has two wells; with
+a little friction, the bands of initial states that lead to either of them wind around each other. A
 phase portrait is a flow, with the position along x and the velocity along y.
 """
 

@@ -2,9 +2,9 @@
 The hairy ball
 ==============
 
-No wind on a sphere blows everywhere: somewhere it must stand still (Poincaré, 1885). This
-one does so at a single point, where it looks like the field of a dipole. It is a steady stream in
-the plane, brought to the sphere by a stereographic projection. Turn the ball to find the point.
+Every tangential flow on a sphere is zero somewhere (Poincaré, 1885). This one is zero at a single
+point, where it looks like the field of a dipole. It is a uniform stream in the plane, mapped to the
+sphere by a stereographic projection. Turn the ball to find the point.
 """
 
 import numpy as np

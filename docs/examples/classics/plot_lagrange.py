@@ -2,9 +2,9 @@
 Lagrange's points
 =================
 
-Turning with two bodies around their common centre, five points feel no force: three on the line
-through both, and two at the corners of equal triangles. Streaks are along the force, gravity and
-the centrifugal one together; its potential is the colour.
+In a frame that rotates with two bodies, the force is zero at five points: three on the line through
+both bodies, and two that form equilateral triangles with them. Streaks follow the sum of gravity
+and the centrifugal force; colours show its potential.
 """
 
 import numpy as np

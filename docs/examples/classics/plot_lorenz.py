@@ -2,9 +2,9 @@
 Lorenz's butterfly
 ==================
 
-Lorenz's three equations of convection are a flow in space. A plane cuts it where x = y, through
-both of its unstable points: along it the flow goes around either of them, the two wings. Colours
-tell which way it passes through the plane.
+Lorenz's three equations of convection describe a flow in space. The plane x = y contains both
+unstable points of the butterfly; in it the flow circles around each of them, which gives the two
+wings. Colours show the velocity through the plane.
 """
 
 import numpy as np

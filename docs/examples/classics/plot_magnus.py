@@ -2,9 +2,9 @@
 Lift on a spinning cylinder
 ===========================
 
-A ball with spin swerves. In potential flow around a cylinder a circulation moves the two points
-where the flow stands still down, it is faster above than below, and by Bernoulli's law the pressure
-is lower there: a lift, the effect of Magnus.
+A spinning ball swerves. In potential flow around a cylinder, circulation moves the two stagnation
+points downward and makes the flow faster above than below. By Bernoulli's law the pressure is lower
+above, which gives a lift: the Magnus effect.
 """
 
 import numpy as np

@@ -2,9 +2,9 @@
 The pendulum, on a cylinder
 ===========================
 
-An angle comes back after a turn, so the phase portrait of a pendulum lies on a cylinder: around it
-the angle, along it the angular velocity. Orbits around the bottom swing; those beyond the
-saddle's loop go over the top, and on a cylinder they close.
+The angle of a pendulum is periodic, so its phase portrait lies on a cylinder: the angle around it,
+the angular velocity along it. Orbits near the bottom are oscillations; those beyond the separatrix
+of the saddle are rotations, which close on the cylinder.
 """
 
 import numpy as np

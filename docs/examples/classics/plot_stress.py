@@ -2,9 +2,9 @@
 Lines of stress around a hole
 =============================
 
-A plate is pulled to the right and has a hole. The principal directions of its stress have no sign:
-there are lines, but nothing goes along them. ``sign_free=True`` treats v and -v alike. At the top
-of the hole the stress is three times what it is far away (Kirsch, 1898).
+A plate with a hole is pulled to the right. The principal directions of its stress are axes without
+a sense of direction, so v and -v mean the same: ``sign_free=True``. At the top of the hole the
+stress is three times that far away (Kirsch, 1898).
 """
 
 import numpy as np

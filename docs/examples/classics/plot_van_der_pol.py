@@ -2,9 +2,8 @@
 A limit cycle
 =============
 
-The oscillator of van der Pol, from nothing but its two equations. All paths end on one closed
-orbit. The slider says how strong the damping is, and the page computes the flow itself: zoom in as
-far as you like.
+The van der Pol oscillator, made from its two equations only. All paths end on one closed orbit. The
+slider changes the damping, and the page computes the flow itself, so it stays exact at every zoom.
 """
 
 import flowtex

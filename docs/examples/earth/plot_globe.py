@@ -2,9 +2,9 @@
 Jets on the globe
 =================
 
-A dataset of xarray's needs no preparation: the winds, their levels and the grid are recognised.
-``globe=True`` puts it on a sphere, where neither the date line nor the poles are seams. Drag it
-around; north stays up.
+An xarray dataset needs no preparation: the winds, their levels and the grid are recognised.
+``globe=True`` draws it on a sphere, without a seam at the date line or the poles. Drag to turn it;
+north stays up.
 """
 
 import flowtex

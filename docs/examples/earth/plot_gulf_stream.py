@@ -2,9 +2,9 @@
 The Gulf Stream
 ===============
 
-Currents of an ocean model: land is where the data are NaN, and is drawn with its coast. Warm rings
-north of the stream turn clockwise, cold rings south of it the other way, which the height of the
-sea tells as well.
+Currents like those of an ocean model. Nodes with NaN are land, which is drawn with its coast. Warm
+rings north of the stream turn clockwise, cold rings south of it anticlockwise; the sea surface
+height shows this as well.
 """
 
 import flowtex

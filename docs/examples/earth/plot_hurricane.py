@@ -2,9 +2,9 @@
 A hurricane
 ===========
 
-A dataset can be made on the spot. In the model of Holland (1980) the wind of a hurricane is that
-of a pressure that falls towards the eye; here it is turned inward by 20°, as friction does at the
-ground. Wind speeds beyond 33 m/s make a storm a hurricane.
+A dataset can be made in a few lines. In the model of Holland (1980) the wind of a hurricane follows
+from a pressure that falls towards the eye; here it is turned inward by 20°, as by friction at the
+ground. A storm with winds above 33 m/s is a hurricane.
 """
 
 import numpy as np

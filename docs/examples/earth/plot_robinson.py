@@ -2,8 +2,8 @@
 All of the Earth on a map
 =========================
 
-``projection`` takes names such as ``robinson``, ``mercator`` and ``lambert``, and whatever PROJ
-knows. The velocity is mapped as well, so a streak on the map is the map of the path on the Earth.
+``projection`` accepts names such as ``robinson``, ``mercator`` and ``lambert``, and PROJ strings.
+The velocity is projected as well, so a streak on the map is the projected path on the Earth.
 """
 
 import flowtex

@@ -2,10 +2,9 @@
 A Rossby-Haurwitz wave
 ======================
 
-This wave with four crests goes around the Earth without changing its shape, an exact solution that
-every weather model is tested with. Arrays go onto the globe with a
-:class:`~flowtex.earth.Projection`, which turns longitude and latitude
-into positions and winds into vectors.
+This wave with four crests travels around the Earth without changing its shape, an exact solution
+that is a standard test of weather models. For arrays, a :class:`~flowtex.earth.Projection` turns
+longitude and latitude into positions on the globe, and winds into vectors.
 """
 
 import numpy as np

@@ -2,9 +2,8 @@
 Around a pole
 =============
 
-On a stereographic map around the South Pole the westerlies of the southern hemisphere are rings
-with waves in them. Angles are true on such a map, so the streaks have the right direction
-against every coast.
+On a stereographic map of the South Pole the westerlies of the southern hemisphere are rings with
+waves. The map preserves angles, so streaks cross every coast at the correct angle.
 """
 
 import flowtex

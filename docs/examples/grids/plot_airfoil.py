@@ -2,9 +2,9 @@
 Flow around an airfoil
 ======================
 
-A mesh of PyVista's goes to :func:`flowtex.show` as it is: its only array of vectors is the
-velocity. The cells of this O-grid differ by five orders of magnitude in area, and the grain of the
-texture by none; zoom in at the nose until one cell fills the view.
+A PyVista mesh can be passed to :func:`flowtex.show` unchanged: its only array of vectors is the
+velocity. The areas of the cells of this O-grid differ by a factor of 100,000, but the grain of the
+texture is the same everywhere; zoom in at the nose until one cell fills the view.
 """
 
 import flowtex

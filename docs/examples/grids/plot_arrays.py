@@ -2,9 +2,9 @@
 Arrays of your own
 ==================
 
-All that is needed is where the nodes are and how fast the flow is there. Positions may be the two
-lines of a rectilinear grid, velocities are (J, I, 2): rows, columns, components. Anything else on
-the nodes can be coloured by.
+A flow needs only the positions of the nodes and the velocity there. Positions may be the two
+coordinate axes of a rectilinear grid; velocities are (J, I, 2): rows, columns, components. Other
+arrays on the nodes can set the colours.
 """
 
 import numpy as np

@@ -2,9 +2,9 @@
 A curved grid
 =============
 
-On a curvilinear grid positions are (J, I, 2) as well. Here the walls of a channel narrow and widen
-again, and the flow is potential flow between them, to the first order. Cells are sheared and of
-different sizes, but streaks follow the velocity and never the grid.
+On a curvilinear grid positions are (J, I, 2) as well. The walls of this channel narrow and widen
+again, and the flow between them is potential flow, to first order. Cells are sheared and differ in
+size, but streaks follow the velocity and not the grid.
 """
 
 import numpy as np

@@ -2,9 +2,9 @@
 A plane of a 3D grid
 ====================
 
-Of a structured grid with three index directions one plane is drawn, ``plane="k=12"`` here. Its
-nodes keep their places in space, and the part of the velocity along the plane is shown. The
-flow is that of Arnold, Beltrami and Childress, whose streamlines are chaotic.
+Of a three-dimensional structured grid one index plane is drawn, here ``plane="k=12"``, in its
+position in space and with the velocity along the plane. This is the flow of Arnold, Beltrami and
+Childress, whose streamlines are chaotic.
 """
 
 import numpy as np

@@ -2,9 +2,9 @@
 Vortex shedding
 ===============
 
-Behind a cylinder at a Reynolds number of 100 vortices leave on either side in turn. The grid goes
-around the cylinder and closes on itself in the wake, where no seam is seen. Colours of the
-vorticity have zero in their middle, since the map diverges.
+At a Reynolds number of 100, vortices leave a cylinder alternately on both sides. The grid goes
+around the cylinder and closes in the wake, without a visible seam. Colours show the vorticity, with
+zero in the middle of the diverging colour map.
 """
 
 import flowtex

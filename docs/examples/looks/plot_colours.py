@@ -2,9 +2,9 @@
 Colours of another quantity
 ===========================
 
-Colours may tell anything that is known at the nodes; here the pressure of Taylor and Green's
-vortices, as contours would. The texture goes up and down from every colour by the same amount in
-the space Oklab, so the mean of a patch still reads as the map does.
+Colours can show any quantity at the nodes, here the pressure of Taylor-Green vortices. The texture
+lightens and darkens every colour by the same amount in the colour space Oklab, so the mean colour
+of a patch is still that of the colour map.
 """
 
 import numpy as np

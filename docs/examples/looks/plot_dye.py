@@ -2,9 +2,8 @@
 Dye in a flow
 =============
 
-An image takes the place of the noise, and the flow smears it in its own colours. Here it has drops
-of dye and is transparent elsewhere. The ramp kernel looks backward alone, so the dye is
-carried ahead.
+An image replaces the noise, and the flow smears it in its own colours. This image has drops of dye
+and is transparent elsewhere. The ramp kernel looks only backward, so the dye is carried forward.
 """
 
 import numpy as np

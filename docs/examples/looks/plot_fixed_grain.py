@@ -2,9 +2,9 @@
 Paint on the surface
 ====================
 
-By default a grain is as large on the screen at every zoom. ``fixed_grain=True`` fixes it on the
-surface, as if it were painted there: it grows as the view comes closer, on the right. Zoom out to
-see them agree.
+By default the grain has the same size on the screen at every zoom. ``fixed_grain=True`` (right)
+fixes its size on the surface, as if it were painted there, so it grows in a closer view. Zoom out
+to see both agree.
 """
 
 import flowtex

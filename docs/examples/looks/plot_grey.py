@@ -2,9 +2,9 @@
 Grey, for print
 ===============
 
-``scalars=False`` leaves out the colours. A little more ``contrast`` and a larger ``grain`` make a
-figure that survives a photocopier. ``flowtex.render(mesh, size=(2400, 1200))`` gives the pixels,
-and :func:`flowtex.axes` draws on matplotlib's axes, sharp in every file that is saved.
+``scalars=False`` leaves out the colours. A higher ``contrast`` and a larger ``grain`` make a figure
+that prints well. ``flowtex.render(mesh, size=(2400, 1200))`` returns the pixels, and
+:func:`flowtex.axes` draws on matplotlib axes, sharp in every file that is saved.
 """
 
 import flowtex

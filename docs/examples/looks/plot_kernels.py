@@ -2,9 +2,9 @@
 Which way it goes
 =================
 
-A streak has two ends, and a still picture does not tell which is the head. With ``kernel="ramp"``
-each grain is bright at the head and fades behind, on the right; a larger ``grain`` helps. On
-the left is the smooth kernel that is used otherwise.
+A still picture of streaks does not show the sense of the flow. With ``kernel="ramp"`` (right) each
+streak is bright at its head and fades behind it; a larger ``grain`` helps. The default kernel
+(left) is smooth and symmetric.
 """
 
 import flowtex

@@ -2,9 +2,9 @@
 What the level of detail is for
 ===============================
 
-A texture of one size is too fine from afar, where it flickers, and too coarse from near. Left,
-the grain fits the pixels at every distance; right, ``lod=False``, there is one texture for all.
-Zoom both in, and out again.
+A texture of one size is too fine in a distant view, where it flickers, and too coarse in a close
+one. On the left the grain fits the pixels at every distance; on the right, with ``lod=False``, its
+size on the surface is fixed. Zoom in and out: both views move together.
 """
 
 import flowtex

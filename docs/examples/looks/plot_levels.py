@@ -2,9 +2,9 @@
 One hue for each level
 ======================
 
-Seen at a grazing angle a pixel covers more of a surface the farther it is away. ``show_level``
-colours each pixel by the level of detail that it is drawn with: one hue for each doubling of
-the grain, and the hues blend as the levels do.
+In an oblique view a pixel covers more of the surface the farther away it is. ``show_level`` colours
+each pixel by its level of detail: one hue for each doubling of the grain. The hues blend as the
+levels do.
 """
 
 import flowtex

@@ -2,8 +2,8 @@
 Light on a surface
 ==================
 
-Curved surfaces are lit, flat ones are not, unless ``lighting`` says otherwise. A light shows the
-shape, on the left; without it colours are exactly those of the legend, on the right.
+Curved surfaces are lit and flat ones are not, unless ``lighting`` is given. Light shows the shape
+(left); without it, colours are exactly those of the legend (right).
 """
 
 import numpy as np

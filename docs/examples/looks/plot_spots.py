@@ -2,8 +2,8 @@
 Spots and squares
 =================
 
-``noise="spots"`` is Spot Noise, discs that the flow draws out; ``"checkerboard"`` shows how far
-it shears a square. Both are even on the surface, whatever the cells of its grid are.
+``noise="spots"`` is Spot Noise, discs that the flow stretches; ``"checkerboard"`` shows how far it
+shears squares. Both are even on the surface, whatever the cells of the grid.
 """
 
 import flowtex

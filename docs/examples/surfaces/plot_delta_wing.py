@@ -2,8 +2,8 @@
 Streaks on a wing
 =================
 
-Oil on a model in a wind tunnel shows where the flow goes along its skin. This is the upper side of
-a winged body. ``lighting`` tells its shape, and the texture turns and shrinks with the surface.
+Oil on a model in a wind tunnel shows the flow along its surface. This is the upper side of a winged
+body. Light shows its shape, and the texture turns and shrinks with the surface.
 """
 
 import flowtex

@@ -2,8 +2,8 @@
 A contour in a volume
 =====================
 
-``contour="f=0"`` draws the surface where an array has a value, here the gyroid, which divides space
-into two mazes. The velocity is projected onto it. Surfaces in space are lit; drag to turn them.
+``contour="f=0"`` draws the isosurface of an array, here the gyroid, which divides space into two
+labyrinths. The velocity is projected onto it. Curved surfaces are lit; drag to turn them.
 """
 
 import numpy as np

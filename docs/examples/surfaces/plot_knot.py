@@ -2,9 +2,9 @@
 Triangles
 =========
 
-Any surface of triangles, quads or polygons does: a ``PolyData`` with vectors on its points or its
-cells. Here a tube follows a trefoil knot, and the flow winds around it. What points out of the
-surface is left out.
+flowtex draws any surface of triangles, quadrilaterals or polygons: a ``PolyData`` with vectors on
+its points or cells. This tube follows a trefoil knot, and the flow winds around it. The component
+of the velocity normal to the surface is left out.
 """
 
 import numpy as np

@@ -2,9 +2,8 @@
 A slice through a volume
 ========================
 
-Any volume is cut by a plane: ``slice="y=0"``, or a normal and a point. This ring of vortices is
-on tetrahedra, as a mesh generator makes them. In the plane the ring is a pair of vortices that
-push each other along.
+A plane can cut any volume: ``slice="y=0"``, or a normal and a point. This vortex ring is on a mesh
+of tetrahedra. In the plane, the ring is a pair of vortices that propel each other.
 """
 
 import numpy as np

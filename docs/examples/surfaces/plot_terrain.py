@@ -2,8 +2,8 @@
 A wind over hills
 =================
 
-The wind flows around hills rather than over them where the air is stable. Here the terrain is a
-grid in space, and the wind is turned along its contours. Colours are the height of the ground.
+In stable air the wind flows around hills rather than over them. The terrain is a grid in space, and
+the wind is turned along its contours. Colours show the height of the ground.
 """
 
 import numpy as np

@@ -2,9 +2,9 @@
 Field lines on a torus
 ======================
 
-In a tokamak the magnetic field winds around a torus. The number of its turns is different on each
-surface of constant pressure, and where it is a fraction small disturbances grow: here a ripple with
-three periods one way and two the other. The grid closes on itself both ways.
+In a tokamak the magnetic field winds around a torus. The number of turns differs between surfaces
+of constant pressure, and where it is a fraction, small disturbances grow: here a ripple with three
+periods one way and two the other. The grid closes on itself both ways.
 """
 
 import numpy as np

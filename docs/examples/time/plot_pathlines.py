@@ -2,9 +2,9 @@
 Pathlines and streamlines
 =========================
 
-In a flow that varies in time a pathline is where a particle went, and a streamline is what the flow
-is along at one moment. Left the texture is along the former, right along the latter; where the
-border between the two gyres swings, they differ most.
+In a time-varying flow a pathline is the path of a particle, and a streamline follows the velocity
+at one time. The texture shows pathlines on the left and streamlines on the right; they differ most
+where the border between the two gyres oscillates.
 """
 
 import flowtex

@@ -2,9 +2,9 @@
 A steady flow that streams
 ==========================
 
-``motion="speed"`` lets the texture of a steady flow move as fast as the flow, ``speed`` pixels a
-second where it has its typical speed. After ``period`` seconds the first picture comes again,
-bit for bit, so :func:`flowtex.movie` writes a loop without a seam.
+``motion="speed"`` moves the texture of a steady flow along its streamlines: at ``speed`` pixels per
+second where the flow has its typical speed, faster where it is faster. After ``period`` seconds the
+first picture repeats exactly, so :func:`flowtex.movie` writes a seamless loop.
 """
 
 import flowtex

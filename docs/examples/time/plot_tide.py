@@ -2,9 +2,9 @@
 A tide in a bay
 ===============
 
-A series can be short: eight moments of one tide are enough, as the flow is interpolated between
-them. The tidal ellipse turns the other way on either side of the bay, around a point where
-the water does not rise at all.
+A series can be short: eight times of one tide are enough, because the flow is interpolated between
+them. The tidal ellipse turns in opposite directions on the two sides of the bay, around a point
+where the water level stays constant.
 """
 
 import numpy as np

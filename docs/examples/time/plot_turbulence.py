@@ -2,9 +2,9 @@
 Decaying turbulence
 ===================
 
-Arrays (T, J, I, 2) with their times are a flow that varies in time, and so is a list of meshes. In
+Arrays (T, J, I, 2) with their times describe a time-varying flow, and so does a list of meshes. In
 two dimensions small vortices merge into larger ones. Press play: between two steps the flow is
-interpolated, and its streaks are carried along by it.
+interpolated, and carries its streaks along.
 """
 
 import flowtex
