@@ -166,9 +166,9 @@ class Setting:
 
 
 def _row(
+    text: str,
     *,
     default: Any,
-    text: str,
     affects: Affects = "uniform",
     span: tuple[float, float] | None = None,
     choices: tuple[str, ...] = (),
@@ -204,153 +204,126 @@ class Settings:
     """
 
     samples: int = _row(
-        default=49,
-        text="Noise samples summed along each path (K in the paper).",
-        span=(1, 200),
+        "Noise samples summed along each path (K in the paper).", default=49, span=(1, 200)
     )
     spacing: float = _row(
-        default=0.7,
-        text="Distance between two samples, in grains of noise.",
-        span=(0.1, 10),
+        "Distance between two samples, in grains of noise.", default=0.7, span=(0.1, 10)
     )
     texture: str = _row(
+        "Streaks everywhere, or sparse ones with a bright head, which show which way the flow "
+        "goes.",
         default="dense",
-        text=(
-            "Streaks everywhere, or sparse ones with a bright head, which show which way the "
-            "flow goes."
-        ),
         choices=("dense", "streaklets"),
     )
     kernel: str = _row(
+        "Weights of the samples: smooth, equal as in the paper, or decreasing behind the particle.",
         default="hann",
-        text=(
-            "Weights of the samples: smooth, equal as in the paper, or decreasing behind the "
-            "particle."
-        ),
         choices=("hann", "box", "ramp"),
     )
     two_sided: bool = _row(
-        default=True,
-        text="Follow the flow forward as well as backward from each point.",
+        "Follow the flow forward as well as backward from each point.", default=True
     )
     lod: bool = _row(
+        "Fit the grain to each pixel; without it, grains are blobs in close views and flicker "
+        "in distant ones.",
         default=True,
-        text=(
-            "Fit the grain to each pixel; without it, grains are blobs in close views and "
-            "flicker in distant ones."
-        ),
     )
     noise: str = _row(
+        "Noise that is even in space, the paper's noise texture, or spots, squares or an image "
+        "instead.",
         default="procedural",
         affects="shader",
-        text=(
-            "Noise that is even in space, the paper's noise texture, or spots, squares or an "
-            "image instead."
-        ),
         choices=("procedural", "texture", "spots", "checkerboard", "image"),
     )
     tiles: int = _row(
+        "Repeats of an image along each side; more make a checkerboard's squares smaller.",
         default=1,
-        text="Repeats of an image along each side; more make a checkerboard's squares smaller.",
         span=(1, 64),
     )
     noise_correction: bool = _row(
+        "Spread the noise texture evenly over the surface, not over its cells (figure 6 of the "
+        "paper).",
         default=True,
         affects="textures",
-        text=(
-            "Spread the noise texture evenly over the surface, not over its cells (figure 6 of "
-            "the paper)."
-        ),
     )
     resolution: int = _row(
+        "Texels of the noise texture along the surface; they set the size of a fixed grain.",
         default=1024,
         affects="textures",
-        text="Texels of the noise texture along the surface; they set the size of a fixed grain.",
         span=(16, 8192),
     )
-    grain: float = _row(default=1.5, text="Size of a grain of noise, in pixels.", span=(0.25, 32))
+    grain: float = _row("Size of a grain of noise, in pixels.", default=1.5, span=(0.25, 32))
     fixed_grain: bool = _row(
+        "Fix the size of a grain on the surface, so that it grows as the view comes closer.",
         default=False,
-        text="Fix the size of a grain on the surface, so that it grows as the view comes closer.",
     )
-    contrast: float = _row(default=1.0, text="Contrast of the texture, 0 for none.", span=(0, 4))
+    contrast: float = _row("Contrast of the texture, 0 for none.", default=1.0, span=(0, 4))
     strength: float = _row(
-        default=0.8,
-        text="How strongly the texture darkens and lightens the colour.",
-        span=(0, 1),
+        "How strongly the texture darkens and lightens the colour.", default=0.8, span=(0, 1)
     )
-    seed: int = _row(default=0, text="Seed of the noise pattern.", span=(0, 65535))
+    seed: int = _row("Seed of the noise pattern.", default=0, span=(0, 65535))
     motion: str = _row(
+        "Let a steady flow stream: at the same speed everywhere, or faster where the flow is "
+        "faster.",
         default="off",
-        text=(
-            "Let a steady flow stream: at the same speed everywhere, or faster where the flow is "
-            "faster."
-        ),
         choices=("off", "uniform", "speed"),
     )
     speed: float = _row(
+        "Distance that the pattern moves in a second; with motion='speed', where the flow has "
+        "its typical speed.",
         default=40.0,
-        text=(
-            "Distance that the pattern moves in a second; with motion='speed', where the flow "
-            "has its typical speed."
-        ),
         span=(0, 1e12),
     )
     speed_in: str = _row(
+        "Unit of speed: pixels, the same at every zoom, or the mesh's units.",
         default="pixels",
-        text="Unit of speed: pixels, the same at every zoom, or the mesh's units.",
         choices=("pixels", "units"),
     )
     period: float = _row(
-        default=4.0,
-        text="Seconds after which the streaming repeats, without a seam.",
-        span=(0.1, 600),
+        "Seconds after which the streaming repeats, without a seam.", default=4.0, span=(0.1, 600)
     )
     arrows: float = _row(
+        "Distance in pixels between arrows along the flow, 0 for none; True means 40.",
         default=0.0,
-        text="Distance in pixels between arrows along the flow, 0 for none; True means 40.",
         span=(0, 400),
         switch=40.0,
     )
     arrow_length: str = _row(
+        "Length of the arrows: the same everywhere, or longer where the flow is faster.",
         default="even",
-        text="Length of the arrows: the same everywhere, or longer where the flow is faster.",
         choices=("even", "speed"),
     )
     arrow_color: str = _row(
+        "Colour of the arrows: dark with a light edge, or from the colour map, over a plain "
+        "surface.",
         default="contrast",
-        text=(
-            "Colour of the arrows: dark with a light edge, or from the colour map, over a plain "
-            "surface."
-        ),
         choices=("contrast", "scalars"),
     )
     critical_points: int = _row(
+        "Number of critical points to mark, the strongest first; True means 100.",
         default=0,
-        text="Number of critical points to mark, the strongest first; True means 100.",
         span=(0, 500),
         switch=100,
     )
     separatrices: int = _row(
+        "Number of saddles whose separatrices are drawn, the strongest first; True means 25.",
         default=0,
-        text="Number of saddles whose separatrices are drawn, the strongest first; True means 25.",
         span=(0, 50),
         switch=25,
     )
     show_level: bool = _row(
-        default=False,
-        text="Colour by the level of detail: one hue per doubling of the grain.",
+        "Colour by the level of detail: one hue per doubling of the grain.", default=False
     )
     lines: str = _row(
+        "Lines along which a time-varying flow is drawn; auto decides from its time steps.",
         default="auto",
         affects="trace",
-        text="Lines along which a time-varying flow is drawn; auto decides from its time steps.",
         choices=("auto", "pathlines", "streamlines"),
     )
     parameter: str = _row(
+        "Measure of the lag along a streamline: length, or the field's own time.",
         default="arclength",
         affects="trace",
-        text="Measure of the lag along a streamline: length, or the field's own time.",
         choices=("arclength", "time"),
     )
 
