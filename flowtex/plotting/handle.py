@@ -154,9 +154,9 @@ class FlowHandle(AppearanceAttributes):
         """PyVista meshes of the last picture; several if the surface is large."""
         return self._surface.meshes
 
-    def draw_for(self, height: int | None) -> None:
-        """Choose tiles for a picture of this size; the next pictures are drafts of it."""
-        self._surface.full_height = height
+    def draw_for(self, height: int, whole: int) -> None:
+        """Choose tiles for so many pixels of a ``whole`` picture; the next ones are its drafts."""
+        self._surface.full_height, self._surface.whole_height = height, whole
 
     @property
     def busy(self) -> bool:

@@ -150,8 +150,9 @@ class Overlay:
         viewport = [*map(float, renderer.GetOrigin()), *map(float, renderer.GetSize())]
         height, density = renderer.GetSize()[1], self._surface.view.density
         full_height = self._surface.full_height or height
+        whole_height = self._surface.whole_height or full_height
         # Lines of a large picture are wider, not by as much as it is larger.
-        width = np.clip(np.sqrt(full_height / density / USUAL_HEIGHT_PX), *WIDTH_RANGE)
+        width = np.clip(np.sqrt(whole_height / density / USUAL_HEIGHT_PX), *WIDTH_RANGE)
         pixel = float(width) * density * height / full_height
         finest = SPACING_PX * self._surface.view.pixel * self._surface.view.density
         for part in self._parts:

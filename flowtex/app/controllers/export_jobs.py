@@ -17,7 +17,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import IO, Any, TypeVar, cast
+from typing import IO, Any, TypeVar
 
 import numpy as np
 
@@ -49,8 +49,8 @@ MOST_PIXELS, MOST_MOVIE_PIXELS, LONGEST_SIDE_PX = 100_000_000, 9_000_000, 30_000
 MOST_SUPERSAMPLING, MOST_DENSITY = 4, 8.0
 #: Seconds between two checks whether the view has come to rest.
 BUSY_INTERVAL_S = 0.05
-#: Seconds that a tile may take, and its sides in pixels.
-TILE_S, SMALLEST_TILE_PX, LARGEST_TILE_PX = 0.05, 32, 512
+#: Seconds that a tile may take, and its sides in pixels, at most.
+TILE_S, LARGEST_TILE_PX = 0.05, 512
 
 
 class ExportError(FieldError):
@@ -58,10 +58,8 @@ class ExportError(FieldError):
 
 
 class TiledPicture:
-    """Draws pictures of any size, a tile at a time through a small window.
+    """Draws pictures of any size, a tile at a time through a window as large as a tile.
 
-    The window is as large as a tile, however large the picture. What it shows of the view is given
-    in pixels of the window, with fractions, as though the whole picture had its height.
     ``density`` and ``supersampling`` are those of a :class:`Job`.
     """
 
@@ -75,10 +73,8 @@ class TiledPicture:
     ) -> None:
         self.size, self._viewport, self._supersampling = size, viewport, supersampling
         self._cost = Cost()
-        self._side = SMALLEST_TILE_PX
-        count = len(viewport.panes)
-        self._gap = 0 if count == 1 else max(round(GAP_PX * density), 1)
-        viewport.resize(count * LARGEST_TILE_PX + (count - 1) * GAP_PX, LARGEST_TILE_PX)
+        self._gap = max(round(GAP_PX * density), 1) if len(viewport.panes) > 1 else 0
+        viewport.window.longest_side = LARGEST_TILE_PX
         for pane in viewport.panes:
             pane.handle.density = density * supersampling
 
@@ -86,17 +82,34 @@ class TiledPicture:
         """Yield the picture so far, always the same array, and its share, after each tile."""
         width, height = self.size
         canvas = np.full((height, width, 3), LINE_GREY, np.uint8)
-        count = len(self._viewport.panes)
-        wide = (width - (count - 1) * self._gap) // count
+        panes, times = self._viewport.panes, self._supersampling
+        wide = (width - (len(panes) - 1) * self._gap) // len(panes)
         done = 0
-        for number, pane in enumerate(self._viewport.panes):
+        for number, pane in enumerate(panes):
             first = number * (wide + self._gap)
-            here = wide if number < count - 1 else width - first
-            for rows, columns in self._tiles(here, height):
-                tile = self._tile(pane, (here, height), rows, columns)
-                canvas[rows, first + columns.start : first + columns.stop] = tile
-                done += tile.shape[0] * tile.shape[1]
+            here = wide if number < len(panes) - 1 else width - first
+            self._viewport.window.size = here * times, height * times
+            for tile in self._tiles(pane, here, height):
+                left, top, across, down = tile
+                started = time.perf_counter()
+                part = (times * left, times * top, times * across, times * down)
+                pixels = pane.draw(part[2], part[3], part)
+                seconds, samples = time.perf_counter() - started, pane.handle.settings.samples
+                self._cost.learn(seconds, part[2] * part[3], samples)
+                place = slice(top, top + down), slice(first + left, first + left + across)
+                canvas[place] = averaged(pixels, times)
+                done += across * down
                 yield canvas, done / (width * height)
+
+    def _tiles(self, pane: Pane, width: int, height: int) -> Iterator[Rect]:
+        """Rows of tiles that are as large as the time allows by then."""
+        top = 0
+        while top < height:
+            side = min(self._cost.tile(pane.handle.settings.samples, TILE_S), LARGEST_TILE_PX)
+            side = max(side // self._supersampling, 1)
+            for left in range(0, width, side):
+                yield left, top, min(side, width - left), min(side, height - top)
+            top += side
 
     def annotate(self, picture: Bytes) -> None:
         """Write legend, scale bar, time and name on each view of a picture, in place."""
@@ -112,42 +125,6 @@ class TiledPicture:
                 label=named_values({n: values[n] for n in viewport.differences if n in values}),
                 legend=scene.settings.noise != "image",
             )
-
-    def _tiles(self, width: int, height: int) -> Iterator[tuple[slice, slice]]:
-        """Rows of tiles that are as large as the time allows by then."""
-        top = 0
-        while top < height:
-            side = max(self._side // self._supersampling, 1)
-            bottom = min(top + side, height)
-            for left in range(0, width, side):
-                yield slice(top, bottom), slice(left, min(left + side, width))
-            top = bottom
-
-    def _tile(self, pane: Pane, whole: tuple[int, int], rows: slice, columns: slice) -> Bytes:
-        wide, high = columns.stop - columns.start, rows.stop - rows.start
-        shrink = LARGEST_TILE_PX / whole[1]
-        part = (
-            LARGEST_TILE_PX / 2 + (columns.start - whole[0] / 2) * shrink,
-            rows.start * shrink,
-            wide * shrink,
-            high * shrink,
-        )
-        started = time.perf_counter()
-        # Fractions are what a picture larger than its window needs.
-        pixels = pane.draw(
-            wide * self._supersampling, high * self._supersampling, cast("Rect", part)
-        )
-        samples = pane.handle.settings.samples
-        self._cost.learn(time.perf_counter() - started, pixels.shape[0] * pixels.shape[1], samples)
-        self._side = self._affordable(samples)
-        return averaged(pixels, self._supersampling)
-
-    def _affordable(self, samples: int) -> int:
-        """Side of a tile, in pixels that are drawn, that takes no longer than it may."""
-        side = SMALLEST_TILE_PX
-        while side < LARGEST_TILE_PX and self._cost.seconds(4.0 * side * side, samples) < TILE_S:
-            side *= 2
-        return side
 
 
 class Job:

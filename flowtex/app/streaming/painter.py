@@ -85,9 +85,9 @@ class Cost:
         scale = math.sqrt(room / max(pixels, 1))
         return Quality(min(max(scale, COARSEST_DRAFT), 1.0), fewer)
 
-    def tile(self, samples: int) -> int:
-        """Side of a square tile, in pixels, that takes no longer than a tile may."""
-        side = math.sqrt((TILE_S - FIXED_S) / (self._price * (samples + BASE_SAMPLES)))
+    def tile(self, samples: int, budget: float = TILE_S) -> int:
+        """Side of a square tile, in pixels, that takes no longer than ``budget`` seconds."""
+        side = math.sqrt((budget - FIXED_S) / (self._price * (samples + BASE_SAMPLES)))
         # An even number keeps the 2 x 2 blocks in which derivatives are taken.
         return max(int(side) // 2 * 2, SMALLEST_TILE_PX)
 

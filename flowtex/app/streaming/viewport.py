@@ -57,7 +57,8 @@ class Pane:
         """Draw this pane alone; :meth:`OffscreenWindow.draw` has the parameters."""
         for other in self._viewport.panes:
             other.handle.actor.SetVisibility(other is self and other.handle.visible)
-        self.handle.draw_for(self.size[1] if part is None else part[3])
+        whole = self._viewport.window.size[1]
+        self.handle.draw_for(whole if part is None else part[3], whole)
         return self._viewport.window.draw(width, height, part)
 
 

@@ -2,7 +2,8 @@
 
 Pictures are drawn into the lower left corner of a window that keeps its size: a draft is the
 whole view in a small corner, a tile a part of the view at full size. Nothing is allocated between
-one and the next, and a tile has the same pixels as the whole picture has there.
+one and the next, and a tile has the same pixels as the whole picture has there. So the window may
+be smaller than the picture, of which it then draws no more than tiles.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from flowtex.camera import Camera
 from flowtex.plotting.vtk_camera import apply_camera
 
 Rect = tuple[int, int, int, int]
+#: Longest side of a window, in pixels.
+LONGEST_SIDE_PX = 1 << 15
 
 
 class OffscreenWindow:
@@ -24,6 +27,8 @@ class OffscreenWindow:
     def __init__(self, width: int, height: int) -> None:
         import pyvista as pv
 
+        self._size = width, height
+        self.longest_side = LONGEST_SIDE_PX  #: Pixels of the window along a side, at most.
         self.plotter = pv.Plotter(
             off_screen=True, window_size=[width, height], lighting="light kit"
         )
@@ -40,12 +45,12 @@ class OffscreenWindow:
     @property
     def size(self) -> tuple[int, int]:
         """Width and height of a whole picture, in pixels."""
-        width, height = self.plotter.window_size
-        return int(width), int(height)
+        return self._size
 
     @size.setter
     def size(self, size: tuple[int, int]) -> None:
-        self.plotter.window_size = list(size)
+        self._size = size
+        self.plotter.window_size = [min(side, self.longest_side) for side in size]
 
     def close(self) -> None:
         """Free the graphics card."""
@@ -65,9 +70,8 @@ class OffscreenWindow:
         It is as large as a whole one at most, and may show a part of that: left, top, width and
         height in pixels.
         """
-        whole_width, whole_height = self.size
         camera, renderer = self.plotter.camera, self.plotter.renderer
-        renderer.SetViewport(0, 0, width / whole_width, height / whole_height)
+        renderer.SetViewport(0, 0, *np.divide((width, height), self.plotter.window_size))
         renderer.ResetCameraClippingRange()
         whole = (camera.GetWindowCenter(), camera.GetParallelScale(), camera.GetViewAngle())
         if part is not None:

@@ -74,8 +74,10 @@ class FlowSurface:
         self._arrows = SurfaceArrows(renderer, settings)
         self._tiles: dict[TileKey, _TileActor] = {}
         self._loader = None if pyramid is None else self._loader_of(pyramid)
-        #: Height in pixels for which tiles are chosen, where a frame is a draft of fewer.
+        #: Height in pixels for which tiles are chosen, where a frame is a draft of fewer, and that
+        #: of the picture that it is a part of.
         self.full_height: int | None = None
+        self.whole_height: int | None = None
         self._culling = "none"
         self._notify: Callable[[], None] | None = None
         self._told: set[TileKey] = set()

@@ -15,6 +15,7 @@ pytest.importorskip("trame_rca")
 from small_pages import difference, panned, small
 from waiting import wait_until
 
+import flowtex
 from flowtex import FieldError
 from flowtex._util.progress import Stopped
 from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
@@ -87,6 +88,22 @@ def test_a_larger_picture_is_finer_or_denser(scene: Viewport, tmp_path: Path) ->
     assert difference(scene.draw(240, 160), shown) == 0
 
 
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_saved_picture_is_that_of_a_script(tmp_path: Path, times: int) -> None:
+    field = flowtex.examples.double_gyre_field(shape=(21, 41))
+    marked: dict[str, Any] = {"samples": 5, "critical_points": True, "separatrices": True}
+    view = Viewport(field, **marked)
+    view.set_background("white")
+    size = (1200, 700)  # of several tiles
+    view.resize(600, 350)
+    view.home()
+    saved = pixels(run(PictureJob(view, tmp_path / "a.png", size, supersampling=times)))
+    view.close()
+    drawn = flowtex.render(field, size=size, supersampling=times, **marked)
+    assert difference(saved, drawn) < 0.02
+    assert difference(saved, flowtex.render(field, size=size, samples=5)) > 0.3
+
+
 def test_both_panes_and_an_image_are_in_the_picture(plain: Viewport, tmp_path: Path) -> None:
     half = np.zeros((40, 60, 4), np.uint8)
     half[:20] = [250, 20, 30, 128]
@@ -126,7 +143,7 @@ def test_a_job_waits_while_the_view_is_busy(plain: Viewport, tmp_path: Path) -> 
         drawn.append(job.progress)
         return len(drawn) < 4
 
-    job = PictureJob(plain, tmp_path / "a.png", (60, 40), busy=busy)
+    job = PictureJob(plain, tmp_path / "a.png", (600, 40), busy=busy)
     run(job)
     # Nothing was drawn between the first time that it was busy, and when it was not any more.
     assert len(drawn) > 4 and len(set(drawn[:4])) == 1 and drawn[4] > drawn[3]
