@@ -1,5 +1,5 @@
-# Everything is done inside .venv; `make help` lists what there is.
-# A stamp beside the environment tells what it was set up for, so a second run is instant;
+# Everything is done inside .venv; `make help` lists the targets.
+# A stamp in the environment records what it was set up for, so a second run is instant;
 # a change of pyproject.toml or of the locked versions sets it up again.
 
 PYTHON ?= python3
@@ -12,30 +12,31 @@ FUZZ ?= 8
 BIN := $(VENV)/bin
 SETUP := pyproject.toml tools/setup.sh tools/run_uv.py tools/common.sh tools/locks/newest.txt
 
-# uv compiles no bytecode: what is imported first leaves it for the next.
+# uv compiles no bytecode: the first import leaves it for the next process.
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test check coverage fuzz integrations lint format docs site gallery client paper paper-quick wheel clean
 
-help: ## list what can be made
+help: ## list the targets
 	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
 	@sed -n 's/^\([a-z-]*\):[^#]*## /  make \1\t/p' Makefile | expand -t 20
 
-demo: $(VENV)/.ready-demo ## set up if need be, and show flow on a surface
+demo: $(VENV)/.ready-demo ## set up if necessary, and show the example flows
 	@sh tools/opengl.sh $(BIN)/python
 	@$(BIN)/flowtex demo
 
-test: $(VENV)/.ready-test ## set up if need be, then run every check and every test
+test: $(VENV)/.ready-test ## set up if necessary, then run all checks and all tests
 	@sh tools/opengl.sh $(BIN)/python
 	@sh tools/browsers.sh $(BIN)/python
 	@sh tools/check.sh $(BIN) all $(PYTEST_ARGS)
 
-check: $(VENV)/.ready-test ## style, format, types, and the fast tests of what was changed, or all fast ones with TESTS=fast
+check: $(VENV)/.ready-test ## style, format, types, and the fast tests of changed modules, or all
+fast ones with TESTS=fast
 	@sh tools/opengl.sh $(BIN)/python
 	@sh tools/check.sh $(BIN) $(TESTS) $(PYTEST_ARGS)
 
-coverage: $(VENV)/.ready-test ## what of flowtex/ and client/src the tests run, into out/coverage
+coverage: $(VENV)/.ready-test ## measure the coverage of flowtex/ and client/src, into out/coverage
 	@sh tools/opengl.sh $(BIN)/python
 	@sh tools/browsers.sh $(BIN)/python
 	@sh tools/coverage.sh $(BIN) $(PYTEST_ARGS)
@@ -43,14 +44,15 @@ coverage: $(VENV)/.ready-test ## what of flowtex/ and client/src the tests run, 
 fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, files and messages
 	FLOWTEX_FUZZ=$(FUZZ) $(BIN)/pytest -n auto --maxprocesses 4 -m hypothesis $(PYTEST_ARGS)
 
-integrations: $(VENV)-integrations/.ready ## show the widget in Notebook 7, Panel, Shiny, Solara and Streamlit, in an environment of their own
+integrations: $(VENV)-integrations/.ready ## show the widget in Notebook 7, Panel, Shiny, Solara and
+Streamlit, in a separate environment
 	@sh tools/browsers.sh $(VENV)-integrations/bin/python
 	$(VENV)-integrations/bin/python -m pytest tests/integrations $(PYTEST_ARGS)
 
 lint: $(VENV)/.ready-test ## style, format, types and the browser client, without the tests
 	@sh tools/check.sh $(BIN) none
 
-format: $(VENV)/.ready-test ## put the code in its format
+format: $(VENV)/.ready-test ## format the code
 	$(BIN)/ruff check --select I --fix
 	$(BIN)/ruff format
 
@@ -60,7 +62,8 @@ client: $(VENV)/.ready-test ## build the browser client into the package
 docs: $(VENV)/.ready-test ## write the table of settings into the guide
 	FLOWTEX_WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/test_docs.py -k table
 
-site: $(VENV)/.ready-site ## build the site into out/site, and judge its links, words and accessibility
+site: $(VENV)/.ready-site ## build the site into out/site, and check its links, spelling and
+accessibility
 	@sh tools/opengl.sh $(BIN)/python
 	@sh tools/browsers.sh $(BIN)/python
 	@sh tools/site.sh $(BIN)
@@ -68,16 +71,16 @@ site: $(VENV)/.ready-site ## build the site into out/site, and judge its links, 
 gallery: $(VENV)/.ready-test ## draw the pictures of the README and the gallery
 	$(BIN)/python docs/make_pictures.py
 
-paper: $(VENV)/.ready-demo ## compute the paper's tables and figures into out/paper, in some minutes
+paper: $(VENV)/.ready-demo ## compute the paper's tables and figures into out/paper, in a few minutes
 	@$(BIN)/python -m paper -o $(PAPER)
 
-paper-quick: $(VENV)/.ready-demo ## the same in the reduced form, in less than a minute
+paper-quick: $(VENV)/.ready-demo ## the same in reduced form, in less than a minute
 	@$(BIN)/python -m paper --quick -o $(PAPER)
 
 wheel: $(VENV)/.ready-test ## build dist/flowtex-*.whl and the source archive
 	$(BIN)/hatchling build
 
-clean: ## remove the environment and everything that was built
+clean: ## remove the environment and all build products
 	rm -rf $(VENV) $(VENV)-integrations dist build out .mypy_cache .pytest_cache .ruff_cache
 	find . -name node_modules -type d -prune -exec rm -rf {} +
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,5 +1,5 @@
 #!/bin/sh
-# browsers.sh PYTHON: see that the browser tests can run; where they cannot they skip.
+# browsers.sh PYTHON: install what the browser tests need; without it they are skipped.
 set -eu
 here=$(dirname "$0")
 . "$here/common.sh"
@@ -16,11 +16,11 @@ has_chromium() {
 
 needed=
 has_chromium || needed=chromium
-# Firefox has WebGL only with a screen, which may be one in memory.
+# Firefox has WebGL only with a display, which may be a virtual one.
 command -v firefox-esr >/dev/null 2>&1 || command -v firefox >/dev/null 2>&1 ||
     needed="$needed firefox-esr"
 command -v Xvfb >/dev/null 2>&1 || needed="$needed xvfb"
-# Playwright brings a Node.js of its own, which wants this library.
+# Playwright's own Node.js needs this library.
 "$python" -m playwright --version >/dev/null 2>&1 || needed="$needed libatomic1"
 [ -n "$needed" ] || exit 0
 
@@ -29,6 +29,6 @@ command -v Xvfb >/dev/null 2>&1 || needed="$needed xvfb"
 if can_install && grep -qs '^ID=debian' /etc/os-release; then
     apt_install $needed && exit 0
 fi
-say "Some browser tests will be skipped. To have them, install what they need
+say "Some browser tests will be skipped. To run them, install what they need
       ($(apt_command $needed)),
     or point FLOWTEX_CHROMIUM at a Chromium of your own."

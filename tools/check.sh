@@ -1,9 +1,8 @@
 #!/bin/sh
 # check.sh BIN all|fast|changed|none [PYTEST ARGUMENT...]: style, format, types, the browser client, and tests:
-# all; the fast ones, or those of them that concern what was changed; or none.
-#
-# Every check is made, whatever the earlier ones found. The long ones without tests run beside the tests, and
-# tell when these have ended.
+# all, the fast ones, the fast ones of changed modules, or none.
+# All checks run even if earlier ones fail. Long checks run in parallel with the tests, and are
+# reported after them.
 set -u
 here=$(dirname "$0")
 . "$here/common.sh"
@@ -24,11 +23,11 @@ check() {
     "$bin/$@" || failed="$failed, $name"
 }
 
-# A shell lets what runs aside ignore Ctrl-C, which tests send to the processes that they start.
+# Background jobs of a shell ignore Ctrl-C, which tests send to the processes that they start.
 unignored='import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); os.execv(sys.argv[1], sys.argv[1:])'
 
-# tests ARGUMENT...; pytest says with 5 that there was none to run. A worker that dies ends the run: one in
-# its place would begin with the same test.
+# tests ARGUMENT...; pytest exits with 5 if it found none. A worker that dies ends the run: its
+# replacement would begin with the same test.
 tests() {
     say "pytest $*"
     "$bin/python" -c "$unignored" "$bin/pytest" --dist loadfile --no-loadscope-reorder \
@@ -38,14 +37,13 @@ tests() {
 }
 
 # browser_files: the files with tests that need a browser, so that those workers collect no others.
-#
-# uv compiles no bytecode and pytest rewrites what it collects: what this process leaves, each worker of a
-# fresh clone would do again, in 14 seconds.
+# uv compiles no bytecode and pytest rewrites what it collects: without this process each worker of
+# a fresh clone would do so, in 14 seconds.
 browser_files() {
     "$bin/pytest" --collect-only -qq -m browser 2>/dev/null | sed -n 's/^\(tests.*\.py\): .*/\1/p'
 }
 
-# ended PID NAME LOG: wait for what runs aside, and show what it said.
+# ended PID NAME LOG: wait for a background job, and show its output.
 ended() {
     wait "$1" || failed="$failed, $2"
     say "$2"
@@ -69,7 +67,7 @@ case " $* " in
 esac
 case $which in
 all)
-    # Tests with a browser mostly wait for what a person would see, so they share the cores with the others.
+    # Tests with a browser mostly wait, so they share the cores with the others.
     # shellcheck disable=SC2086 # a list of files
     (tests -n auto --maxprocesses 2 -m browser "$@" $with_browser) >"$logs/browser" 2>&1 &
     browser=$!
@@ -90,4 +88,4 @@ changed)
 esac
 ended $types types types
 ended $client "browser client" client
-[ -z "$failed" ] || fail "not in order: ${failed#, }"
+[ -z "$failed" ] || fail "these checks failed: ${failed#, }"

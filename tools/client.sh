@@ -1,7 +1,8 @@
 #!/bin/sh
-# client.sh BIN [SCRIPT...]: run scripts of client/package.json; by default those that judge the browser
-# client: style, types, unit tests, and whether what is kept in the package is what the sources give.
-# Node comes with the environment; the tools that it runs are fetched once, without their scripts.
+# client.sh BIN [SCRIPT...]: run scripts of client/package.json; by default those that check the
+# browser client: style, types, unit tests, and whether the bundles in the package match the
+# sources. Node comes with the environment; its tools are fetched once, without their install
+# scripts.
 set -eu
 here=$(dirname "$0")
 . "$here/common.sh"
@@ -19,4 +20,4 @@ fi
 for script in "$@"; do
     npm run --silent "$script"
 done
-[ "$*" != "lint test check" ] || say "the browser client is in order"
+[ "$*" != "lint test check" ] || say "the browser client passed all checks"

@@ -1,4 +1,4 @@
-# Shared by the set-up scripts: what they say, and how they install system packages.
+# Shared by the set-up scripts: their messages, and the installation of system packages.
 # shellcheck shell=sh
 
 say() { printf '\033[1m==>\033[0m %s\n' "$*"; }
@@ -7,17 +7,17 @@ fail() {
     exit 1
 }
 
-# apt_command PACKAGE...: the command that a person would type.
+# apt_command PACKAGE...: the command for users.
 apt_command() {
     sudo=
     [ "$(id -u)" = 0 ] || sudo='sudo '
     printf '%sapt-get update && %sapt-get install --no-install-recommends %s' "$sudo" "$sudo" "$*"
 }
 
-# can_install: whether packages can be installed here without asking anyone.
+# can_install: whether packages can be installed here without a password.
 can_install() { [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; }
 
-# apt_install PACKAGE...: install them; the log is shown only when that fails.
+# apt_install PACKAGE...: install them; the log is shown only on failure.
 apt_install() {
     say "Installing $* with apt-get (once)"
     log=$(mktemp)
@@ -31,6 +31,6 @@ apt_install() {
     fi
 }
 
-# workers BIN: how many processes share the tests; two more than there are cores, as some tests wait for
+# workers BIN: number of processes for the tests: two more than cores, as some tests wait for
 # processes that they start.
 workers() { "$1/python" -c 'import os; print(min((os.cpu_count() or 1) + 2, 6))'; }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# coverage.sh BIN [PYTEST ARGUMENT...]: what of flowtex/ and client/src the tests run, by lines and branches,
-# into out/coverage.
+# coverage.sh BIN [PYTEST ARGUMENT...]: measure the coverage of flowtex/ and client/src, by lines
+# and branches, into out/coverage.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/common.sh"
@@ -15,22 +15,23 @@ mkdir -p "$folder/node" "$folder/pages"
 
 say "unit tests of the browser client"
 NODE_V8_COVERAGE=$folder/node sh "$here/client.sh" "$bin" test
-# In the kept files statements are joined; these have those of the sources, until the tests have ended.
+# The committed bundles are minified; these keep the statements of the sources until the tests have
+# ended.
 trap 'sh "$here/client.sh" "$bin" build' EXIT
 trap 'exit 130' INT TERM
 sh "$here/client.sh" "$bin" plain
-# Where Playwright's event loop runs, no test runs another: tests with a browser are apart.
+# Playwright's event loop excludes others, so tests with a browser run separately.
 for kind in "not browser" browser; do
     PYTHONPATH=tests:${PYTHONPATH:-} "$bin/coverage" run -m pytest -p client_coverage -n "$(workers "$bin")" \
         --dist loadfile --no-loadscope-reorder -m "$kind" "$@" ||
-        say "some tests failed: what they run counts as far as they came"
+        say "some tests failed: their coverage counts up to the failure"
 done
 
-say "flowtex/, in full in $folder/html"
+say "flowtex/; details in $folder/html"
 "$bin/coverage" combine --quiet
 "$bin/coverage" html --quiet --fail-under 0 -d "$folder/html"
 covered=0
 "$bin/coverage" report || covered=$?
-say "client/src, in full in $folder/client"
+say "client/src; details in $folder/client"
 sh "$here/client.sh" "$bin" coverage || covered=$?
 exit $covered

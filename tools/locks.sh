@@ -1,14 +1,13 @@
 #!/bin/sh
-# locks.sh [PYTHON]: write the oldest and the newest versions that are tried into tools/locks; PYTHON is one
-# with uv, such as that of `make test`.
-#
-# The oldest are the floors of pyproject.toml, for the oldest Python; the newest hold for every Python and
-# system, and `make` installs them.
+# locks.sh [PYTHON]: write the oldest and the newest tested versions into tools/locks; PYTHON must
+# have uv, such as that of `make test`.
+# The oldest are the lower bounds of pyproject.toml, for the oldest Python; the newest are for every
+# Python and system, and `make` installs them.
 set -eu
 cd "$(dirname "$0")/.."
 
 python=${1:-.venv/bin/python}
-# An earlier lock would be kept to where it can.
+# uv would keep the versions of an earlier lock where possible.
 rm -f tools/locks/lowest.txt tools/locks/newest.txt
 
 lock() {

@@ -1,13 +1,13 @@
 #!/bin/sh
-# opengl.sh PYTHON: see that VTK can draw, and install Mesa's OpenGL where that can be done.
+# opengl.sh PYTHON: check that VTK can draw, and install Mesa's OpenGL if possible.
 set -eu
 here=$(dirname "$0")
 . "$here/common.sh"
 
 python=$1
 
-# Without an OpenGL library VTK ends the process, so a second one is asked. It costs a second;
-# the stamp keeps the answer for as long as the environment and the kind of display are the same.
+# Without an OpenGL library VTK ends the process, so a second one tries, which takes a second; the
+# stamp keeps the result while the environment and the kind of display are the same.
 if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
     packages='libgl1 libegl1 libgl1-mesa-dri' kind=display
 else
@@ -16,12 +16,13 @@ fi
 stamp=$(dirname "$(dirname "$python")")/.opengl-$kind
 [ -e "$stamp" ] && exit 0
 
-# The trial alone, which loads nothing of the package, says in a second that all is well.
+# The trial alone, which does not load the package, succeeds within a second.
 case $("$python" -P "$here/../flowtex/diagnostics.py" --try 2>/dev/null) in
 *'"usable": true'*) touch "$stamp" && exit 0 ;;
 esac
 
-# draws: whether VTK draws; what it lacks is left in $lacks. A fault of the code must not look like that.
+# draws: whether VTK draws; the missing packages are in $lacks. A defect of the code must not look
+# like that.
 draws() {
     lacks=$("$python" -c 'import sys
 from flowtex import diagnostics
@@ -29,11 +30,11 @@ try:
     diagnostics.require_opengl()
 except diagnostics.OpenGLMissingError as error:
     sys.exit(print(f"flowtex: {error}") or 3)') && return
-    [ $? = 3 ] || fail "flowtex itself cannot be imported"
+    [ $? = 3 ] || fail "flowtex cannot be imported"
     return 1
 }
 
-# Whoever asked for another window than EGL's is told what it lacks, and gets nothing else.
+# If another window than EGL's was requested, only what that lacks is reported.
 case ${VTK_DEFAULT_OPENGL_WINDOW:-vtkEGLRenderWindow} in
 *EGL*) ;;
 *) can_install() { false; } ;;

@@ -9,7 +9,7 @@ python=$1 venv=$2 extras=$3 group=${4:-}
 lock=$here/locks/newest.txt
 
 check_python() {
-    command -v "$python" >/dev/null 2>&1 || fail "there is no '$python' here. Install Python 3.11 or later:
+    command -v "$python" >/dev/null 2>&1 || fail "'$python' was not found. Install Python 3.11 or later:
   $(apt_command python3 python3-venv)
 or name another interpreter: make PYTHON=/path/to/python3"
     "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
@@ -17,7 +17,7 @@ or name another interpreter: make PYTHON=/path/to/python3"
 Name a newer one: make PYTHON=python3.12"
 }
 
-# Debian keeps ensurepip, which makes an environment's pip, in a package of its own.
+# Debian has ensurepip, which installs pip in an environment, in a separate package.
 check_venv() {
     "$python" -c 'import ensurepip, venv' >/dev/null 2>&1 && return
     package=$("$python" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])')
@@ -27,7 +27,7 @@ check_venv() {
     "$python" -c 'import ensurepip, venv' || fail "'$python' still cannot make virtual environments"
 }
 
-# An environment of another Python, or one that no longer starts, is made anew.
+# An environment of another Python, or one that no longer starts, is made again.
 is_usable() {
     "$venv/bin/python" -m pip --version >/dev/null 2>&1 || return 1
     wanted=$("$python" -c 'import sys; print(sys.version_info[:2])')
@@ -51,8 +51,8 @@ uv() {
 say "Installing flowtex[$extras]${group:+ and the group $group} into $venv (a minute the first time)"
 set -- --editable ".[$extras]" ${group:+--group "$group"}
 uv "$@" || {
-    say "uv cannot do this here; pip does, in some minutes"
-    # The first pip that knows groups.
+    say "uv failed; pip is used instead, which takes a few minutes"
+    # The first pip that supports groups.
     pip "pip>=25.1"
     pip "$@"
 }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# site.sh BIN: build the site into out/site and judge it, whatever the earlier checks found.
+# site.sh BIN: build the site into out/site and check it; all checks run even if earlier ones fail.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/common.sh"
@@ -21,12 +21,12 @@ check() {
     "$@" || failed="$failed, $name"
 }
 
-# Pages of the reference that are no longer asked for would be found again.
+# Otherwise old pages of the reference would be found again.
 rm -rf docs/api out/site-words out/site-examples
 mkdir -p out/site-examples
 check "pages" sphinx-build -j auto -W --keep-going -q -b html -d out/site-build docs "$site"
-[ -e "$site/index.html" ] || fail "there is no site"
-# For who works on the theme; megabytes of them.
+[ -e "$site/index.html" ] || fail "the site was not built"
+# Megabytes that only developers of the theme need.
 find "$site" -name "*.map" -delete
 
 if [ ! -e tools/site/node_modules/.ready ] || [ tools/site/package.json -nt tools/site/node_modules/.ready ]; then
@@ -38,7 +38,7 @@ check "links" python tools/site/pages.py "$site" out/site-words
 check "spelling" node tools/site/node_modules/cspell/bin.mjs lint --no-progress --no-gitignore \
     --show-context --config tools/site/cspell.json --root out/site-words "**/*.txt"
 check "accessibility" python tools/site/accessibility.py "$site"
-# What the examples of docstrings write goes into a folder of their own.
+# The examples of docstrings write into a separate folder.
 examples() {
     (cd out/site-examples && pytest -q -p no:cacheprovider -c "$root/pyproject.toml" \
         --doctest-modules --pyargs flowtex)
@@ -48,4 +48,4 @@ check "examples of docstrings" examples
 size=$(du -sm "$site" | cut -f1)
 [ "$size" -lt 60 ] || failed="$failed, size"
 say "out/site: $size MB, $(find "$site" -name '*.html' | wc -l) pages, in $(($(date +%s) - began)) s"
-[ -z "$failed" ] || fail "not in order: ${failed#, }"
+[ -z "$failed" ] || fail "these checks failed: ${failed#, }"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# try_wheel.sh DIST [PYTHON]: install the wheel that is in DIST into an environment of its own, try it
-# without the checkout, and run quick tests of the source archive with it.
+# try_wheel.sh DIST [PYTHON]: install the wheel in DIST into a new environment, try it without the
+# checkout, and run quick tests of the source archive with it.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/common.sh"
@@ -32,7 +32,7 @@ say "Tests of the source archive"
 tar -xzf "$dist"/*.tar.gz
 cd flowtex-*
 "$bin/pip" install --quiet --disable-pip-version-check -r tools/locks/tests.in
-# Neither the folder nor pyproject.toml puts the archive's own package before the wheel.
+# Neither the folder nor pyproject.toml puts the archive's package before the wheel.
 PYTHONSAFEPATH=1 "$bin/python" -m pytest -q -n 2 --dist loadfile -o pythonpath=tests \
     -m "not browser and not slow" \
     tests/test_settings.py tests/test_camera.py tests/test_packaging.py tests/textures tests/rendering/test_vtk.py
