@@ -37,6 +37,7 @@ from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.pairs import two_names
+from flowtex.field.uncertainty import with_uncertainty
 from flowtex.settings import TABLE, Settings, SettingsError, setting
 
 if TYPE_CHECKING:
@@ -149,6 +150,13 @@ class FieldOptions:
         'The same by index from 0: ``{"number": 2}``.',
         Form(read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True),
     )
+    uncertainty: Any | None = _option(
+        None,
+        "What tells how far the direction is not known; streaks are shorter and fainter there: the "
+        "name of a scalar, or an array, of the standard deviation of the velocity over its "
+        'magnitude; or a dimension of a dataset, such as ``"number"``, over which the mean is '
+        "drawn.",
+    )
 
     def __post_init__(self) -> None:
         """Join the names of components to ``vectors``."""
@@ -167,15 +175,27 @@ class FieldOptions:
     def field(self, mesh: Any, time: float | str | None = None) -> FlowField:
         """Return the field of a mesh or of a file (at one time), or a field unchanged."""
         choices = {name: value for name, value in vars(self).items() if value is not None}
+        uncertainty = choices.pop("uncertainty", None)
+        field = self._read(mesh, choices, time, uncertainty)
+        # Datasets and files are averaged where they are read.
+        told = uncertainty is None or bool(field.uncertainty and field is not mesh)
+        return field if told else with_uncertainty(field, uncertainty)
+
+    def _read(
+        self, mesh: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
+    ) -> FlowField:
         if (stored := self._of_store(mesh, choices, time)) is not None:
+            if uncertainty is not None:
+                msg = "uncertainty is given, but this is a stored pyramid; omit it"
+                raise FieldError(msg)
             return stored
         if is_dataset(mesh):
-            return FlowField.from_xarray(mesh, **self._of_dataset(choices))
+            return FlowField.from_xarray(mesh, uncertainty=uncertainty, **self._of_dataset(choices))
         if isinstance(mesh, (str, Path)) or _are_paths(mesh):
             if "times" in choices:
                 msg = f"times is given, but {str(mesh)!r} already has times; omit it"
                 raise FieldError(msg)
-            return FlowField.from_file(mesh, time=time, **choices)
+            return FlowField.from_file(mesh, time=time, uncertainty=uncertainty, **choices)
         if not isinstance(mesh, FlowField):
             self._refuse(choices, OF_EARTH, "data of the Earth, but this is a mesh")
             return FlowField.from_pyvista(mesh, **choices)

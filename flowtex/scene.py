@@ -553,7 +553,15 @@ def share_field(field: FlowField) -> FlowField:
         return field
     names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
     made = field.formula and (field.formula.texts, field.formula.parameters)
-    words = (*names, str(made), field.periodic, field.sign_free, str(field.start), field.projection)
+    words = (
+        *names,
+        str(made),
+        field.uncertainty,
+        field.periodic,
+        field.sign_free,
+        str(field.start),
+        field.projection,
+    )
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
     joined = () if field.triangles is None else (field.triangles,)

@@ -8,6 +8,7 @@ import numpy as np
 from triangle_meshes import random_plane, soup, sphere
 
 from flowtex import FlowField
+from flowtex.field.uncertainty import with_uncertainty
 
 
 @cache
@@ -62,6 +63,12 @@ def lines() -> FlowField:
     y, x = np.mgrid[-1:1:32j, -1:1:32j]
     way = np.stack([-y, x], axis=-1) * np.where(y > 0, -1, 1)[..., None]
     return FlowField.from_arrays(np.stack([x, y], axis=-1), way, sign_free=True)
+
+
+def uncertain(field: FlowField) -> FlowField:
+    """Return a flow whose direction is not known at the right."""
+    x = field.points[..., 0]
+    return with_uncertainty(field, 1.2 * (x - x.min()) / np.ptp(x))
 
 
 @cache

@@ -27,6 +27,7 @@ from flows import (
     scattered_swinging,
     swinging,
     torus,
+    uncertain,
 )
 
 from flowtex import FlowField
@@ -90,6 +91,12 @@ class View:
         return shown
 
 
+@cache
+def uncertain_gyre() -> FlowField:
+    """Return the vortices, the one at the right less well known."""
+    return uncertain(gyre())
+
+
 #: Each is another part of the shaders, or of what they are given.
 VIEWS: dict[str, View] = {
     "whole": View(),
@@ -131,6 +138,17 @@ VIEWS: dict[str, View] = {
     "triangles, between two steps": View(
         scattered_swinging, MIDDLE, {"lines": "pathlines"}, time=0.55
     ),
+    "uncertain": View(uncertain_gyre),
+    "uncertain, zoom 64": View(uncertain_gyre, straight(64, (1.4, 0.4)), {"kernel": "box"}),
+    "uncertain, streaklets": View(uncertain_gyre, straight(2), STREAKLETS | MOTION, clock=1.7),
+    "uncertain, centre": View(uncertain_gyre, straight(64, (0.5, 0.5))),
+    "uncertain, triangles": View(lambda: uncertain(scattered_gyre())),
+    "uncertain, between two steps": View(
+        lambda: uncertain(swinging()), MIDDLE, {"lines": "pathlines"}, time=0.55
+    ),
+    "uncertain, without a sign": View(lambda: uncertain(lines()), MIDDLE),
+    "uncertain, texture": View(uncertain_gyre, settings=TEXTURE),
+    "uncertain, image": View(uncertain_gyre, settings={"noise": "image", "strength": 1.0}),
     "texture": View(settings=TEXTURE),
     "texture, stretched": View(settings=TEXTURE | {"noise_correction": False}),
     "texture, zoom 16": View(camera=straight(16), settings=TEXTURE),

@@ -252,6 +252,8 @@ export interface TraceHeader {
   rest: number;
   /** Length of a path that is long enough for any picture. */
   longest?: number;
+  /** Whether the last channel of the part "flow" tells how far the direction is not known. */
+  uncertain?: boolean;
   poles?: PoleHeader[];
 }
 

@@ -20,7 +20,9 @@ const NORMAL_MAX = 32767;
 /** Numbers by the bits of their half precision. */
 const HALVES = Float32Array.from({ length: 1 << 16 }, (_, bits) => fromHalf(bits));
 /** What the fourth channel of a layer has, as shaders/webgl2/layers.glsl knows it. */
-const [NOTHING, SPEED, REACH] = [0, 1, 2];
+const [NOTHING, SPEED, REACH, UNKNOWN] = [0, 1, 2, 3];
+/** The layer of a side that tells how far the direction is not known, counted from 0. */
+const UNKNOWN_LAYER = 2;
 /** Units of the textures that a pass has. */
 const UNITS = 8;
 /** Lag up to which paths of a steady flow are followed; longer ones are composed. */
@@ -283,12 +285,17 @@ export class Tracing {
     return result;
   }
 
+  /** The whole speed, and how far the direction is not known. */
   private wholeSpeed(step: number): Float32Array {
     const data = this.numbers(`flow/${step}`);
     const nodes = this.data("unit").length;
     const channels = data.length / nodes;
+    const unknown = Number(this.trace.uncertain ?? false);
     const whole = new Float32Array(4 * nodes);
-    for (let n = 0; n < nodes; n += 1) whole[4 * n] = data[(n + 1) * channels - 1];
+    for (let n = 0; n < nodes; n += 1) {
+      whole[4 * n] = data[(n + 1) * channels - 1 - unknown];
+      whole[4 * n + 1] = unknown * data[(n + 1) * channels - 1];
+    }
     return whole;
   }
 
@@ -479,7 +486,8 @@ export class Tracing {
         }
         [before, now] = [now, at];
         if (!m) first = now;
-        const fourth = m === 1 && !side ? SPEED : NOTHING;
+        const isUnknown = trace.uncertain && m === UNKNOWN_LAYER;
+        const fourth = m === 1 && !side ? SPEED : isUnknown ? UNKNOWN : NOTHING;
         if (m) layer(start + m, slopes, [now[0], now[0]], { u_fourth: fourth, u_lag: sign * lag });
       }
       layer(start, slopes, [first[0], now[0]], { u_fourth: REACH, u_lag: sign * lags[0] });

@@ -42,13 +42,13 @@ from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.validation import with_gaps
 
-#: Where a field that is the coarsest level of a larger one keeps how many nodes (J, I) that has.
+#: Where the coarsest level of a larger field keeps how many nodes (J, I) that has.
 WHOLE_SHAPE = "_whole_shape"
 
 #: What is computed from positions and velocity alone.
 _SHARED = ("surface", "index_velocity")
-#: Share of the flow normal to the surface from which on the speed in it has a name of its own. The
-#: cells of a curved mesh alone give a per cent or two; at five the speeds differ by a thousandth.
+#: Share of the flow normal to the surface from which on the speed in it has a name of its own. A
+#: curved mesh alone gives 1 or 2 %; at 5 % the speeds differ by a thousandth.
 NOTABLE_SHARE = 0.05
 #: Share of the flow normal to a surface of triangles from which on a notice says so.
 MOST_LOST = 0.5
@@ -85,14 +85,11 @@ class FlowField(FieldConstructors):
     name, length_unit, time_unit
         Text for captions; empty when unknown.
     has_position
-        Nodes whose position is known, (J, I); the others are blanked and have the position of the
-        nearest known node. ``None`` means all.
+        Nodes whose position is known, (J, I), or ``None`` for all; others have the nearest one.
     sign_free
         Whether v and -v mean the same, as in a field of polarisations or principal directions.
-    units
-        Unit of each scalar, where it is known.
-    long_names
-        Descriptions of scalars for legends, where they differ from their names.
+    units, long_names
+        Unit of each scalar, and its description for legends, where they are known.
     start
         The date at time 0, a ``datetime`` or a date of cftime, if the times count from a date.
     projection
@@ -101,6 +98,8 @@ class FlowField(FieldConstructors):
         Indices of the nodes at the corners of triangles, (M, 3); ``None`` on a structured surface.
     formula
         The formula, if :func:`flowtex.formula` made the field.
+    uncertainty
+        Name of the scalar with the uncertainty of the direction; empty for none.
 
     Examples
     --------
@@ -129,6 +128,7 @@ class FlowField(FieldConstructors):
     projection: Projection | None = None
     triangles: Indices | None = None
     formula: Formula | None = None
+    uncertainty: str = ""
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:
@@ -506,12 +506,15 @@ class FlowField(FieldConstructors):
         >>> sorted(field.with_derived("shear").scalars)
         ['shear', 'vorticity']
         """
-        flow = replace(
-            self,
+        return self.same_flow(
             scalars={**self.scalars, name: self.derive(name, horizon=horizon)},
             units={**self.units, name: derived_unit(name, self.time_unit)},
             long_names={**self.long_names, name: LONG_NAMES.get(name, name)},
         )
+
+    def same_flow(self, **changes: Any) -> FlowField:
+        """Return the field with other scalars or words; positions and velocity stay."""
+        flow = replace(self, **changes)
         flow.__dict__.update({k: v for k, v in self.__dict__.items() if k in _SHARED})
         return flow
 
@@ -540,9 +543,8 @@ class FlowField(FieldConstructors):
     @cached_property
     def typical(self) -> FlowField:
         """The steps from which ranges and lengths are taken: some of those that are read late."""
-        if not isinstance(self.velocity, LazySteps):
-            return self
-        return self.at_steps(typical_steps(len(self.times)))
+        late = isinstance(self.velocity, LazySteps)
+        return self.at_steps(typical_steps(len(self.times))) if late else self
 
     def step_number(self, step: int) -> int:
         """Return the index of a time step from 0; negative numbers count from the end.

@@ -10,9 +10,9 @@ from statistics import NormalDist
 import numpy as np
 
 from flowtex.textures.paper import HALF_LEVELS
-from flowtex.textures.texture_set import AGREED, HALF_MAX, MOST_LAGS
+from flowtex.textures.texture_set import AGREED, HALF_MAX, MOST_LAGS, UNCERTAIN_LAYER
 
-__all__ = ["AGREED", "HALF_LEVELS", "HALF_MAX", "KERNELS", "MOST_LAGS"]
+__all__ = ["AGREED", "HALF_LEVELS", "HALF_MAX", "KERNELS", "MOST_LAGS", "UNCERTAIN_LAYER"]
 
 KERNELS = ("hann", "box", "ramp")
 KERNEL_HANN, KERNEL_BOX, KERNEL_RAMP = range(len(KERNELS))
@@ -20,6 +20,7 @@ PI = float(np.pi)
 LEAST_WEIGHT, LEAST_SPEED = 1e-3, 1e-6
 BELL, BELL_BEND, BELL_END = 1.19, 0.06, 3.0
 SHARED_TERMS = 24
+FADED = 0.3
 
 PARTING = 0.95
 NEAR_CELLS, FAR_CELLS = 1.0, 2.0

@@ -14,7 +14,7 @@ import numpy as np
 from flowtex._util.array_types import Floats, Ints
 from flowtex.rendering import constants as const
 from flowtex.rendering.arrow_seeds import seed_limits
-from flowtex.rendering.constants import FAR_CELLS, KERNELS
+from flowtex.rendering.constants import FAR_CELLS, KERNELS, UNCERTAIN_LAYER
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
 
@@ -99,6 +99,8 @@ def variants(
         chosen.add("FLOWTEX_SIGNFREE")
     if textures.geometry.field.triangles is not None:
         chosen.add("FLOWTEX_TRIANGLES")
+    if textures.geometry.field.uncertainty:
+        chosen.add("FLOWTEX_UNCERTAIN")
     if unsteady:
         chosen.add("FLOWTEX_UNSTEADY")
     return frozenset(chosen)
@@ -247,7 +249,8 @@ def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> in
     if has_arrows(textures, settings):
         longest = max(longest, ARROW_LONGEST * arrow_distance(settings) * view.density * pixel)
     longest *= SLOWER
-    return int(np.searchsorted(store.lags[:-1], longest / textures.least_unit)) + 1
+    least = UNCERTAIN_LAYER if geometry.field.uncertainty else 1
+    return max(int(np.searchsorted(store.lags[:-1], longest / textures.least_unit)) + 1, least)
 
 
 def needed_levels(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:

@@ -9,11 +9,12 @@ of second order. Both sides share one sign: D(s) = s * slope(s), with s negative
 layer                 first three channels                                   fourth channel
 ====================  =====================================================  =================
 0                     slope at lag zero                                      unit of lag
-1 ... M               slopes of the backward slices                          1: reach; 2: speed
+1 ... M               slopes of the backward slices                          1: reach; 2: speed; 3
 M + 1 ... 2 M         slopes of the forward slices, where there are any      M + 1: reach
 the last              of a steady field: layer 0 in cells, two channels      speed
 ====================  =====================================================  =================
 
+Layer 3, and M + 3, tell how far the direction is not known, from 0 to 1, where that is told.
 A surface of triangles has no cells that are counted: the first channels of its last layer are not
 read. Slopes are in space (the surface's own frame), lengths per unit of nominal length, for the
 procedural noise; in noise coordinates per unit of lag for the paper's noise texture.
@@ -34,6 +35,7 @@ from flowtex._util.array_types import AnyArray, Floats32, Halves
 from flowtex._util.vectors import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.uncertainty import unknown_share
 from flowtex.field.validation import three_components
 from flowtex.settings import Settings, SettingsError
 from flowtex.textures.geometry import SurfaceGeometry
@@ -43,6 +45,8 @@ from flowtex.trace import SliceStore, TraceSlices
 
 #: Slices on each side that a shader has room for.
 MOST_LAGS = 32
+#: The layer whose fourth channel tells how far the direction is not known.
+UNCERTAIN_LAYER = 3
 #: Greatest number in half precision, in which texels are stored.
 HALF_MAX = 65504.0
 #: Share of a slope that may be left out of it: half of what rounding it takes.
@@ -89,8 +93,9 @@ class TextureSet:
                 "slices traced in this field"
             )
             raise FieldError(msg)
-        if not 2 <= len(store.lags) <= MOST_LAGS:
-            msg = f"{len(store.lags)} lags were traced; drawing needs 2 to {MOST_LAGS}"
+        least = UNCERTAIN_LAYER if field.uncertainty else 2
+        if not least <= len(store.lags) <= MOST_LAGS:
+            msg = f"{len(store.lags)} lags were traced; drawing needs {least} to {MOST_LAGS}"
             raise FieldError(msg)
         if geometry is None:
             kind = SurfaceGeometry if field.triangles is None else TriangleGeometry
@@ -250,6 +255,8 @@ class TextureSet:
             result[..., 3] = self._usable_reach(reach[0], slices)
         if layer == 2:
             result[..., 3] = self._speed(slices)
+        if m + 1 == UNCERTAIN_LAYER and (field := self.geometry.field).uncertainty:
+            result[..., 3] = unknown_share(field, self._step(slices))[self.geometry.texels]
         return result
 
     def _usable_reach(self, reach: AnyArray, slices: TraceSlices) -> AnyArray:
@@ -259,9 +266,12 @@ class TextureSet:
 
     def _speed(self, slices: TraceSlices) -> AnyArray:
         """Speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
-        field = self.geometry.field
-        step = int(np.argmin(np.abs(field.times - slices.times[0])))
-        return np.asarray(field.speed[step][self.geometry.texels] / self.typical_speed)
+        speed = self.geometry.field.speed[self._step(slices)]
+        return np.asarray(speed[self.geometry.texels] / self.typical_speed)
+
+    def _step(self, slices: TraceSlices) -> int:
+        """Return the number of the destination time of slices."""
+        return int(np.argmin(np.abs(self.geometry.field.times - slices.times[0])))
 
     def _tangent(self, slices: TraceSlices) -> AnyArray:
         """Slopes at lag zero of the nodes in the textures, from the slices of all nodes."""

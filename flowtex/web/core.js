@@ -351,30 +351,31 @@ PI;angles.push(angle)}angles.forEach((angle,k)=>{let turn=angles[0]+2*Math.PI*k/
 turn);result2.set([angle,Math.hypot(...this.ray(n,k)),line],4*(n*width+k))})}),result2}get uniforms(){let numbers=this.poles.
 flatMap(({line,inward,near},n)=>[line,inward,near,this.shift(n)]),planes=this.poles.flatMap(({plane})=>plane);for(;numbers.
 length<8;)numbers.push(0);for(;planes.length<12;)planes.push(0);return{u_poles:numbers,u_planes:planes,u_polar:Number(this.
-isAlongJ)}}};var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH]=[0,1,2],UNITS=8,
-DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,PASS_NODES=2e4,ENDLESS=1e30,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape2){
-let[rows,columns]=shape2,width=padded.shape[1],[top,left]=trace.drawn,data=new Float64Array(rows*columns*3);for(let j=0,
-n=0;j<rows;j+=1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.
-middle[k%3]}return{data,shape:[rows,columns,3]}}function normalOf(padded,trace,shape2){let[rows,columns]=shape2,width=3*
-padded.shape[1],[top,left]=trace.drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=
-1,n+=3){let at=width*(j+top+1)+3*(i+left+1),along2=step=>[0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(
-along2(3),along2(width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}for(let{
-component,line,inward}of trace.poles??[]){let[at,last]=component?[line-top,columns]:[line-left,rows];if(at<0||at>=(component?
-rows:columns))continue;let offset=(across,around2)=>3*(component?across*columns+around2:around2*columns+across),sum=[0,0,
-0];for(let m=0;m<last;m+=1)for(let k=0;k<3;k+=1)sum[k]+=data[offset(at+inward,m)+k];let size=length2(sum)||1,mean=sum.map(
-x=>Math.round(x/size*NORMAL_MAX));for(let m=0;m<last;m+=1)data.set(mean,offset(at,m))}return{data,shape:[rows,columns,3]}}
-function flowsOf({slices},step){let{trace,times:times2,lags}=slices;if(!trace?.pathlines||!trace.timed)return[step];let reach=lags[lags.
-length-1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-times2[step])<reach),isNeeded=n=>near[n]||near[n-1]||near[n+
-1];return[...times2.keys()].filter(isNeeded)}function stretches({slices},step,side,from,to){let{trace,times:times2}=slices;
-if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,1]}];let result2=[],{unit:unit2}=trace.timed,
-lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in times2),end=isLast?to:
-lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between3=isLast?[0,1]:[lagOf(n),end],isWhole=end>=to-LAG_ROUNDING*
-to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between3}),from=isWhole?to:end}return result2}
-function programsOf({programs,floats:floats2},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,get=(fragment,...variant)=>{
-let names=variant.filter(name=>typeof name=="string"),program=programs.get(fullVertex,fragment,...names);if(program.error)
-throw new Error(`the tracer cannot be built: ${program.error}`);return program},target=floats2&&"FLOWTEX_FLOATS",polar=trace.
-poles!==void 0&&"FLOWTEX_POLES";return{follow:get(path,polar,trace.pathlines&&"FLOWTEX_PATHLINES"),compose:trace.pathlines?
-null:get(path,polar,"FLOWTEX_COMPOSED"),slopes:get(layers,"FLOWTEX_SLOPES",target),tangents:get(layers,polar,target)}}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;poles;constructor(graphics,header,trace,find,step){
+isAlongJ)}}};var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH,UNKNOWN]=[0,
+1,2,3],UNKNOWN_LAYER=2,UNITS=8,DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,PASS_NODES=2e4,ENDLESS=1e30,LAG_ROUNDING=1e-5;
+function positionOf(padded,trace,shape2){let[rows,columns]=shape2,width=padded.shape[1],[top,left]=trace.drawn,data=new Float64Array(
+rows*columns*3);for(let j=0,n=0;j<rows;j+=1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=
+padded.data[first+k]+trace.middle[k%3]}return{data,shape:[rows,columns,3]}}function normalOf(padded,trace,shape2){let[rows,
+columns]=shape2,width=3*padded.shape[1],[top,left]=trace.drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=
+1)for(let i=0;i<columns;i+=1,n+=3){let at=width*(j+top+1)+3*(i+left+1),along2=step=>[0,1,2].map(k=>padded.data[at+step+k]-
+padded.data[at-step+k]),normal=cross2(along2(3),along2(width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.
+round(normal[k]/size*NORMAL_MAX)}for(let{component,line,inward}of trace.poles??[]){let[at,last]=component?[line-top,columns]:
+[line-left,rows];if(at<0||at>=(component?rows:columns))continue;let offset=(across,around2)=>3*(component?across*columns+
+around2:around2*columns+across),sum=[0,0,0];for(let m=0;m<last;m+=1)for(let k=0;k<3;k+=1)sum[k]+=data[offset(at+inward,m)+
+k];let size=length2(sum)||1,mean=sum.map(x=>Math.round(x/size*NORMAL_MAX));for(let m=0;m<last;m+=1)data.set(mean,offset(
+at,m))}return{data,shape:[rows,columns,3]}}function flowsOf({slices},step){let{trace,times:times2,lags}=slices;if(!trace?.
+pathlines||!trace.timed)return[step];let reach=lags[lags.length-1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-
+times2[step])<reach),isNeeded=n=>near[n]||near[n-1]||near[n+1];return[...times2.keys()].filter(isNeeded)}function stretches({
+slices},step,side,from,to){let{trace,times:times2}=slices;if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[step,
+step],between:[0,1]}];let result2=[],{unit:unit2}=trace.timed,lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<
+to;n+=side){let isLast=!(n+side in times2),end=isLast?to:lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between3=isLast?
+[0,1]:[lagOf(n),end],isWhole=end>=to-LAG_ROUNDING*to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between3}),
+from=isWhole?to:end}return result2}function programsOf({programs,floats:floats2},header,trace){let{fullVertex,trace:path="",
+layers=""}=header.shaders,get=(fragment,...variant)=>{let names=variant.filter(name=>typeof name=="string"),program=programs.
+get(fullVertex,fragment,...names);if(program.error)throw new Error(`the tracer cannot be built: ${program.error}`);return program},
+target=floats2&&"FLOWTEX_FLOATS",polar=trace.poles!==void 0&&"FLOWTEX_POLES";return{follow:get(path,polar,trace.pathlines&&
+"FLOWTEX_PATHLINES"),compose:trace.pathlines?null:get(path,polar,"FLOWTEX_COMPOSED"),slopes:get(layers,"FLOWTEX_SLOPES",
+target),tangents:get(layers,polar,target)}}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;poles;constructor(graphics,header,trace,find,step){
 this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.poles=new Poles(trace.poles??[],trace.nodes,
 find("rays")?.data??[]),this.passes=this.slices(step)}advance(until){if(!Object.values(programsOf(this.graphics,this.header,
 this.trace)).every(program=>program?.ready??!0))return null;let gl=this.graphics.context;try{do{let{done,value}=this.passes.
@@ -397,49 +398,50 @@ length/unit2.length,flow=new Float32Array(4*unit2.length);for(let n=0,at=0;n<uni
 2],size=HALVES[unit2[n]]*trace.unit;flow[4*n]=data[at]*speed/size,flow[4*n+1]=data[at+1]*speed/size,flow[4*n+2]=speed,flow[4*
 n+3]=trace.timed?trace.timed.unit:size}let result2=this.poles.laidOut(flow);return trace.timed&&(this.fastest=Math.max(this.
 fastest,this.poles.fastest(result2)*trace.timed.speed*trace.timed.unit)),result2}wholeSpeed(step){let data=this.numbers(
-`flow/${step}`),nodes=this.data("unit").length,channels=data.length/nodes,whole=new Float32Array(4*nodes);for(let n=0;n<
-nodes;n+=1)whole[4*n]=data[(n+1)*channels-1];return whole}cells(){let[rows,columns]=this.trace.nodes,[open,nearest2]=["o\
-pen","nearest"].map(name=>this.find(name)?.data),cells=new Float32Array(4*rows*columns);for(let n=0;n<rows*columns;n+=1){
-cells[4*n]=open?open[n]:1;for(let k of[0,1])cells[4*n+1+k]=nearest2?nearest2[2*n+k]:0}return cells}padded(){let data=this.
-data("padded"),result2=new Float32Array(data.length/3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=1)result2[4*
-n+k]=data[3*n+k];return result2}flowTexture(step){let{width,height}=this.poles.size,gl=this.graphics.context,texture=this.
-flows.get(step)??this.texture(width,height,gl.RGBA32F,this.flow(step));this.flows.delete(step),this.flows.set(step,texture);
-for(let[other,old]of this.flows){if(this.flows.size<=FLOWS_HELD)break;this.flows.delete(other),this.textures.delete(old),
-this.graphics.free("Texture",old)}return texture}partsOf({from,to}){let count2=clamp(Math.ceil((to-from)*this.fastest/PASS_CELLS),
-1,MOST_PARTS),at=n=>n===count2?to:from+(to-from)*n/count2;return Array.from({length:count2},(_,n)=>[at(n),at(n+1)])}layerTarget(result2,size){
-let gl=this.graphics.context,{width,height}=size;if(this.graphics.floats){let frame2=this.frame();return{begin:n=>(gl.bindFramebuffer(
-gl.FRAMEBUFFER,frame2),gl.framebufferTextureLayer(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,result2,0,n),[width,height]),end:()=>{},
-finish:()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),size.levels&&gl.generateMipmap(gl.
-TEXTURE_2D_ARRAY)}}}let pairs=Math.ceil(width/2),[,frame]=this.target(pairs,height),read=new Uint32Array(pairs*height*4),
-halves=new Uint16Array(read.buffer),texels=new Uint16Array(4*width*height);return{begin:()=>(gl.bindFramebuffer(gl.FRAMEBUFFER,
-frame),[pairs,height]),end:n=>{gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,read);for(let row2=0;row2<
-height;row2+=1){let first=8*pairs*row2;texels.set(halves.subarray(first,first+4*width),4*width*row2)}gl.activeTexture(gl.
-TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),sendLayer(gl,size,n,texels)},finish:()=>{}}}*slices(step){let{graphics,
-trace,header}=this,gl=graphics.context,{geometry,slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.
-size,geometry.columns.size],size={width,height,layers:slices.count,channels:4,levels:geometry.levels},result2=gl.createTexture();
-this.result=result2,gl.activeTexture(gl.TEXTURE0),makeLayers(gl,result2,size);let{poles}=this,own=this.texture(poles.size.
-width,poles.size.height,gl.RGBA32F,this.flow(step)),rays=this.texture(...poles.raysSize,gl.RGBA32F,poles.angles),constant=[
-this.texture(columns,rows,gl.RGBA32F,this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.padded()),this.texture(
-columns,rows,gl.RGBA32F,this.wholeSpeed(step))],pool=[0,1,2,3,4].map(()=>this.target(columns,rows)),{lags,sides,count:count2}=slices,
-uniforms2={u_flow:0,u_cells:1,u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_flowNext:6,u_rays:7,...poles.uniforms,
-u_longest:trace.longest??ENDLESS,u_nodes:[columns,rows],u_closed:[Number(trace.closed[1]),Number(trace.closed[0])],u_first:[
-trace.first[1],trace.first[0]],u_texels:[width,height],u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.offset.slice(3,
-6),u_timed:trace.timed?.speed??0,u_rest:trace.rest,u_pace:trace.pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(
-geometry.planar),u_mostReach:2*lags[lags.length-1]},draw=([w,h],textures,pass,values)=>{gl.viewport(0,0,w,h);for(let ability of[
-gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);textures.forEach((texture,n)=>{gl.activeTexture(
-gl.TEXTURE0+n),gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(null),graphics.programs.use(pass,{...uniforms2,
-...values}),gl.drawArrays(gl.TRIANGLES,0,3)},layers=this.layerTarget(result2,size),layer=(n,pass,textures,values)=>{draw(
-layers.begin(n),[own,...constant,...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=programsOf(graphics,
-header,trace);layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});let asked=0;
-for(let side=0;side<sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];
-for(let[m,lag]of lags.entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:
-null,at=now;for(let stretch of stretches(header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(
-n)),parts=composer?[[from,lag]]:this.partsOf(stretch);for(let[begin,end]of parts){let next=pool.find(each=>![first,before,
-now,at].includes(each))??pool[0];gl.bindFramebuffer(gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],
-before[0],far,rays],composer??follow,{u_lagEarlier:earlier,u_from:begin,u_to:end,u_side:sign,u_between:stretch.between}),
-at=next,!((asked+=rows*columns)<PASS_NODES)&&(gl.readPixels(0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(4)),
-asked=0,yield)}}[before,now]=[now,at],m||(first=now);let fourth=m===1&&!side?SPEED:NOTHING;m&&layer(start+m,slopes,[now[0],
-now[0]],{u_fourth:fourth,u_lag:sign*lag})}layer(start,slopes,[first[0],now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.
+`flow/${step}`),nodes=this.data("unit").length,channels=data.length/nodes,unknown=Number(this.trace.uncertain??!1),whole=new Float32Array(
+4*nodes);for(let n=0;n<nodes;n+=1)whole[4*n]=data[(n+1)*channels-1-unknown],whole[4*n+1]=unknown*data[(n+1)*channels-1];
+return whole}cells(){let[rows,columns]=this.trace.nodes,[open,nearest2]=["open","nearest"].map(name=>this.find(name)?.data),
+cells=new Float32Array(4*rows*columns);for(let n=0;n<rows*columns;n+=1){cells[4*n]=open?open[n]:1;for(let k of[0,1])cells[4*
+n+1+k]=nearest2?nearest2[2*n+k]:0}return cells}padded(){let data=this.data("padded"),result2=new Float32Array(data.length/
+3*4);for(let n=0;n<data.length/3;n+=1)for(let k=0;k<3;k+=1)result2[4*n+k]=data[3*n+k];return result2}flowTexture(step){let{
+width,height}=this.poles.size,gl=this.graphics.context,texture=this.flows.get(step)??this.texture(width,height,gl.RGBA32F,
+this.flow(step));this.flows.delete(step),this.flows.set(step,texture);for(let[other,old]of this.flows){if(this.flows.size<=
+FLOWS_HELD)break;this.flows.delete(other),this.textures.delete(old),this.graphics.free("Texture",old)}return texture}partsOf({
+from,to}){let count2=clamp(Math.ceil((to-from)*this.fastest/PASS_CELLS),1,MOST_PARTS),at=n=>n===count2?to:from+(to-from)*
+n/count2;return Array.from({length:count2},(_,n)=>[at(n),at(n+1)])}layerTarget(result2,size){let gl=this.graphics.context,
+{width,height}=size;if(this.graphics.floats){let frame2=this.frame();return{begin:n=>(gl.bindFramebuffer(gl.FRAMEBUFFER,
+frame2),gl.framebufferTextureLayer(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,result2,0,n),[width,height]),end:()=>{},finish:()=>{
+gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,result2),size.levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}}}
+let pairs=Math.ceil(width/2),[,frame]=this.target(pairs,height),read=new Uint32Array(pairs*height*4),halves=new Uint16Array(
+read.buffer),texels=new Uint16Array(4*width*height);return{begin:()=>(gl.bindFramebuffer(gl.FRAMEBUFFER,frame),[pairs,height]),
+end:n=>{gl.readPixels(0,0,pairs,height,gl.RGBA_INTEGER,gl.UNSIGNED_INT,read);for(let row2=0;row2<height;row2+=1){let first=8*
+pairs*row2;texels.set(halves.subarray(first,first+4*width),4*width*row2)}gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.
+TEXTURE_2D_ARRAY,result2),sendLayer(gl,size,n,texels)},finish:()=>{}}}*slices(step){let{graphics,trace,header}=this,gl=graphics.
+context,{geometry,slices}=header,[rows,columns]=trace.nodes,[height,width]=[geometry.rows.size,geometry.columns.size],size={
+width,height,layers:slices.count,channels:4,levels:geometry.levels},result2=gl.createTexture();this.result=result2,gl.activeTexture(
+gl.TEXTURE0),makeLayers(gl,result2,size);let{poles}=this,own=this.texture(poles.size.width,poles.size.height,gl.RGBA32F,
+this.flow(step)),rays=this.texture(...poles.raysSize,gl.RGBA32F,poles.angles),constant=[this.texture(columns,rows,gl.RGBA32F,
+this.cells()),this.texture(columns+2,rows+2,gl.RGBA32F,this.padded()),this.texture(columns,rows,gl.RGBA32F,this.wholeSpeed(
+step))],pool=[0,1,2,3,4].map(()=>this.target(columns,rows)),{lags,sides,count:count2}=slices,uniforms2={u_flow:0,u_cells:1,
+u_padded:2,u_speed:3,u_before:4,u_last:5,u_earlier:5,u_flowNext:6,u_rays:7,...poles.uniforms,u_longest:trace.longest??ENDLESS,
+u_nodes:[columns,rows],u_closed:[Number(trace.closed[1]),Number(trace.closed[0])],u_first:[trace.first[1],trace.first[0]],
+u_texels:[width,height],u_offsetJ:trace.offset.slice(0,3),u_offsetI:trace.offset.slice(3,6),u_timed:trace.timed?.speed??
+0,u_rest:trace.rest,u_pace:trace.pace,u_unit:slices.unit,u_cell:slices.cell/slices.unit,u_planar:Number(geometry.planar),
+u_mostReach:2*lags[lags.length-1]},draw=([w,h],textures,pass,values)=>{gl.viewport(0,0,w,h);for(let ability of[gl.SCISSOR_TEST,
+gl.DEPTH_TEST,gl.BLEND,gl.CULL_FACE])gl.disable(ability);textures.forEach((texture,n)=>{gl.activeTexture(gl.TEXTURE0+n),
+gl.bindTexture(gl.TEXTURE_2D,texture)}),gl.bindVertexArray(null),graphics.programs.use(pass,{...uniforms2,...values}),gl.
+drawArrays(gl.TRIANGLES,0,3)},layers=this.layerTarget(result2,size),layer=(n,pass,textures,values)=>{draw(layers.begin(n),
+[own,...constant,...textures],pass,values),layers.end(n)},{follow,compose,slopes,tangents}=programsOf(graphics,header,trace);
+layer(0,tangents,[],{u_inCells:0}),count2>1+sides*lags.length&&layer(count2-1,tangents,[],{u_inCells:1});let asked=0;for(let side=0;side<
+sides;side+=1){let sign=side?1:-1,start=1+side*lags.length,[first,before,now]=[pool[0],pool[0],pool[0]];for(let[m,lag]of lags.
+entries()){let[from,earlier]=[lags[m-1]??0,lags[m-2]??0],composer=lag>DIRECT_LAG&&earlier>0?compose:null,at=now;for(let stretch of stretches(
+header,step,sign,from,lag)){let[near,far]=stretch.steps.map(n=>this.flowTexture(n)),parts=composer?[[from,lag]]:this.partsOf(
+stretch);for(let[begin,end]of parts){let next=pool.find(each=>![first,before,now,at].includes(each))??pool[0];gl.bindFramebuffer(
+gl.FRAMEBUFFER,next[1]),draw([columns,rows],[near,...constant,at[0],before[0],far,rays],composer??follow,{u_lagEarlier:earlier,
+u_from:begin,u_to:end,u_side:sign,u_between:stretch.between}),at=next,!((asked+=rows*columns)<PASS_NODES)&&(gl.readPixels(
+0,0,1,1,gl.RGBA_INTEGER,gl.UNSIGNED_INT,new Uint32Array(4)),asked=0,yield)}}[before,now]=[now,at],m||(first=now);let isUnknown=trace.
+uncertain&&m===UNKNOWN_LAYER,fourth=m===1&&!side?SPEED:isUnknown?UNKNOWN:NOTHING;m&&layer(start+m,slopes,[now[0],now[0]],
+{u_fourth:fourth,u_lag:sign*lag})}layer(start,slopes,[first[0],now[0]],{u_fourth:REACH,u_lag:sign*lags[0]})}return layers.
 finish(),result2}};var STEPS_HELD={slices:[12,4],flow:[100,24]},MARKS_HELD=24,HeldParts=class{all=new Map;graphics;constructor(graphics){this.
 graphics=graphics}set(part){let{name,digest}=part;if(digest&&this.all.get(name)?.digest===digest)return!1;let held=this.
 graphics.hold(part);return this.remove(name),this.all.set(name,held),!0}remove(name){this.graphics.release(this.all.get(

@@ -414,19 +414,19 @@ size=(numbers,...more)=>[...numbers,...more].reduce((a,b)=>a*b,1),texels=[geomet
 nodes??[],sizes={cells:[Uint8Array,[size(shape.map(n=>n-1))]],normal:[Int16Array,[size(shape,3)]],scalars:[Float32Array,
 [size(shape)]]};if(trace){sizes.unit=[Uint16Array,[size(nodes)]],sizes.padded=[Float32Array,[size(nodes.map(n=>n+2),3)]],
 sizes.open=[Uint8Array,[size(nodes)]],sizes.nearest=[Int16Array,[size(nodes,2)]];let poles=trace.poles??[];sizes.rays=[Float32Array,
-[size(poles.slice(0,1).map(pole=>nodes[pole.component]),2,poles.length)]],sizes.flow=[Uint16Array,[size(nodes,3),size(nodes,
-4)]]}else sizes.position=[Float32Array,[size(shape,3)]],sizes.slices=[Uint16Array,[size(texels,count,channels)]],sizes.extra=
-[Uint16Array,[size(texels,extra.length)]];let needed=trace?["mesh",...trace.parts]:["mesh","position",...planar?[]:["nor\
-mal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){let{sizes}=sizesOf(header),blocks=header.geometry.
-shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){let kind=sizes[name.split("/")[0]];if(!(kind?
-data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof Float32Array&&own.length===3&&own[0]===
-blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]))throw new Error(`the part "${name}" of a tile has a w\
-rong size`)}}function speedOf(flow,{geometry,slices},typical){let[rows,columns]=geometry.shape,[channels,{drawn,nodes}={
-drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(rows*columns);for(let n=0;n<data.length;n+=
-1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=typical*fromHalf(Number(flow.data[channels*
-(at+1)-1]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest} speed`}}function explained(error){let known=storeError(
-error);return known.fault==="other"||known.detail!==known.message?known:new StoreError(known.fault,REASONS[known.fault],
-known.message)}var Stream=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(header,base){
+[size(poles.slice(0,1).map(pole=>nodes[pole.component]),2,poles.length)]],sizes.flow=[Uint16Array,trace.uncertain?[size(
+nodes,5)]:[size(nodes,3),size(nodes,4)]]}else sizes.position=[Float32Array,[size(shape,3)]],sizes.slices=[Uint16Array,[size(
+texels,count,channels)]],sizes.extra=[Uint16Array,[size(texels,extra.length)]];let needed=trace?["mesh",...trace.parts]:
+["mesh","position",...planar?[]:["normal"]];return{sizes,needed}}function checkParts(parts,header,tileCells){let{sizes}=sizesOf(
+header),blocks=header.geometry.shape.map(n=>Math.ceil((n-1)/tileCells));for(let{name,data,shape:own}of parts){let kind=sizes[name.
+split("/")[0]];if(!(kind?data instanceof kind[0]&&kind[1].includes(data.length):name==="mesh"&&data instanceof Float32Array&&
+own.length===3&&own[0]===blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]))throw new Error(`the part "${name}\
+" of a tile has a wrong size`)}}function speedOf(flow,{geometry,slices},typical){let[rows,columns]=geometry.shape,[channels,
+{drawn,nodes}={drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(rows*columns);for(let n=0;n<
+data.length;n+=1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=typical*fromHalf(Number(flow.
+data[channels*(at+1)-1-Number(slices.trace?.uncertain??!1)]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest}\
+ speed`}}function explained(error){let known=storeError(error);return known.fault==="other"||known.detail!==known.message?
+known:new StoreError(known.fault,REASONS[known.fault],known.message)}var Stream=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(header,base){
 let told=header.store;if(!told)throw new Error("the page does not say where its store is");this.header=header,this.told=
 told,this.url=new URL(told.url,base),this.store=new Store(this.url.href)}open(){return this.opening??=this.compare().catch(
 error=>{let fault=explained(error);throw fault.fault==="unreachable"&&(this.opening=null),fault}),this.opening}async compare(){

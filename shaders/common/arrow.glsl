@@ -47,7 +47,7 @@ int flowtexWalk(vec2 coordinate, vec4 base, int side, float spacing, int count, 
   flowtexTrail[1] = flowtexTrail[2] = vec3(0.0);
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   int layer = side > 0 ? u_lagCount : 0;
-  flowtexSide(sums, coordinate, 0.0, base.xyz, layer, float(side), spacing, base.w * u_unit, count, inCell);
+  flowtexSide(sums, coordinate, 0.0, base.xyz, layer, float(side), spacing, base.w * u_unit, float(count), inCell);
   return flowtexTrailCount < count ? max(flowtexTrailCount - 1, 0) : count;
 }
 
@@ -91,6 +91,9 @@ FlowtexStroke flowtexStroke(mat4 matrix, vec3 position, vec3 normal, vec2 coordi
   float apart = radius * mix(pixels.x, pixels.y, FLOWTEX_ARROW_FORESHORTENED) / u_apart;
   stroke.share = smoothstep(1.0, FLOWTEX_ARROW_GROWN, apart)
     * smoothstep(FLOWTEX_ARROW_EDGE, 2.0 * FLOWTEX_ARROW_EDGE, pixels.y / pixels.x);
+#ifdef FLOWTEX_UNCERTAIN
+  stroke.share *= flowtexKnown(coordinate, 0.0);
+#endif
   if (stroke.share <= 0.0)
     return stroke;
   float pace = u_bySpeed ? clamp(flowtexLayer(coordinate, 2, 0.0).w, FLOWTEX_ARROW_SLOWEST, FLOWTEX_ARROW_FASTEST) : 1.0;

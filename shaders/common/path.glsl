@@ -97,3 +97,11 @@ vec4 flowtexLayer(vec2 coordinate, int layer, float level)
 #endif
 }
 #endif
+
+#ifdef FLOWTEX_UNCERTAIN
+// How far the direction is known, from 0 to 1; layer 0 comes first, as above.
+float flowtexKnown(vec2 coordinate, float level)
+{
+  return 1.0 - flowtexLayer(coordinate, FLOWTEX_UNCERTAIN_LAYER, level).w;
+}
+#endif

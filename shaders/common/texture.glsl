@@ -68,14 +68,15 @@ void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float 
   sums.neighbours += weight * before;
 }
 
-// Adds one side of the path, ``count`` points ``spacing`` apart in nominal length. ``after`` is the
-// slope at lag zero, ``layer`` that before the side's first slice.
+// Adds one side of the path, ``count`` points ``spacing`` apart in nominal length, the last one in
+// part where that is no whole number. ``after`` is the slope at lag zero, ``layer`` that before the
+// side's first slice.
 //
 // The loop over the segments between two lags is outside, so that no sample fetches anything. Both
 // end with their conditions: without a graphics card the body of any other loop is run once more
 // for nothing.
 void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 after, int layer,
-                 float side, float spacing, float scale, int count, bool inCell)
+                 float side, float spacing, float scale, float count, bool inCell)
 {
   float per_speed = scale / spacing;
   float rate = per_speed * max(length(after), FLOWTEX_LEAST_SPEED); // samples in a unit of lag
@@ -84,9 +85,9 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 afte
   float to = 0.0;
   float last = 0.0; // lag at which the path ends
   vec3 kernel = flowtexKernel(side);
-  float slant = kernel.z / float(count + 1);
+  float slant = kernel.z / (count + 1.0);
   // The cosine goes on by its change, and this by a change that is in proportion to the cosine.
-  float half_ = sin(0.5 * FLOWTEX_PI / float(count + 1));
+  float half_ = sin(0.5 * FLOWTEX_PI / (count + 1.0));
   float turn = 4.0 * half_ * half_;
   float change = -0.5 * turn * kernel.y;
   float cosine = kernel.y + change;
@@ -119,6 +120,9 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 afte
         if (inCell)
           flowtexGoOn(side * spacing, displacement, alive);
         float weight = alive * (line + cosine);
+#ifdef FLOWTEX_UNCERTAIN
+        weight *= min(count - float(k) + 1.0, 1.0);
+#endif
         flowtexAdd(sums, displacement, side * lag * scale, weight, previous);
         previous = weight;
         line += slant;
@@ -135,14 +139,14 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 afte
         ++k;
       }
     }
-    while (k <= count && (was < last || inCell) && (final || lag <= to));
+    while (float(k) < count + 1.0 && (was < last || inCell) && (final || lag <= to));
   }
-  while (k <= count && (was < last || inCell));
+  while (float(k) < count + 1.0 && (was < last || inCell));
 }
 
 // Adds both sides, or the only one.
 void flowtexSides(inout FlowtexSums sums, vec2 coordinate, float level, vec3 slope, float spacing,
-                  float scale, int count, bool inCell)
+                  float scale, float count, bool inCell)
 {
   flowtexSide(sums, coordinate, level, slope, 0, -1.0, spacing, scale, count, inCell);
   if (u_sides == 2)
@@ -161,8 +165,12 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 #endif
   vec3 kernel = flowtexKernel(-1.0);
   flowtexAdd(sums, vec3(0.0), 0.0, max(kernel.x + kernel.y, FLOWTEX_LEAST_WEIGHT), 0.0);
-  int count = u_sides == 2 ? u_samples / 2 : u_samples - 1;
-  if (speed > FLOWTEX_LEAST_SPEED && count > 0)
+  float count = float(u_sides == 2 ? u_samples / 2 : u_samples - 1);
+#ifdef FLOWTEX_UNCERTAIN
+  float known = flowtexKnown(coordinate, sliceLevel);
+  count *= known;
+#endif
+  if (speed > FLOWTEX_LEAST_SPEED && count > 0.0)
   {
 #ifdef FLOWTEX_PAPER
     float scale = 1.0;
@@ -170,10 +178,14 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 #else
     float scale = base.w * u_unit;
 #endif
-    if (flowtexEnterCell(coordinate, float(count) * spacing))
+    if (flowtexEnterCell(coordinate, count * spacing))
       flowtexSides(sums, coordinate, sliceLevel, base.xyz, spacing, scale, count, true);
     else
       flowtexSides(sums, coordinate, sliceLevel, base.xyz, spacing, scale, count, false);
   }
-  return flowtexBlend(sums.noise * inversesqrt(sums.squares), sums.neighbours / sums.squares);
+  float value = flowtexBlend(sums.noise * inversesqrt(sums.squares), sums.neighbours / sums.squares);
+#ifdef FLOWTEX_UNCERTAIN
+  value *= mix(FLOWTEX_FADED, 1.0, known);
+#endif
+  return value;
 }

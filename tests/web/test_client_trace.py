@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from flows import gyre, holed, lines, swinging, torus
+from flows import gyre, holed, lines, swinging, torus, uncertain
 from matrix import ROOT, SHARE, SIZE, difference, straight
 from pages import COMPLETE, opened_page
 from webgl_page import ClientPage, packed, state
@@ -25,6 +25,7 @@ from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.velocity import can_trace
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
+from flowtex.textures.texture_set import UNCERTAIN_LAYER
 from flowtex.tiles import TileKey
 from flowtex.trace import SliceStore
 from flowtex.web.export import export, page_pieces
@@ -126,6 +127,7 @@ FIELDS: dict[str, tuple[Callable[[], FlowField], str]] = {
     "torus": (torus, "time"),
     "hole": (holed, "arclength"),
     "ring": (examples.airfoil_field, "arclength"),
+    "uncertain": (lambda: uncertain(waves()), "arclength"),
 }
 
 
@@ -149,6 +151,7 @@ def tilting() -> FlowField:
 VARYING: dict[str, Callable[[], FlowField]] = {
     "uneven": uneven,
     "tilting": tilting,
+    "uncertain": lambda: uncertain(uneven()),
 }
 
 
@@ -189,6 +192,9 @@ def agree(textures: TextureSet, found: Floats, wanted: Floats, few: float = 0.03
         off = np.abs(found[layer] - wanted[layer]) > 3e-3 * (1 + np.abs(wanted[layer]))
         assert off.mean() < 1e-3
     lags = textures.lags
+    if textures.geometry.field.uncertainty:
+        for layer in (UNCERTAIN_LAYER, len(lags) + UNCERTAIN_LAYER):
+            assert np.abs(found[layer, ..., 3] - wanted[layer, ..., 3]).max() < 3e-3
     for side in range(2):
         first = 1 + side * len(lags)
         # NumPy ends paths that are as long as any picture asks for.

@@ -134,7 +134,7 @@ function sizesOf({ geometry, slices }: Pick<Header, "geometry" | "slices">) {
     sizes.nearest = [Int16Array, [size(nodes, 2)]];
     const poles = trace.poles ?? [];
     sizes.rays = [Float32Array, [size(poles.slice(0, 1).map((pole) => nodes[pole.component]), 2, poles.length)]];
-    sizes.flow = [Uint16Array, [size(nodes, 3), size(nodes, 4)]];
+    sizes.flow = [Uint16Array, trace.uncertain ? [size(nodes, 5)] : [size(nodes, 3), size(nodes, 4)]];
   } else {
     sizes.position = [Float32Array, [size(shape, 3)]];
     sizes.slices = [Uint16Array, [size(texels, count, channels)]];
@@ -169,7 +169,7 @@ function speedOf(flow: NamedPart, { geometry, slices }: Place, typical: number):
   const data = new Float32Array(rows * columns);
   for (let n = 0; n < data.length; n += 1) {
     const at = (Math.floor(n / columns) + drawn[0]) * nodes[1] + (n % columns) + drawn[1];
-    data[n] = typical * fromHalf(Number(flow.data[channels * (at + 1) - 1]));
+    data[n] = typical * fromHalf(Number(flow.data[channels * (at + 1) - 1 - Number(slices.trace?.uncertain ?? false)]));
   }
   return { name: "", data, shape: [rows, columns], digest: `${flow.digest} speed` };
 }

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
 from flowtex.earth import GLOBE
@@ -33,6 +34,7 @@ from flowtex.field.datasets.axes import (
     way_ahead,
     wet_at,
 )
+from flowtex.field.datasets.ensembles import mean_and_spread, spread_name
 from flowtex.field.datasets.grids import centred, find_grid, sea_mask, unrepeated
 from flowtex.field.datasets.maps import Nodes, PlaneNodes, on_map
 from flowtex.field.datasets.meshes.conventions import find_mesh, with_mesh_axes
@@ -113,16 +115,23 @@ def read_datasets(
     sel: Mapping[str, Any] | None = None,
     isel: Mapping[str, Any] | None = None,
     regions: bool = False,
+    uncertainty: Any = None,
     **selection: Any,
 ) -> GridArrays | TriangleArrays | Regions:
-    """Read what a field needs; with ``regions`` no nodes, if any part can be read by itself."""
+    """Read what a field needs; with ``regions`` no nodes, if any part can be read by itself.
+
+    Where the uncertainty is a dimension, the mean over it is read, and the spread as a scalar.
+    """
     if globe and projection not in (None, GLOBE):
         msg = f"globe=True and projection={projection!r} are given; omit one of them"
         raise FieldError(msg)
     projection = GLOBE if globe else projection
     sel = {**(sel or {}), **selection}
     datasets = as_datasets(data)
-    known = recognise(datasets, u, v, sel=sel, isel=isel)
+    known, spread = recognise(datasets, u, v, sel=sel, isel=isel), None
+    if isinstance(uncertainty, str) and any(uncertainty in ds.dims for ds in datasets):
+        known, spread, datasets = _averaged(known, datasets, uncertainty, sel, isel)
+        name = ", ".join(filter(None, (name, f"mean over {uncertainty}")))
     for note in known.notes:
         notify(note)
     places = known.places
@@ -138,7 +147,7 @@ def read_datasets(
         "name": ", ".join(filter(None, (name, known.u.level))),
         **_words(scalars),
     }
-    if regions and known.mesh is None:
+    if regions and known.mesh is None and spread is None:
         found = _regions(known, scalars, times, numbers, projection, words)
         if found is not None:
             return found
@@ -163,6 +172,8 @@ def read_datasets(
     if nodes.projection is not None and not nodes.projection.is_globe:
         extra["speed"] = later(lambda number: np.hypot(*map(nodes.at, known.steps(number))))
         words["units"]["speed"] = "m/s"
+    if spread is not None:
+        extra[spread_name(uncertainty)] = later(partial(value, spread))
     moving = later(vectors)
     make: Any = GridArrays if known.mesh is None else TriangleArrays
     arrays: GridArrays | TriangleArrays = make(
@@ -176,6 +187,46 @@ def read_datasets(
         **words,
     )
     return arrays
+
+
+def _averaged(
+    known: Recognised,
+    datasets: Datasets,
+    dim: str,
+    sel: Mapping[str, Any],
+    isel: Mapping[str, Any] | None,
+) -> tuple[Recognised, Callable[[int], Floats], Datasets]:
+    """Return the mean over a dimension, what reads the spread, and the datasets without it."""
+    pair, chosen = known.pair, {**sel, **(isel or {})}
+    if dim in horizontal_dims(pair.u) or dim not in {*pair.u.dims} & {*pair.v.dims}:
+        names = [str(d) for d in pair.u.dims if d not in horizontal_dims(pair.u)]
+        msg = f"uncertainty is {dim!r}, which is no axis beside the surface; "
+        raise FieldError(msg + near_names(dim, names))
+    if dim in chosen:
+        msg = (
+            f"{dim} is {chosen[dim]!r}, but uncertainty is the spread over {dim}; omit one of them"
+        )
+        raise FieldError(msg)
+    count = pair.u.sizes[dim]
+    members = [
+        recognise(
+            datasets,
+            str(pair.u.name),
+            str(pair.v.name),
+            sel=sel,
+            isel={**(isel or {}), dim: number},
+        )
+        for number in range(count)
+    ]
+    mean, spread = mean_and_spread([member.steps for member in members])
+    first = members[0]
+    if axis_kind(pair.u, dim) == TIME:
+        first = replace(first, u=replace(first.u, times=None), v=replace(first.v, times=None))
+    # What else the members have is not averaged.
+    others = [
+        ds.drop_vars([n for n, a in ds.data_vars.items() if dim in a.dims]) for ds in datasets
+    ]
+    return replace(first, steps=mean), spread, Datasets(others)
 
 
 def _on_grid(known: Recognised, projection: str | None) -> tuple[Nodes, dict[str, Any]]:

@@ -138,6 +138,7 @@ class FieldConstructors:
         level: float | str | None = None,
         sel: Mapping[str, Any] | None = None,
         isel: Mapping[str, Any] | None = None,
+        uncertainty: Any = None,
     ) -> Self:
         """Make a field from a file, or from several that belong together.
 
@@ -163,6 +164,8 @@ class FieldConstructors:
             Numbers count from 0 and include only blocks with cells.
         projection, globe, level, sel, isel
             As for :meth:`from_xarray`, for data of the Earth.
+        uncertainty
+            As for :meth:`from_xarray`; of a mesh a scalar.
 
         Returns
         -------
@@ -188,8 +191,10 @@ class FieldConstructors:
         options |= {"block": block, "periodic": periodic, "sign_free": sign_free, "level": level}
         options |= {"projection": projection, "globe": globe, "sel": sel, "isel": isel}
         with errors_of(path):
-            arrays = read_files(path, vectors=vectors, time=time, **options)
-            return cls.of(cast("FieldArrays", arrays))
+            arrays = read_files(
+                path, vectors=vectors, time=time, uncertainty=uncertainty, **options
+            )
+            return _told(cls.of(cast("FieldArrays", arrays)), uncertainty)
 
     @classmethod
     def from_xarray(
@@ -203,6 +208,7 @@ class FieldConstructors:
         name: str = "",
         sel: Mapping[str, Any] | None = None,
         isel: Mapping[str, Any] | None = None,
+        uncertainty: Any = None,
         **selection: Any,
     ) -> Self:
         """Make a field from an xarray dataset, such as the output of an ocean or weather model.
@@ -225,6 +231,11 @@ class FieldConstructors:
             Name for captions.
         sel, isel
             Selections along axes, by value and by index, such as ``sel={"level": 500}``.
+        uncertainty
+            The uncertainty of the direction, where streaks are shorter and fainter: the name of a
+            scalar, or an array of the nodes, with the standard deviation of the velocity over its
+            magnitude; or a dimension, such as ``"number"`` of an ensemble: the mean over it is
+            drawn, and its spread becomes a scalar.
         **selection
             The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
             ``level`` select along these axes whatever their names. By default all times, the level
@@ -260,5 +271,13 @@ class FieldConstructors:
         from flowtex.field.datasets.read import read_datasets
 
         options: dict[str, Any] = {"projection": projection, "globe": globe, "name": name}
-        options |= {"sel": sel, "isel": isel, **selection}
-        return cls.of(cast("FieldArrays", read_datasets(data, u, v, **options)))
+        options |= {"sel": sel, "isel": isel, "uncertainty": uncertainty, **selection}
+        field = cls.of(cast("FieldArrays", read_datasets(data, u, v, **options)))
+        return _told(field, uncertainty)
+
+
+def _told(field: Any, uncertainty: Any) -> Any:
+    """Return a field with what tells how far its direction is not known, if anything does."""
+    from flowtex.field.uncertainty import with_uncertainty
+
+    return field if uncertainty is None else with_uncertainty(field, uncertainty)

@@ -204,6 +204,7 @@ def read_files(
     vectors: str | None = None,
     time: float | str | None = None,
     regions: bool = False,
+    uncertainty: Any = None,
     **options: Any,
 ) -> GridArrays | TriangleArrays | Regions:
     """Read what a field needs; errors are to be named by :func:`errors_of`."""
@@ -215,7 +216,7 @@ def read_files(
         if time is not None:
             chosen["sel"] = {**chosen.get("sel", {}), "time": time}
         chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
-        return read_datasets(open_datasets(paths), **chosen)
+        return read_datasets(open_datasets(paths), uncertainty=uncertainty, **chosen)
     _refuse(chosen, "data of the Earth, but this is a mesh")
     if not isinstance(path, (str, Path)):
         msg = (

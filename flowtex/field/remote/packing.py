@@ -14,7 +14,16 @@ from flowtex.field.steps import LazySteps
 
 #: Attributes of a field that are arrays, and those that are values of JSON.
 ARRAYS = ("points", "velocity", "times", "valid", "has_position", "triangles")
-VALUES = ("periodic", "name", "length_unit", "time_unit", "sign_free", "units", "long_names")
+VALUES = (
+    "periodic",
+    "name",
+    "length_unit",
+    "time_unit",
+    "sign_free",
+    "units",
+    "long_names",
+    "uncertainty",
+)
 #: Attributes of a source.
 CHOICES = (
     *("name", "vectors", "dimensions", "blocks", "block_vectors", "block_word"),

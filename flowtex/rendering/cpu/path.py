@@ -18,6 +18,8 @@ class Slices:
     before: Mips
     after: Mips | None = None
     between: float = 0.0
+    #: Whether it tells how far the direction is not known.
+    uncertain: bool = False
 
     def layer(self, coordinate: Places, layer: int | Indices, level: Floats) -> Floats:
         """Channels of one layer, (N, 4), at texture coordinates (N, 2) and mip levels (N,)."""

@@ -135,13 +135,13 @@ def slices_at(
     mips: Callable[[TextureSet, int], Mips] = slice_mips,
 ) -> Slices:
     """Slice texture between two destination times; ``mips`` may cache them."""
-    before = mips(textures, steps[0])
+    before, uncertain = mips(textures, steps[0]), bool(textures.geometry.field.uncertainty)
     if textures.geometry.field.sign_free:
-        return AxisSlices(before, size=values["u_slicesSize"], lags=values["u_lagCount"])
+        size, lags = values["u_slicesSize"], values["u_lagCount"]
+        return AxisSlices(before, uncertain=uncertain, size=size, lags=lags)
     kind = Slices if textures.geometry.field.triangles is None else TriangleSlices
-    if steps[0] == steps[1]:
-        return kind(before)
-    return kind(before, mips(textures, steps[1]), values["u_between"])
+    after = None if steps[0] == steps[1] else mips(textures, steps[1])
+    return kind(before, after, values["u_between"], uncertain=uncertain)
 
 
 def lookup_maker(textures: TextureSet) -> LookupMaker:

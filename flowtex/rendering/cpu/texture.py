@@ -66,13 +66,13 @@ class Side:
 LookupMaker = Callable[[Fragments, Values], Lookup]
 
 
-def weight(x: float, values: Values) -> float:
+def weight(x: Any, values: Values) -> Any:
     """Weight at x in -1 ... 1, negative behind the particle."""
     if values["u_kernel"] == const.KERNEL_BOX:
         return 1.0
     if values["u_kernel"] == const.KERNEL_RAMP:
         return 0.5 * (1.0 - x) if values["u_sides"] == 2 else 1.0 - abs(x)
-    return 0.5 + 0.5 * float(np.cos(const.PI * x))
+    return 0.5 + 0.5 * np.cos(const.PI * x)
 
 
 def shared(apart: Floats, near: Floats) -> Floats:
@@ -105,19 +105,28 @@ class Summing:
         values, lookup = self._values, self._lookup
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
+        known = self._known(coordinate, level)
         moving = values["moving"]
         lookup.move(speed, self._slices.layer(coordinate, 2, level)[:, 3] if moving else speed)
         sums = self._first(len(base))
-        cell = self.cell(coordinate)
+        cell = self.cell(coordinate, known)
         for side in self.sides(coordinate, level, base):
-            self._add(sums, side, cell)
-        return lookup.blend(sums)
+            self._add(sums, side, cell, self._count * known)
+        value = lookup.blend(sums)
+        # A picture keeps its colours.
+        return value if value.ndim > 1 else value * (const.FADED + (1 - const.FADED) * known)
 
-    def cell(self, coordinate: Places) -> CellPath | None:
+    def _known(self, coordinate: Places, level: Floats) -> Floats:
+        """Return how far the direction is known, (N,)."""
+        if not self._slices.uncertain:
+            return np.ones(len(level))
+        return 1.0 - self._slices.layer(coordinate, const.UNCERTAIN_LAYER, level)[:, 3]
+
+    def cell(self, coordinate: Places, known: Floats | float = 1.0) -> CellPath | None:
         """Paths in the cells of N fragments, where the view is so near."""
         if not self._values["near"]:
             return None
-        reach = self._count * self._lookup.spacing
+        reach = self._count * known * self._lookup.spacing
         return CellPath(self._slices, coordinate, reach, self._values)
 
     def sides(self, coordinate: Places, level: Floats, base: Floats) -> Iterator[Side]:
@@ -149,21 +158,22 @@ class Summing:
         samples: int = self._values["u_samples"]
         return samples // 2 if self._values["u_sides"] == 2 else samples - 1
 
-    def _add(self, sums: Sums, one: Side, cell: CellPath | None) -> None:
-        """Add one side of the paths, and where it stays in its cell."""
-        values, path, side, scale, count = self._values, one.path, one.sign, one.scale, self._count
+    def _add(self, sums: Sums, one: Side, cell: CellPath | None, count: Floats) -> None:
+        """Add one side of the paths, of so many samples (N,), and where it stays in its cell."""
+        values, path, side, scale = self._values, one.path, one.sign, one.scale
         last = np.minimum(one.reach, self._lags[-1])
         lag, live = np.zeros(len(scale)), np.isfinite(one.reach)
         if cell is not None:
             cell.leave()
         step = one.step(lag)
         before = np.full(len(scale), weight(0.0, values))
-        for k in range(1, count + 1):
+        for k in range(1, int(np.ceil(count.max(initial=0))) + 1):
             lag = np.where(live, lag + step, lag)
             alive = np.clip((last - lag) / step + 1.0, 0.0, 1.0)
             if cell is not None:
                 alive = cell.go_on(side * one.spacing, alive)
-            alive = live * alive
+            # The last sample counts in part where there is no whole number of them.
+            alive = live * alive * np.clip(count - k + 1, 0.0, 1.0)
             live = alive > 0
             if not live.any():
                 break

@@ -9,6 +9,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Halves
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.textures import TextureSet
+from flowtex.textures.texture_set import UNCERTAIN_LAYER
 
 #: Greatest number in half precision.
 HALF_MAX = 65504.0
@@ -33,15 +34,17 @@ class Packing:
     """Packed slices of some textures; those asked for last are cached.
 
     A slope has so many ``channels``, two in a plane and in noise coordinates. ``extra`` are the
-    layers whose fourth channel says something: unit, reach, speed, reach forward, and speed again.
+    layers whose fourth channel says something: unit, reach, speed, how far the direction is not
+    known, reach forward, that again, and speed again.
     """
 
     def __init__(self, textures: TextureSet) -> None:
         self._textures = textures
         self.channels = 2 if textures.geometry.planar or textures.paper is not None else 4
-        ahead = [1 + len(textures.lags)] if textures.sides == 2 else []
+        unknown = [UNCERTAIN_LAYER] if textures.geometry.field.uncertainty else []
+        ahead = [len(textures.lags) + n for n in (1, *unknown)] if textures.sides == 2 else []
         last = [textures.count - 1] if textures.in_cells else []
-        self.extra = [0, 1, 2, *ahead, *last]
+        self.extra = [0, 1, 2, *unknown, *ahead, *last]
         self._steps: ByteCache[int, PackedStep] = ByteCache(CACHE_BYTES, min_count=LEAST_STEPS)
 
     def step(self, step: int) -> PackedStep:

@@ -16,6 +16,7 @@ from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.vectors import norm
 from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.field.poles import Poles
+from flowtex.field.uncertainty import unknown_share
 from flowtex.rendering.webgl.packing import HALF_MAX, half
 from flowtex.rendering.webgl.protocol import Header, Parts, plain_list
 from flowtex.textures import SurfaceGeometry, TextureSet
@@ -112,6 +113,7 @@ def trace_header(textures: TextureSet) -> Header:
         else None,
         "pathlines": not store.streamlines,
         "rest": rest,
+        **({"uncertain": True} if geometry.field.uncertainty else {}),
         **({} if poles is None else _poles(poles, geometry.frame)),
         **({} if timed or np.isinf(store.long_enough) else {"longest": store.long_enough}),
     }
@@ -162,11 +164,11 @@ def _is_blanked(valid: Bools) -> bool:
 
 
 def velocity_part(textures: TextureSet, step: int) -> AnyArray:
-    """Return the velocity of one time, (J, I, 3 or 4).
+    """Return the velocity of one time, (J, I, 3 to 5).
 
     It is the rate along i and j in cells in the length of a cell, the speed along the surface in
-    multiples of the typical one, and the whole speed where that is another; all of it rounded to
-    what paths and colours need.
+    multiples of the typical one, the whole speed where that is another, and how far the direction
+    is not known, where that is told; all of it rounded to what paths and colours need.
     """
     field = textures.geometry.field.at_step(step)
     flow, valid, typical = field.index_velocity, field.valid, textures.typical_speed
@@ -178,8 +180,11 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     np.divide(cells, speed[..., None], out=rate, where=moves[..., None])
     channels = [rate[..., 0], rate[..., 1], speed / typical]
     whole = np.asarray(field.speed[0])
-    if np.abs(whole - flow.speed[0])[valid].max(initial=0.0) > SAME_SPEED_SHARE * typical:
+    differs = np.abs(whole - flow.speed[0])[valid].max(initial=0.0) > SAME_SPEED_SHARE * typical
+    if differs or field.uncertainty:
         channels.append(fill_blanked(whole, valid) / typical)
+    if field.uncertainty:
+        channels.append(unknown_share(field, 0))
     share, exponent = np.frexp(channels[2:])
     channels[2:] = np.ldexp(np.rint(share * SPEED_STEPS), exponent) / SPEED_STEPS
     across = norm(field.surface.tangents)[:, ::4, ::4] / _sizes(textures)[::4, ::4]

@@ -1,0 +1,80 @@
+"""How far the direction of a flow is not known: streaks are shorter and fainter there.
+
+It is told by a scalar of the field: the standard deviation of the velocity over its magnitude, 0
+where the direction is known, 1 and more where it is not.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import numpy as np
+
+from flowtex._util.arguments import near_names
+from flowtex._util.array_types import Floats
+from flowtex.errors import FieldError
+from flowtex.field.datasets.ensembles import spread_name
+from flowtex.field.interpolation import fill_blanked
+from flowtex.field.steps import LazySteps
+
+#: A :class:`flowtex.FlowField`.
+Field = TypeVar("Field")
+#: The name of the scalar where it is given as an array.
+UNCERTAINTY = "uncertainty"
+
+
+def with_uncertainty(field: Field, value: Any) -> Field:
+    """Return a field whose streaks tell how far its direction is known.
+
+    Parameters
+    ----------
+    field
+        The flow.
+    value
+        The name of a scalar of the field, or of the dimension over which a dataset was averaged; or
+        an array, (J, I) or (T, J, I), on triangles (N,) or
+        (T, N): the standard deviation of the velocity over its magnitude.
+
+    Raises
+    ------
+    FieldError
+        When there is no such scalar, the array does not fit the nodes, or a number is negative.
+    """
+    flow: Any = field
+    scalars = flow.scalars
+    if not isinstance(value, str):
+        try:
+            given = np.asarray(value, dtype=float)
+            steps = given.reshape(-1, *flow.shape)
+        except (TypeError, ValueError):
+            steps = None
+        if steps is None or len(steps) not in {1, len(flow.times)}:
+            shape = np.shape(value) if not isinstance(value, (bool, dict)) else repr(value)
+            msg = (
+                f"uncertainty is {shape}; expected the name of a scalar, or an array of the shape "
+                f"{flow.shape}, or {(len(flow.times), *flow.shape)}"
+            )
+            raise FieldError(msg)
+        scalars, value = {**scalars, UNCERTAINTY: steps}, UNCERTAINTY
+    if value not in scalars and spread_name(value) in scalars:
+        value = spread_name(value)
+    if value not in scalars:
+        msg = f"uncertainty is {value!r}, which is no scalar; {near_names(value, scalars)}"
+        raise FieldError(msg)
+    steps = scalars[value]
+    if not isinstance(steps, LazySteps) and (least := np.min(steps, initial=0, where=steps < 0)):
+        msg = (
+            f"uncertainty is {least:g} at a node; expected 0 where the direction is known, up to 1 "
+            "where it is not, such as a standard deviation over the speed"
+        )
+        raise FieldError(msg)
+    changed: Field = flow.same_flow(scalars=scalars, uncertainty=value)
+    return changed
+
+
+def unknown_share(field: Any, step: int) -> Floats:
+    """Return how far the direction is not known at a step, (J, I) from 0 to 1."""
+    steps = field.scalars[field.uncertainty]
+    values = np.asarray(steps[step if len(steps) > 1 else 0], dtype=float)
+    share = np.clip(np.nan_to_num(values, nan=1.0, posinf=1.0), 0.0, 1.0)
+    return fill_blanked(share, field.valid)
