@@ -152,7 +152,7 @@ class FieldOptions:
     )
     uncertainty: Any | None = _option(
         None,
-        "What tells how far the direction is not known; streaks are shorter and fainter there: the "
+        "Uncertainty of the direction; where it is high, streaks are shorter and fainter: the "
         "name of a scalar, or an array, of the standard deviation of the velocity over its "
         'magnitude; or a dimension of a dataset, such as ``"number"``, over which the mean is '
         "drawn.",

@@ -252,7 +252,7 @@ export interface TraceHeader {
   rest: number;
   /** Length of a path that is long enough for any picture. */
   longest?: number;
-  /** Whether the last channel of the part "flow" tells how far the direction is not known. */
+  /** Whether the last channel of the part "flow" is the uncertainty of the direction. */
   uncertain?: boolean;
   poles?: PoleHeader[];
 }

@@ -21,7 +21,7 @@ const NORMAL_MAX = 32767;
 const HALVES = Float32Array.from({ length: 1 << 16 }, (_, bits) => fromHalf(bits));
 /** What the fourth channel of a layer has, as shaders/webgl2/layers.glsl knows it. */
 const [NOTHING, SPEED, REACH, UNKNOWN] = [0, 1, 2, 3];
-/** The layer of a side that tells how far the direction is not known, counted from 0. */
+/** The layer of a side with the uncertainty of the direction, counted from 0. */
 const UNKNOWN_LAYER = 2;
 /** Units of the textures that a pass has. */
 const UNITS = 8;
@@ -285,7 +285,7 @@ export class Tracing {
     return result;
   }
 
-  /** The whole speed, and how far the direction is not known. */
+  /** The whole speed, and the uncertainty of the direction. */
   private wholeSpeed(step: number): Float32Array {
     const data = this.numbers(`flow/${step}`);
     const nodes = this.data("unit").length;

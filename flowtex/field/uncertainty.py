@@ -1,7 +1,7 @@
-"""How far the direction of a flow is not known: streaks are shorter and fainter there.
+"""The uncertainty of the direction of a flow: where it is high, streaks are shorter and fainter.
 
-It is told by a scalar of the field: the standard deviation of the velocity over its magnitude, 0
-where the direction is known, 1 and more where it is not.
+It is a scalar of the field: the standard deviation of the velocity over its magnitude. From 1 on, no
+direction is drawn.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ UNCERTAINTY = "uncertainty"
 
 
 def with_uncertainty(field: Field, value: Any) -> Field:
-    """Return a field whose streaks tell how far its direction is known.
+    """Return a field whose streaks show the uncertainty of its direction.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def with_uncertainty(field: Field, value: Any) -> Field:
 
 
 def unknown_share(field: Any, step: int) -> Floats:
-    """Return how far the direction is not known at a step, (J, I) from 0 to 1."""
+    """Return the uncertainty of the direction at a step, (J, I) from 0 to 1."""
     steps = field.scalars[field.uncertainty]
     values = np.asarray(steps[step if len(steps) > 1 else 0], dtype=float)
     share = np.clip(np.nan_to_num(values, nan=1.0, posinf=1.0), 0.0, 1.0)

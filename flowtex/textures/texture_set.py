@@ -14,7 +14,8 @@ M + 1 ... 2 M         slopes of the forward slices, where there are any      M +
 the last              of a steady field: layer 0 in cells, two channels      speed
 ====================  =====================================================  =================
 
-Layer 3, and M + 3, tell how far the direction is not known, from 0 to 1, where that is told.
+The fourth channels of layers 3 and M + 3 hold the uncertainty of the direction, from 0 to 1, if the
+field has one.
 A surface of triangles has no cells that are counted: the first channels of its last layer are not
 read. Slopes are in space (the surface's own frame), lengths per unit of nominal length, for the
 procedural noise; in noise coordinates per unit of lag for the paper's noise texture.
@@ -45,7 +46,7 @@ from flowtex.trace import SliceStore, TraceSlices
 
 #: Slices on each side that a shader has room for.
 MOST_LAGS = 32
-#: The layer whose fourth channel tells how far the direction is not known.
+#: The layer whose fourth channel is the uncertainty of the direction.
 UNCERTAIN_LAYER = 3
 #: Greatest number in half precision, in which texels are stored.
 HALF_MAX = 65504.0

@@ -15,7 +15,7 @@ const float FLOWTEX_LEAST_SPEED = 1e-6;  // a particle that is slower stands sti
 const float FLOWTEX_BELL = 1.19;
 const float FLOWTEX_BELL_BEND = 0.06;
 const float FLOWTEX_BELL_END = 3.0; // d^2 beyond which it counts as zero
-const int FLOWTEX_UNCERTAIN_LAYER = 3; // whose fourth channel tells how far the direction is not known
+const int FLOWTEX_UNCERTAIN_LAYER = 3; // whose fourth channel is the uncertainty of the direction
 const float FLOWTEX_FADED = 0.3;         // contrast where it is not known at all
 const int FLOWTEX_SHARED_TERMS = 24; // neighbours of a sample that may share its grain
 

@@ -7,12 +7,12 @@
 uniform highp sampler2D u_padded;   // positions of the nodes with a line of ghosts around them
 uniform highp usampler2D u_before;  // paths at the lag of the layer
 uniform highp usampler2D u_last;    // and at the last lag
-uniform highp sampler2D u_speed;    // whole speed of the flow, and how far its direction is not known
+uniform highp sampler2D u_speed;    // whole speed of the flow, and the uncertainty of its direction
 uniform vec2 u_first;               // node that the first texel would hold
 uniform vec3 u_offsetI;             // change of a position with a period
 uniform vec3 u_offsetJ;
 uniform float u_inCells; // 1 for the velocity in cells, and not the tangents
-uniform float u_fourth;  // 0 nothing, 1 speed, 2 reach, 3 how far the direction is not known
+uniform float u_fourth;  // 0 nothing, 1 speed, 2 reach, 3 the uncertainty of the direction
 uniform float u_lag;     // with the sign of the side
 uniform float u_mostReach;
 uniform float u_pace;

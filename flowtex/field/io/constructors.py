@@ -194,7 +194,7 @@ class FieldConstructors:
             arrays = read_files(
                 path, vectors=vectors, time=time, uncertainty=uncertainty, **options
             )
-            return _told(cls.of(cast("FieldArrays", arrays)), uncertainty)
+            return _with_uncertainty(cls.of(cast("FieldArrays", arrays)), uncertainty)
 
     @classmethod
     def from_xarray(
@@ -273,11 +273,11 @@ class FieldConstructors:
         options: dict[str, Any] = {"projection": projection, "globe": globe, "name": name}
         options |= {"sel": sel, "isel": isel, "uncertainty": uncertainty, **selection}
         field = cls.of(cast("FieldArrays", read_datasets(data, u, v, **options)))
-        return _told(field, uncertainty)
+        return _with_uncertainty(field, uncertainty)
 
 
-def _told(field: Any, uncertainty: Any) -> Any:
-    """Return a field with what tells how far its direction is not known, if anything does."""
+def _with_uncertainty(field: Any, uncertainty: Any) -> Any:
+    """Return a field with the uncertainty of its direction, if one is given."""
     from flowtex.field.uncertainty import with_uncertainty
 
     return field if uncertainty is None else with_uncertainty(field, uncertainty)

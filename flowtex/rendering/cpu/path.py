@@ -18,7 +18,7 @@ class Slices:
     before: Mips
     after: Mips | None = None
     between: float = 0.0
-    #: Whether it tells how far the direction is not known.
+    #: Whether it has the uncertainty of the direction.
     uncertain: bool = False
 
     def layer(self, coordinate: Places, layer: int | Indices, level: Floats) -> Floats:
