@@ -553,15 +553,7 @@ def share_field(field: FlowField) -> FlowField:
         return field
     names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
     made = field.formula and (field.formula.texts, field.formula.parameters)
-    words = (
-        *names,
-        str(made),
-        field.uncertainty,
-        field.periodic,
-        field.sign_free,
-        str(field.start),
-        field.projection,
-    )
+    words = (*names, str(made), field.periodic, field.sign_free, str(field.start), field.projection)
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
     joined = () if field.triangles is None else (field.triangles,)
@@ -571,7 +563,7 @@ def share_field(field: FlowField) -> FlowField:
     late = tuple(id(a) for a in given if isinstance(a, LazySteps))
     arrays = (a for a in given if not isinstance(a, LazySteps))
     kind = (field.has_position is None, field.triangles is None)
-    key = digest(*arrays, words=(words, units, kind, late, *field.scalars))
+    key = digest(*arrays, words=(words, units, kind, late, *field.scalars, field.uncertainty))
     return _fields.get(key, lambda: field)
 
 

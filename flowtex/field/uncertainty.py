@@ -1,7 +1,7 @@
 """The uncertainty of the direction of a flow: where it is high, streaks are shorter and fainter.
 
-It is a scalar of the field: the standard deviation of the velocity over its magnitude. From 1 on, no
-direction is drawn.
+It is a scalar of the field: the standard deviation of the velocity over its magnitude. From 1 on
+no direction is drawn.
 """
 
 from __future__ import annotations
