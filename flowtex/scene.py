@@ -46,6 +46,7 @@ from flowtex.tiles import (
     has_pyramid,
     shared_pyramid,
     shared_structure,
+    usual_ends,
     widened,
 )
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
@@ -71,7 +72,7 @@ SETTINGS_IN_TEXTURES = {
     "resolution": ("texture", "spots", "checkerboard", "image"),
 }
 
-#: Share of the larger end of a range below which the other end is shown as 0.
+#: Share of the larger end of a range, or of the range, below which a difference is rounding.
 ZERO_SHARE = 1e-5
 
 NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_image(image)"
@@ -337,7 +338,10 @@ class Scene:
             return chosen
         if name is None:
             return 0.0, 1.0
-        low, high = self.scalar_range(name, robust=chosen == ROBUST)
+        if chosen == ROBUST or appearance.log_scale:
+            low, high = self.scalar_range(name, robust=chosen == ROBUST)
+        else:
+            low, high = self.usual_range(name)
         if low < 0 < high and is_diverging(appearance.cmap):
             return -max(-low, high), max(-low, high)
         return low, high
@@ -354,6 +358,19 @@ class Scene:
                 "above 0: pass clim=(low, high) with low above 0, or omit log_scale"
             )
             raise FieldError(msg)
+
+    def usual_range(self, name: str) -> tuple[float, float]:
+        """Range of the colours by default: all values, or the robust range beside a long tail."""
+        return usual_ends(self.scalar_range(name), self.scalar_range(name, robust=True))
+
+    @property
+    def beyond(self) -> tuple[bool, bool]:
+        """Whether values lie below and above the limits of the colours."""
+        if (name := self.scalar_name) is None:
+            return False, False
+        (low, high), (least, most) = self.scalar_limits, self.scalar_range(name)
+        rounding = ZERO_SHARE * (most - least)
+        return low > least + rounding, high < most - rounding
 
     def scalar_range(self, name: str, *, robust: bool = False) -> tuple[float, float]:
         """Least and greatest value over the valid nodes and all times.

@@ -55,6 +55,24 @@ def test_a_robust_range_leaves_outliers_out() -> None:
     assert limits(values, clim="robust", cmap="coolwarm") == (-high, high)
 
 
+def test_a_long_tail_is_left_out_and_the_legend_has_a_tip() -> None:
+    values = SIGNED.copy()
+    assert Scene.of(field(values), scalars="p").beyond == (False, False)
+    values[0, 0] = 6.7  # as far beyond the robust range as that is long
+    assert limits(values)[1] == pytest.approx(6.7)
+    values[0, 0] = 6.8
+    scene = Scene.of(field(values), scalars="p")
+    assert scene.scalar_limits == pytest.approx((-1, 2.92), abs=0.01)
+    assert scene.beyond == (False, True)
+    assert limits(values, cmap="coolwarm")[0] == -limits(values)[1]
+    assert limits(values + 2, log_scale=True)[1] == pytest.approx(8.8)
+    assert Scene.of(field(values), scalars="p", clim=(0, 8)).beyond == (True, False)
+    # A tracer that is nearly everywhere zero has no robust range.
+    rare = np.where(SIGNED > 2.99, 1.0, 0.0)
+    assert limits(rare) == (0, 1)
+    assert Scene.of(field(values), scalars=False).beyond == (False, False)
+
+
 def test_a_logarithm_is_refused_for_what_has_none() -> None:
     assert limits(SIGNED + 2, log_scale=True) == (1.0, 5.0)
     assert limits(SIGNED, log_scale=True, clim=(0.1, 3)) == (0.1, 3)

@@ -2,7 +2,7 @@
 
 import { rampOf } from "./colours.ts";
 import { dom } from "./dom.ts";
-import { legendLimits, shareOf, type Data, type Header, type Settings, type StructureHeader } from "./protocol.ts";
+import { beyondEnds, legendLimits, shareOf, type Data, type Header, type Settings, type StructureHeader } from "./protocol.ts";
 import { ticksOf } from "./ticks.ts";
 import { clamp } from "./vectors.ts";
 
@@ -30,6 +30,9 @@ export class Legend {
     if (this.element.hidden || !map) return;
     const ramp = dom("div", { class: "ramp" }, [this.mark]);
     ramp.style.background = rampOf(map, header, settings, STOPS);
+    const [isBelow, isAbove] = beyondEnds(header.scalars);
+    ramp.classList.toggle("below", isBelow);
+    ramp.classList.toggle("above", isAbove);
     this.mark.hidden = true;
     const placeOf = shareOf(header.scalars);
     const ticks = legendTicks(header).map(({ value, text }) => {

@@ -323,7 +323,8 @@ export interface Header {
     bar: boolean;
     /** Number of the scalar among those of the field, and what can be chosen in its place. */
     number: number;
-    choices: { name: string; label: string; unit: string; low: number; high: number; steps: number }[];
+    /** What colours can show: the ends of its colours by default, and of its values. */
+    choices: { name: string; label: string; unit: string; low: number; high: number; least: number; most: number; steps: number }[];
     /** Whether the map is logarithmic, and whether its range is automatic. */
     log: boolean;
     auto: boolean;
@@ -408,6 +409,13 @@ export function legendLimits({ low, high, log }: Header["scalars"]): [number, nu
   const least = log ? 0 : ZERO_SHARE * Math.max(Math.abs(low), Math.abs(high));
   const told = (value: number) => (Math.abs(value) < least ? 0 : value);
   return [told(low), told(high)];
+}
+
+/** Whether values lie below and above the ends of the colours. */
+export function beyondEnds({ low, high, choices, number }: Header["scalars"]): [boolean, boolean] {
+  const { least, most } = choices[number] ?? { least: low, most: high };
+  const rounding = ZERO_SHARE * (most - least);
+  return [low > least + rounding, high < most - rounding];
 }
 
 /** Whether the flow has no direction along its lines. */

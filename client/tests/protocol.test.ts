@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { gzipSync } from "node:zlib";
 import { fromHalf } from "../src/half.ts";
-import { decoded, isSignFree, legendLimits, partOfText, partsOfFile, stepOf } from "../src/protocol.ts";
+import { beyondEnds, decoded, isSignFree, legendLimits, partOfText, partsOfFile, stepOf } from "../src/protocol.ts";
 
 const INFO = { name: "position", dtype: "float32", shape: [1, 2], digest: "d" };
 
@@ -22,6 +22,15 @@ test("an end of the colours that is 0 but for rounding is told as 0", () => {
   assert.deepEqual(legendLimits(scalars), [0, 10.3]);
   assert.deepEqual(legendLimits({ ...scalars, log: true }), [1.94e-7, 10.3]);
   assert.deepEqual(legendLimits({ ...scalars, low: -3e-8, high: 2e-7 }), [-3e-8, 2e-7]);
+});
+
+test("values beyond the ends of the colours are known", () => {
+  const choice = { name: "p", label: "p", unit: "", low: 0, high: 1, least: 0, most: 1, steps: 1 };
+  const scalars = { low: 0, high: 1, number: 0, choices: [choice] } as unknown as Parameters<typeof beyondEnds>[0];
+  assert.deepEqual(beyondEnds(scalars), [false, false]);
+  assert.deepEqual(beyondEnds({ ...scalars, low: 0.1, high: 0.9 }), [true, true]);
+  assert.deepEqual(beyondEnds({ ...scalars, choices: [{ ...choice, most: 3 }] }), [false, true]);
+  assert.deepEqual(beyondEnds({ ...scalars, choices: [] }), [false, false]);
 });
 
 test("half precision stays bits", () => {

@@ -183,7 +183,7 @@ class _Writer:
         table, title = scene.legend_colours[:, :3], _printable(scene.title_of(name))
         values = _value_texts(*scene.legend_limits, log_scale=appearance.log_scale)
         for numbers in (values, values[::2]):
-            yield self._legend(title, table, numbers)
+            yield self._legend(title, table, numbers, scene.beyond)
 
     def kinds(self, scene: Scene) -> Iterator[Image.Image]:
         """Yield the kinds of critical points that are marked, each with its dot."""
@@ -208,7 +208,10 @@ class _Writer:
             image.alpha_composite(dot.resize((self._line,) * 2, Image.Resampling.BOX), place)
         yield image
 
-    def _legend(self, title: str, table: Bytes, numbers: list[str]) -> Image.Image:
+    def _legend(
+        self, title: str, table: Bytes, numbers: list[str], beyond: tuple[bool, bool]
+    ) -> Image.Image:
+        """Return the legend; the colours end in a tip where values lie beyond them."""
         widths, space = [self._width(n) for n in numbers], self._px(GAP)
         # The one in the middle keeps off the longer of the others.
         needed = 2 * max(widths[0], widths[-1]) + sum(space + w for w in widths[1:-1]) + space
@@ -218,8 +221,15 @@ class _Writer:
         self._write(draw, 0, 0, title)
         stops = np.linspace(0, len(table) - 1, width).round().astype(int)
         ramp = np.broadcast_to(table[stops], (high, width, 3))
+        shape = Image.new("L", (SMOOTH * width, SMOOTH * high))
+        left, right = (high * SMOOTH // 2 if tip else 0 for tip in beyond)
+        (x, y), middle = shape.size, SMOOTH * high / 2
+        corners = [(0, middle), (left, 0), (x - right, 0), (x, middle), (x - right, y), (left, y)]
+        ImageDraw.Draw(shape).polygon(corners, fill=255)
         image.paste(
-            Image.fromarray(np.ascontiguousarray(ramp)), (self._pad, self._pad + self._line)
+            Image.fromarray(np.ascontiguousarray(ramp)),
+            (self._pad, self._pad + self._line),
+            shape.resize((width, high), Image.Resampling.BOX),
         )
         shares = np.linspace(0, 1, len(numbers))
         for text, share, wide in zip(numbers, shares, widths, strict=True):

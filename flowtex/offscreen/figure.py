@@ -38,6 +38,8 @@ from flowtex.scene import Scene
 #: Left, right, bottom and top.
 Extent = tuple[float, float, float, float]
 
+#: Ends of a colour bar beyond which values lie, below and above, in matplotlib's words.
+EXTENDED = {(False, True): "max", (True, False): "min", (True, True): "both"}
 #: Dots per inch at which a grain has the pixels that the settings speak of.
 USUAL_DPI = 100.0
 #: Longest side of what is drawn where the scales of the axes differ, in pixels.
@@ -226,7 +228,10 @@ class FlowImage(AxesImage):
         self.mouseover = False
         look = scene.appearance
         if scene.scalar_name is not None:
-            self.set_cmap(ListedColormap(scene.legend_colours[:, :3] / 255))
+            # A word in matplotlib, and a bool in its types.
+            colours: Any = ListedColormap(scene.legend_colours[:, :3] / 255)
+            colours.colorbar_extend = EXTENDED.get(scene.beyond, "neither")
+            self.set_cmap(colours)
             self.set_norm((LogNorm if look.log_scale else Normalize)(*scene.legend_limits))
         self._first_clim = self.get_clim()
         self._title = ""

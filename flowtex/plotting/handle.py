@@ -328,7 +328,14 @@ class FlowHandle(AppearanceAttributes):
         shown = self.actor.mapper.lookup_table
         table = pv.LookupTable(values=self.scene.legend_colours)
         table.scalar_range, table.log_scale = self.scene.legend_limits, shown.log_scale
-        self._plotter.scalar_bars[self._bar_title].SetLookupTable(table)
+        bar = self._plotter.scalar_bars[self._bar_title]
+        bar.SetLookupTable(table)
+        below, above = self.scene.beyond
+        table.below_range_color = table.values[0] if below else None
+        table.above_range_color = table.values[-1] if above else None
+        bar.SetDrawBelowRangeSwatch(below)
+        bar.SetDrawAboveRangeSwatch(above)
+        bar.DrawAnnotationsOff()  # marks without a text
 
     def _remove_bar(self, plotter: Any) -> None:
         self._end_arranging()

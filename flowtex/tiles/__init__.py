@@ -20,6 +20,7 @@ from flowtex.tiles.shared import (
     ends_of,
     has_pyramid,
     shared_pyramid,
+    usual_ends,
     widened,
 )
 from flowtex.tiles.structure import STRUCTURE, Structure, check_structure, shared_structure
@@ -47,5 +48,6 @@ __all__ = [
     "levels_of",
     "shared_pyramid",
     "shared_structure",
+    "usual_ends",
     "widened",
 ]

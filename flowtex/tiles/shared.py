@@ -16,6 +16,11 @@ from flowtex.tiles.triangle_pyramid import TrianglePyramid
 
 #: Percentiles at the ends of a range without outliers.
 ROBUST_PERCENTILES = (2, 98)
+#: Length of a tail that colours leave out by default, in robust ranges. The greatest of a million
+#: values of a normal distribution is 0.7 beyond, of an exponential one 2.5.
+LONG_TAIL = 1.0
+#: Least share of a robust range in the whole one, for colours to have the robust one by default.
+LEAST_SHARE = 1e-9
 #: Values that differ by less than this share of the greatest are the same.
 SAME_VALUE_SHARE = 1e-9
 #: Share of such a value by which its range is widened.
@@ -56,6 +61,18 @@ def ends_of(values: Floats, *, robust: bool) -> tuple[float, float] | None:
         else np.array([values.min(), values.max()])
     )
     return float(low), float(high)
+
+
+def usual_ends(whole: tuple[float, float], robust: tuple[float, float]) -> tuple[float, float]:
+    """Return the whole range, without a tail that is longer than the robust range.
+
+    Of values that are nearly all the same it is the whole.
+    """
+    (least, most), (low, high) = whole, robust
+    tail = LONG_TAIL * (high - low)
+    if tail < LEAST_SHARE * (most - least):
+        return whole
+    return low if low - least > tail else least, high if most - high > tail else most
 
 
 def widened(ends: tuple[float, float] | None) -> tuple[float, float]:

@@ -223,29 +223,31 @@ cal_points",separatrices:"separatrices"},LINE={saddle:8,orbit:4,leaving:2},TYPES
 float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){
 if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/
 low)/span}function legendLimits({low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.
-abs(value)<least?0:value;return[told(low),told(high)]}function isSignFree(header){return header.variant.includes("FLOWTE\
-X_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,
-number="0"]=name.split("/"),steps=scalars.choices[Number(number)]?.steps??scalars.steps;return kind==="scalars"&&Number(
-own)===step&&steps>1}function tilePart(name){let[kind,level,row2,column,...rest]=name.split("/");return kind==="tile"?[[
-level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(
-bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];
-if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,
-digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(new Uint8Array(file)),
-start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=info.bytes,info.differences===
-void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+new DataView(file.buffer,file.
-byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),first]}async function partOfText(info,text){
-return partOfPlanes(info,new Uint8Array(await unzipped(text).arrayBuffer()))}function unzipped(text){let letters=atob(text),
-packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=letters.charCodeAt(n);return new Response(
-new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")))}var UNSIGNED={1:Uint8Array,2:Uint16Array,4:Uint32Array};
-function partOfPlanes(info,planes){let{shape:shape2,differences=[0,0],scale:scale3=null}=info,count2=shape2.reduce((product2,n)=>product2*
-n,1),width=count2?planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(`the packing of the part "${info.name}"\
- is invalid`);let[line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(-2),numbers=new UNSIGNED[width](count2);
-for(let c=0,from=0;c<channels;c+=1)for(let n=c;n<count2;n+=channels,from+=1){let bits=0;for(let plane=0;plane<width;plane+=
-1)bits|=planes[plane*count2+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*channels;for(let order=0;order<differences[0];order+=
-1)for(let n=row2;n<count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<differences[1];order+=1)for(let first=0;first<
-count2;first+=row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=numbers[n-channels];return decoded(info,scale3?
-floats(numbers,scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){let channels=units.length;return numbers instanceof
-Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
+abs(value)<least?0:value;return[told(low),told(high)]}function beyondEnds({low,high,choices,number}){let{least,most}=choices[number]??
+{least:low,most:high},rounding=ZERO_SHARE*(most-least);return[low>least+rounding,high<most-rounding]}function isSignFree(header){
+return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function isOfStep(name,step,{
+scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(number)]?.steps??scalars.steps;return kind===
+"scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,row2,column,...rest]=name.split("/");return kind===
+"tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?
+new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape:shape2,digest}=info,
+Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);
+return{name,shape:shape2,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(
+new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=
+info.bytes,info.differences===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+
+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),
+first]}async function partOfText(info,text){return partOfPlanes(info,new Uint8Array(await unzipped(text).arrayBuffer()))}
+function unzipped(text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=
+letters.charCodeAt(n);return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")))}var UNSIGNED={
+1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{shape:shape2,differences=[0,0],scale:scale3=null}=info,
+count2=shape2.reduce((product2,n)=>product2*n,1),width=count2?planes.length/count2:1;if(!(width in UNSIGNED))throw new Error(
+`the packing of the part "${info.name}" is invalid`);let[line,channels]=shape2.length>2?shape2.slice(-2):[...shape2,1].slice(
+-2),numbers=new UNSIGNED[width](count2);for(let c=0,from=0;c<channels;c+=1)for(let n=c;n<count2;n+=channels,from+=1){let bits=0;
+for(let plane=0;plane<width;plane+=1)bits|=planes[plane*count2+from]<<8*plane;numbers[n]=bits>>>1^-(bits&1)}let row2=line*
+channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<count2;n+=1)numbers[n]+=numbers[n-row2];for(let order=0;order<
+differences[1];order+=1)for(let first=0;first<count2;first+=row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=
+numbers[n-channels];return decoded(info,scale3?floats(numbers,scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){
+let channels=units.length;return numbers instanceof Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):
+Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
 data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];return result2}function grid(us,vs){let result2=new Float32Array(
 2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
 shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},(_,n)=>(n+before+.5)/size);return grid(
@@ -630,7 +632,8 @@ function forwardKeys(root,event){event.target===document.body&&!event.defaultPre
 element.requestFullscreen?.().catch(()=>{})}var STOPS2=33,MOST_CHARACTERS=16,END_SHARE=.1,Legend=class{kinds=dom("div",{class:"kinds glass",hidden:""});shownKinds="";element=dom(
 "div",{class:"legend glass",hidden:""});mark=dom("i",{hidden:""});show(header,settings,map){let{name,label,unit:unit2,bar}=header.
 scalars;if(this.element.hidden=name===null||!bar||!map||!!settings.show_level,this.element.hidden||!map)return;let ramp=dom(
-"div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,STOPS2),this.mark.hidden=!0;let placeOf=shareOf(
+"div",{class:"ramp"},[this.mark]);ramp.style.background=rampOf(map,header,settings,STOPS2);let[isBelow,isAbove]=beyondEnds(
+header.scalars);ramp.classList.toggle("below",isBelow),ramp.classList.toggle("above",isAbove),this.mark.hidden=!0;let placeOf=shareOf(
 header.scalars),ticks=legendTicks(header).map(({value,text})=>{let tick=dom("span",{},[text]),share=clamp(placeOf(value),
 0,1);tick.style.left=`${100*share}%`;let isAtEnd=Math.abs(share-.5)>.5-END_SHARE;return tick.style.transform=`translateX\
 (${isAtEnd?-100*share:-50}%)`,tick});this.element.replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:
@@ -966,6 +969,16 @@ let shape2=document.createElementNS(SVG3,tag);for(let[name,value]of Object.entri
 .kinds .turns::after { content: ""; display: block; width: 4px; height: 4px; margin: 2.5px; border-radius: 50%; backgrou\
 nd: #fff; }
 .ramp { position: relative; height: 8px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
+.ramp.below { --below: 6px; border-radius: 0 4px 4px 0; }
+.ramp.above { --above: 6px; border-radius: 4px 0 0 4px; }
+.ramp.below.above { border-radius: 0; }
+.ramp.below, .ramp.above {
+  box-shadow: none;
+  clip-path: polygon(
+    0 50%, var(--below, 0px) -3px, calc(100% - var(--above, 0px)) -3px, 100% 50%,
+    calc(100% - var(--above, 0px)) 11px, var(--below, 0px) 11px
+  );
+}
 .ramp i {
   position: absolute; top: -2px; bottom: -2px; width: 2px; margin-left: -1px; border-radius: 1px;
   background: var(--ink); box-shadow: 0 0 0 1px var(--ground);

@@ -147,7 +147,7 @@ def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
     """Return what can be coloured by, with the range that each has by itself."""
     choices: list[dict[str, Any]] = []
     for name in scene.scalar_names:
-        low, high = scene.scalar_range(name)
+        (low, high), (least, most) = scene.usual_range(name), scene.scalar_range(name)
         steps = len(scene.field.scalars.get(name, scene.field.velocity))
         choices.append(
             {
@@ -156,6 +156,8 @@ def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
                 "unit": scene.field.unit_of(name),
                 "low": low,
                 "high": high,
+                "least": least,
+                "most": most,
                 "steps": steps,
             }
         )

@@ -200,6 +200,19 @@ def test_a_legend_has_the_colours_of_the_picture() -> None:
         assert (line == colour).all(axis=-1).any()
 
 
+@pytest.mark.parametrize("tips", [(False, False), (True, False), (True, True)])
+def test_colours_end_in_a_tip_where_values_lie_beyond(tips: tuple[bool, bool]) -> None:
+    low, high = Scene.of(patch()).scalar_range("speed")
+    inside = 0.2 * (high - low)
+    scene = Scene.of(patch(), clim=(low + tips[0] * inside, high - tips[1] * inside))
+    image = np.asarray(written(scene, (1600, 1000))["legend"].image)[..., :3].astype(int)
+    coloured = np.ptp(image, axis=-1) > 30
+    rows = np.flatnonzero(coloured.sum(axis=1) > coloured.shape[1] / 2)
+    first, middle = rows[0], rows[len(rows) // 2]
+    ends = [np.flatnonzero(coloured[row])[[0, -1]] for row in (first, middle)]
+    assert (bool(ends[0][0] > ends[1][0]), bool(ends[0][1] < ends[1][1])) == tips
+
+
 @pytest.mark.parametrize(
     ("step", "unit", "text"),
     [

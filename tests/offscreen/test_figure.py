@@ -183,7 +183,7 @@ def test_a_colour_bar_has_the_range_and_the_colours(figure: Figure) -> None:
     bar = figure.colorbar(image)
     assert (image.norm.vmin, image.norm.vmax) == pytest.approx((1, 100))
     assert bar.ax.get_yscale() == "log"
-    assert image.cmap.N == 256
+    assert image.cmap.N == 256 and vars(image.cmap)["colorbar_extend"] == "min"
     pixels(figure)
 
 
