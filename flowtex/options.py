@@ -201,8 +201,8 @@ class FieldOptions:
             return FlowField.from_pyvista(mesh, **choices)
         if choices:
             msg = (
-                f"{', '.join(choices)} cannot be set for {mesh!r} after it was made; set it when "
-                "you make the field"
+                f"{', '.join(choices)} cannot be set for a field that already exists, {mesh!r}; "
+                "set it when you make the field"
             )
             raise FieldError(msg)
         return mesh

@@ -137,7 +137,7 @@ def data_dir() -> Path:
         pytest.skip("FLOWTEX_DATA is not set: it names the folder of the large public data files")
     folder = Path(named)
     if not folder.is_dir():
-        pytest.fail(f"FLOWTEX_DATA names {named!r}, which is no folder: correct or unset it")
+        pytest.fail(f"FLOWTEX_DATA names {named!r}, which is not a folder: correct or unset it")
     return folder
 
 

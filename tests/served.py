@@ -85,7 +85,7 @@ def start(*words: str) -> Served:
         said += line
         if found := re.search(r"http://\S+", line):
             return Served(process, found.group())
-    pytest.fail(f"it ended without an address:\n{said}")
+    pytest.fail(f"the server ended without printing an address:\n{said}")
 
 
 async def enter(

@@ -111,7 +111,9 @@ def test_a_view_beside_another_differs_in_what_it_is_told() -> None:
 
 
 def test_choices_of_a_mesh_are_refused_for_a_field() -> None:
-    with pytest.raises(FieldError, match=r"^plane cannot be set for FlowField"):
+    with pytest.raises(
+        FieldError, match=r"^plane cannot be set for a field that already exists, FlowField"
+    ):
         Scene.of(gyre(), plane="k=1")
 
 

@@ -23,8 +23,8 @@ def check_picture_file(output: Path) -> None:
     suffixes = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
     if output.suffix.lower() not in suffixes:
         suffix = output.suffix
-        what = f"{suffix!r} is not a format" if suffix else "the file name has no suffix"
-        msg = f"{output}: {what}; expected one for pictures: .png, .jpg, .webp or .tiff"
+        what = f"{suffix!r} is not a picture format" if suffix else "the file name has no suffix"
+        msg = f"{output}: {what}; expected .png, .jpg, .webp or .tiff"
         raise UsageError(msg)
     checked_target(output)
 

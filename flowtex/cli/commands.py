@@ -16,7 +16,7 @@ from difflib import get_close_matches
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from cyclopts import App, CycloptsError, UnknownOptionError
+from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError
 
 from flowtex._util.ending import Ended, ended_by_signals
 from flowtex.cli import page
@@ -78,7 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = _exit_code(error)
         if debug or code is None:
             raise
-        complain(_unknown(error) if isinstance(error, UnknownOptionError) else error)
+        complain(_explained(error))
         return code
     finally:
         warnings.showwarning = print_warning
@@ -98,16 +98,21 @@ def hosted() -> HostedSession:
     return HostedSession(partial(page.open_site, _run))
 
 
-def _unknown(error: UnknownOptionError) -> UsageError:
-    """Return the error for an unknown flag, with a similar one if there is any."""
+def _explained(error: Exception) -> Exception:
+    """Return an error of the parser with a remedy: the help of a missing flag, or a near name."""
+    if isinstance(error, MissingArgumentError) and error.argument is not None:
+        return UsageError(f"{error.argument.name} is missing: {error.argument.parameter.help}")
+    if not isinstance(error, UnknownOptionError):
+        return error
     flag = (error.token.keyword or error.token.value).partition("=")[0]
     off = "--no-" if flag.startswith("--no-") else "--"
     names = [name for argument in error.argument_collection or () for name in argument.names]
     words = [name.removeprefix(off) for name in names if name.startswith(off)]
     near = get_close_matches(flag.removeprefix(off), words, n=1)
-    command = " ".join(["flowtex", *(error.command_chain or ())])
-    hint = f"did you mean {off}{near[0]}?" if near else f"`{command} --help` lists all options"
-    return UsageError(f"{command} has no option {flag}; {hint}")
+    command = " ".join(error.command_chain or ())
+    help_ = f"`{' '.join(['flowtex', *command.split()])} --help` lists all options"
+    hint = f"did you mean {off}{near[0]}?" if near else help_
+    return UsageError(f"{command or 'flowtex'} has no option {flag}; {hint}")
 
 
 def _warn(message: Warning | str, *_: Any) -> None:

@@ -28,7 +28,7 @@ def complain(error: Exception, colour: str = "red") -> None:
 
 def in_flags(text: str) -> str:
     """Return a message with arguments as flags: ``plane="k=20"`` is ``--plane k=20``."""
-    names = "|".join([*flag_names(), "fresh"])
+    names = "|".join([*flag_names(), "fresh", "seconds", "fps", "quality", "memory"])
 
     def flag(match: re.Match[str]) -> str:
         return f"--{match['name'].replace('_', '-')} {match['value']}"

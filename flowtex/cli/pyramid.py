@@ -90,7 +90,7 @@ def _verify(files: Sequence[Path]) -> int:
     from flowtex.pyramid.places import DamageError
 
     if len(files) != 1 or not is_store(files[0]):
-        msg = f"{' '.join(map(str, files))} is not a pyramid; --verify expects one store"
+        msg = f"{' '.join(map(str, files))} is missing or not a pyramid; --verify expects one store"
         raise UsageError(msg)
     try:
         faults = verify(files[0])

@@ -59,7 +59,9 @@ def serve(
     from flowtex.pyramid import is_store, open_store
 
     if not is_store(store):
-        msg = f"{store} is not a pyramid; build one with `flowtex pyramid {store} -o flow.zarr`"
+        msg = (
+            f"{store} is missing or not a pyramid; build one with `flowtex pyramid FILE -o {store}`"
+        )
         raise UsageError(msg)
     from flowtex.app.server.security import known_hosts, new_secret
     from flowtex.app.server.served_store import ServedStore

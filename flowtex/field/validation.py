@@ -123,10 +123,10 @@ def nodal_faults(
     is_series = v.ndim == len(grid) + 2
     fits = (v.ndim == len(grid) + 1 or is_series) and v.shape[is_series:-1] == grid
     if not (fits and v.shape[-1] in (2, 3) and v.size):
-        series = ", ".join(map(str, ("T", *grid, 3)))
+        nodes = ", ".join(map(str, grid))
         faults.append(
-            f"velocity has shape {v.shape}; expected {(*grid, 3)} for a steady field or "
-            f"({series}) for a time-varying one, because points has shape {(*grid, 3)}{hint}"
+            f"velocity has shape {v.shape}; expected ({nodes}, 2 or 3) for a steady field or "
+            f"(T, {nodes}, 2 or 3) for a time-varying one, as points has ({nodes}) nodes{hint}"
         )
     else:
         faults += time_faults(times, steps)

@@ -369,8 +369,8 @@ ORDER = "expected strictly increasing times: sort the steps, and drop repeated o
         *(
             (
                 {"velocity": np.ones(shape)},
-                f"velocity has shape {shape}; expected (5, 7, 3) for a steady field or "
-                f"(T, 5, 7, 3) for a time-varying one, because points has shape (5, 7, 3){hint}",
+                f"velocity has shape {shape}; expected (5, 7, 2 or 3) for a steady field "
+                f"or (T, 5, 7, 2 or 3) for a time-varying one, as points has (5, 7) nodes{hint}",
             )
             for shape, hint in [
                 (

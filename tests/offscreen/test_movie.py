@@ -226,7 +226,7 @@ def test_a_period_leaves_its_last_time_out() -> None:
         ({"size": (95, 64)}, "size is 95 x 64; an MP4 needs even sides, such as 94 x 64"),
         ({"size": (8192, 8192)}, "MP4 can have at most 35,651,584 pixels"),
         ({"quality": 0}, "quality is 0; expected a number from 1 to 100"),
-        ({"path": "flow.avi"}, "'.avi' is not a format; expected one for movies: .mp4, .gif"),
+        ({"path": "flow.avi"}, "'.avi' is not a movie format; expected .mp4, .gif"),
         ({"path": "flow.gif", "fps": 60.0}, "a GIF can show at most 50 frames per second"),
         ({"path": "flow.gif", "size": (0, 10)}, "size is 0 x 10; expected 1 to 16384 pixels"),
     ],

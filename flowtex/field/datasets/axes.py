@@ -304,7 +304,7 @@ def _picks(
         return [slice(None)] * len(dims), ""
     if kind == LEVEL and line is not None and line.dtype.kind in "fiu":
         number = _at_surface(lines, first.coords.get(dim))
-        why = "nearest to the surface"
+        why = "the nearest to the surface"
     else:
         number, why = 0, "the first"
     value = None if line is None else line[number]
@@ -316,7 +316,7 @@ def _picks(
         other_value = line[other_one]
         text = f"{other_value:g}" if line.dtype.kind in "fiu" else repr(str(other_value))
         how = f"{LEVEL if kind == LEVEL else dim}={text}"
-    note = f"{dim} is {said}, {why} of {count}; choose another, as in {how}"
+    note = f"{dim} is {said}, {why} of {count} values; choose another, as in {how}"
     return [_alike(value, number, other) for other in lines], note
 
 

@@ -263,7 +263,9 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
                     "together with this one, or name both, as in u=..., v=..."
                 )
     names = ", ".join(str(a.name) for a in arrays)
+    if not names:
+        return "no variable has two axes; expected the two components of a velocity on a surface"
     return (
         "no two variables are recognised as the components of a velocity; the variables are "
-        f"{names or 'none with two axes'}. Name the components, as in u=..., v=..."
+        f"{names}. Name the components, as in u=..., v=..."
     )

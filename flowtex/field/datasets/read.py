@@ -462,8 +462,10 @@ def as_datasets(data: Any) -> Datasets:
     import_extra("cf_xarray", "xarray")
     result = []
     for ds in data if isinstance(data, (list, tuple)) else [data]:
-        if not isinstance(ds, (xarray.Dataset, xarray.DataArray)):
-            msg = f"data is {ds!r}; expected an xarray dataset, or a list of them"
+        if not isinstance(ds, xarray.Dataset):
+            msg = (
+                f"data has type {type(ds).__name__}; expected an xarray Dataset, or a list of them"
+            )
             raise FieldError(msg)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

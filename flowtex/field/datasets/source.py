@@ -78,8 +78,8 @@ def open_source(path: str | Path | Sequence[str | Path]) -> Source:
     if not paths:
         if not isinstance(path, (str, Path)):
             msg = (
-                f"{len(path)} files are given, but a mesh is read from a single file; give one of "
-                "them"
+                f"{len(path)} files are given; several files are read only as data of the Earth, "
+                "so give one file with a mesh"
             )
             raise FieldError(msg)
         return FlowSource.from_file(path)

@@ -77,7 +77,8 @@ class _CGNSReader:
 
 _KNOWN_FORMATS = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
-    ".foam and more), or PLOT3D (.xyz with .q beside it)"
+    ".foam and more), PLOT3D (.xyz with .q beside it), or data of the Earth (.nc, .zarr, .grib, "
+    ".json)"
 )
 
 
@@ -220,7 +221,8 @@ def read_files(
     _refuse(chosen, "data of the Earth, but this is a mesh")
     if not isinstance(path, (str, Path)):
         msg = (
-            f"{len(path)} files are given, but a mesh is read from a single file; give one of them"
+            f"{len(path)} files are given; several files are read only as data of the Earth, so "
+            "give one file with a mesh"
         )
         raise FieldError(msg)
     if isinstance(time, str):

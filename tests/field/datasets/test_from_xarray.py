@@ -177,7 +177,9 @@ def levels() -> Any:
 
 
 def test_the_level_nearest_the_surface_is_said() -> None:
-    with pytest.warns(DatasetNotice, match="level is 850 millibars, nearest to the surface of 3"):
+    with pytest.warns(
+        DatasetNotice, match="level is 850 millibars, the nearest to the surface of 3"
+    ):
         field = FlowField.from_xarray(levels(), globe=True)
     assert np.allclose(
         field.velocity, 3 * FlowField.from_xarray(levels(), globe=True, isel={"level": 0}).velocity

@@ -77,7 +77,7 @@ def test_levels_and_times_have_names_and_are_read_late() -> None:
     deep = FlowField.from_xarray(ds, level=-0.5, time="2024-01-02", globe=True)
     assert deep.steady and np.allclose(deep.velocity[0], 2 * 0.6 * field.velocity[0])
     assert np.allclose(deep.scalars["zeta"][0], 2), "it has no levels"
-    with pytest.warns(DatasetNotice, match="siglay is -0.1, nearest to the surface of 3"):
+    with pytest.warns(DatasetNotice, match="siglay is -0.1, the nearest to the surface of 3"):
         FlowField.from_xarray(ds, globe=True)
     mean = FlowField.from_xarray(ds, "ua", "va", globe=True)
     assert np.allclose(mean.velocity[0], field.velocity[0])

@@ -88,7 +88,7 @@ def test_the_two_files_of_nemo_are_one_field() -> None:
     pair = [models()["ds_NEMO_MOI_U"], models()["ds_NEMO_MOI_V"]]
     known = recognise(pair)
     assert known.grid.startswith("Arakawa C, sides after")
-    with pytest.warns(DatasetNotice, match="deptht is 1 m, nearest to the surface of 5"):
+    with pytest.warns(DatasetNotice, match="deptht is 1 m, the nearest to the surface of 5"):
         field = FlowField.from_xarray(pair, globe=True)
     u, v = (ds[n].values[0] for ds, n in zip(pair, ("vozocrtx", "vomecrty"), strict=True))
     # On lines of longitude and latitude the means of two sides are eastward and northward.

@@ -74,10 +74,11 @@ class Contour:
             return []
         near = difflib.get_close_matches(self.name, names, n=1)
         hint = f'. Did you mean "{near[0]}"?' if near else ""
-        listed = ", ".join(dict.fromkeys(names)) or "none"
+        listed = ", ".join(dict.fromkeys(names))
+        expected = f"expected one of: {listed}" if listed else "it has only vectors, or no arrays"
         return [
             f"contour is {self.text}, but the mesh has no array {self.name!r} of one "
-            f"component{hint}; expected one of: {listed}"
+            f"component{hint}; {expected}"
         ]
 
     def of(self, mesh: Any) -> Any:
