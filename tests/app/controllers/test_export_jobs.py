@@ -244,7 +244,7 @@ def test_a_file_that_cannot_be_written_is_told(plain: Viewport, tmp_path: Path) 
         (PictureJob, {"density": 0.0}, "density is 0.0; expected 0.125 to 8"),
         (MovieJob, {"size": (5000, 5000)}, "the movie would be 5000 x 5000; expected at most"),
         (MovieJob, {"seconds": 1e9}, "seconds is 1000000000.0; expected a number from 0.1"),
-        (MovieJob, {"path": "a.avi"}, "'.avi' is not a format"),
+        (MovieJob, {"path": "a.avi"}, "'.avi' is not a movie format"),
     ],
 )
 def test_what_cannot_be_made_is_told(
