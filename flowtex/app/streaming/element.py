@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.colours import CMAPS, rgb
+from flowtex._util.colours import CMAPS
 from flowtex._util.progress import Stopped
 from flowtex.app.server.files import Content, Give, Routes
 from flowtex.app.server.page import PageState, Signal, running_loop
@@ -37,7 +37,7 @@ from flowtex.settings import TABLE
 from flowtex.tiles import TileKey
 from flowtex.web.assets import client_module
 from flowtex.web.source import TileSource
-from flowtex.web.view import colours_of, marks_of
+from flowtex.web.view import WebView
 
 _log = logging.getLogger(__name__)
 _numbers = itertools.count(1)
@@ -77,19 +77,15 @@ class HandedScene:
 
     def update(self, pane: Pane, background: Any) -> None:
         """Hand over what a pane shows in place of what was before, or that in other colours."""
-        scene = pane.handle.scene
-        textures = scene.textures
-        colours = colours_of(scene, textures.geometry.field, rgb(background))
-        colours = replace(colours, bar=True)  # VTK draws none into its pictures
-        marks = marks_of(scene)
-        data = ClientData(textures, colours, pyramid=scene.pyramid, traces=True, marks=marks)
+        data = WebView(pane.handle.scene, background=background).data()
+        colours = replace(data.colours, bar=True)  # VTK draws none into its pictures
         source = self._source
-        if source is not None and source.scene.textures is textures:
+        if source is not None and source.scene.textures is data.textures:
             source.scene = source.scene.recoloured(colours)
         else:
             self.close()
             self._generation = next(_numbers)
-            source = self._source = TileSource(data)
+            source = self._source = TileSource(data.recoloured(colours))
         self._routes.withdraw(self._stem)
         self._stem = f"parts-{next(_numbers)}"
         self._address = self._routes.give_each(self._stem, lambda name: self._give(source, name))
