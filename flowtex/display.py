@@ -33,8 +33,6 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
         Width and height of the window in pixels; 1024 x 768 by default, and in a notebook the width
         of the cell.
     {options}
-    **settings
-        Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
 
     Returns
     -------

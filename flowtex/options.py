@@ -53,6 +53,8 @@ LAND_COLOR = "#8f8b82"
 #: Arguments for data of the Earth only, and for meshes only.
 OF_EARTH = ("projection", "globe", "level", "sel", "isel")
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free")
+#: What docstrings say of all arguments that are none of the options.
+SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
 #: The scalar that every flow has, and the range of colours without outliers.
 SPEED, ROBUST = "speed", "robust"
 
@@ -572,10 +574,13 @@ def _described(text: str, options: list[Any]) -> str:
             lines.append(line)
             continue
         indent = line[: line.index("{")]
-        for option in options:
-            lines.append(f"{indent}{option.name}")
+        described = {option.name: option.metadata["text"] for option in options}
+        if "**settings" not in text:
+            described["**settings"] = SETTINGS_TEXT
+        for name, words in described.items():
+            lines.append(f"{indent}{name}")
             lines += textwrap.wrap(
-                option.metadata["text"],
+                words,
                 width=100,
                 initial_indent=indent + "    ",
                 subsequent_indent=indent + "    ",

@@ -136,8 +136,6 @@ def axes(
     time, clock, supersampling
         As for :func:`flowtex.render`.
     {options}
-    **settings
-        Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
 
     Returns
     -------

@@ -60,8 +60,6 @@ def render(
         As for ``plotter.add_mesh``. This bar is drawn only with ``show_scalar_bar=True`` and
         without annotations.
     {options}
-    **settings
-        Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
 
     Returns
     -------

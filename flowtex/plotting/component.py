@@ -64,14 +64,12 @@ class FlowtexComponent:
         mesh
             PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or
             path of a file.
-        {options}
         scalar_bar_args
             As for ``plotter.add_mesh``.
         reset_camera
             Whether to move the camera so that it shows everything; by default for the first mesh
             only.
-        **settings
-            Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
+        {options}
 
         Returns
         -------

@@ -182,10 +182,8 @@ class FlowHandle(AppearanceAttributes):
             nothing is changed then.
         """
         field = FieldOptions(**options).field(mesh)
-        old = self.scene
-        scene = Scene(share_field(field), self.settings, old.appearance, image=old.image)
+        old, scene = self.scene, self.scene.showing(share_field(field))
         try:
-            scene.time = float(np.clip(self.time, field.times[0], field.times[-1]))
             textures = scene.textures  # tracing may fail
         except BaseException:
             scene.close()

@@ -127,8 +127,6 @@ def export(
     announce
         Called with the estimated size in bytes and the number of steps before the work begins.
     {options}
-    **settings
-        Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
 
     Returns
     -------

@@ -153,8 +153,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         size, bar, axes
             As the attributes of these names.
         {options}
-        **settings
-            Any setting of :class:`~flowtex.Settings`, such as ``samples=25``.
 
         Raises
         ------
