@@ -397,10 +397,7 @@ class Scene:
         return drawn_speeds(some, self.whole)
 
     def copy(self) -> Scene:
-        """Return a scene that shows the same, and that no later change of this one reaches.
-
-        A thread can read it while this one goes on.
-        """
+        """Return a scene that shows the same, for a thread: no change of this one reaches it."""
         scene = Scene(self.field)
         scene.settings, scene._appearance = self.settings.copy(), self.appearance
         scene.image, scene._noise, scene._time = self.image, self._noise, self._time
@@ -428,12 +425,14 @@ class Scene:
         )
         return scene
 
-    def showing(self, field: FlowField) -> Scene:
-        """Return a scene of another flow with these settings, also in future, and this appearance.
+    def showing(self, field: FlowField, own: dict[str, Any] | None = None) -> Scene:
+        """Return a scene of another flow with these settings, also in the future, and this look.
 
-        It is at the nearest time that the flow has. Raises what making a scene does.
+        It is at the nearest time. With ``own`` changes of the look, colours that the flow has not
+        are those of the speed. Raises what making a scene does.
         """
-        scene = Scene(field, self.settings, self._appearance, image=self.image)
+        look = self._appearance if own is None else _look_beside(self, own, field)
+        scene = Scene(field, self.settings, look, image=self.image)
         scene._time = min(max(self._time, scene._time), float(field.times[-1]))
         return scene
 

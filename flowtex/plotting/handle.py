@@ -181,26 +181,28 @@ class FlowHandle(AppearanceAttributes):
             When the mesh does not contain a flow, or lacks the scalar that colours the surface;
             nothing is changed then.
         """
-        field = FieldOptions(**options).field(mesh)
-        old, scene = self.scene, self.scene.showing(share_field(field))
+        self.show_scene(self.scene.showing(share_field(FieldOptions(**options).field(mesh))))
+
+    def show_scene(self, scene: Scene) -> None:
+        """Take another scene with the same settings; if tracing fails, all stays as it is."""
         try:
-            textures = scene.textures  # tracing may fail
+            textures = scene.textures
         except BaseException:
             scene.close()
             raise
+        old, self.scene, self._shown_time = self.scene, scene, scene.time
         self._end()
-        old.close()
-        self.scene, self._shown_time = scene, scene.time
-        self._end = scene.observe(self._changed)
-        self._surface.set_textures(textures, scene.pyramid)
+        self._surface.show(textures, scene.pyramid, scene.moment)
         self._surface.set_moment(*scene.moment)
         if self._map is not None:
             self._map.close()
             self._map = None
-        if field.projection is not None:
+        if scene.field.projection is not None:
             self._map = MapOverlay(self.actor, self._plotter.renderer, scene, self._surface)
         self._structure.show(scene)
         self._show_appearance("scalars", "lighting")
+        scene.follow(old)
+        self._end = scene.observe(self._changed)
         self._draw()
 
     def set_image(self, image: Any) -> None:

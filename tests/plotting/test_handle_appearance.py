@@ -133,6 +133,15 @@ def test_another_surface_is_drawn_as_if_it_were_the_first(plotter: Any) -> None:
         fresh.camera = plotter.camera.copy()
         np.testing.assert_array_equal(shot(plotter), shot(fresh))
         fresh.close()
+    # At a later time of a series, a flow that is steady takes its place, and of another kind.
+    handle.set_surface(series := flowtex.examples.double_gyre_field(True, (11, 21)))
+    handle.time = float(series.times[-2])
+    shot(plotter)
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
+    numbers = [[0, 1, 2], [1, 3, 2]]
+    handle.set_surface(flowtex.FlowField.from_triangles(corners, numbers, np.ones((4, 2))))
+    assert handle.time == 0 and np.ptp(shot(plotter)) > 0
+    handle.set_surface(field)
     handle.scalars = "x"
     with pytest.raises(FieldError, match="no scalar 'x'"):
         handle.set_surface(gyre())

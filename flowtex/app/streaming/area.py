@@ -17,7 +17,6 @@ or of the appearance, such as ``area.cmap = "magma"``, is drawn at once.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
 from typing import Any
 
 import trame_rca.module
@@ -94,8 +93,8 @@ class FlowArea(AppearanceAttributes):
         self.points = PointReader(self.viewport)
         self.appearance_changed = Signal()
         self._tasks: list[asyncio.Task[None]] = []
-        self._watching: tuple[Callable[[], None], ...] = ()
-        self._watch()
+        settings = self.settings.observe(lambda name, value: self._changed())
+        self._ends = (settings, self.scene.observe(self._scene_changed))
         self._is_made = True
         if server.running:
             self._on_ready()
@@ -155,7 +154,6 @@ class FlowArea(AppearanceAttributes):
             Whether a chosen colour range and the time shown stay.
         """
         self.viewport.show(field, keep_view=keep_view, keep_range=keep_range)
-        self._watch()
         self.changed()
 
     def compare(self, changes: dict[str, Any] | None) -> None:
@@ -201,18 +199,9 @@ class FlowArea(AppearanceAttributes):
         self.player.close()
         self.element.close()
         self.points.close()
-        self._stop_watching()
-        self.viewport.close()
-
-    def _stop_watching(self) -> None:
-        for end in self._watching:
+        for end in self._ends:
             end()
-
-    def _watch(self) -> None:
-        """Draw when a setting or the appearance changes."""
-        self._stop_watching()
-        settings = self.settings.observe(lambda name, value: self._changed())
-        self._watching = (settings, self.scene.observe(self._scene_changed))
+        self.viewport.close()
 
     def _scene_changed(self, affects: Change) -> None:
         if affects == "appearance":

@@ -41,7 +41,6 @@ class Pane:
     def __init__(self, handle: FlowHandle, viewport: Viewport) -> None:
         self.handle = handle
         self._viewport = viewport
-        self._mapper = handle.actor.mapper
 
     @property
     def size(self) -> tuple[int, int]:
@@ -187,21 +186,26 @@ class Viewport:
         With ``keep_range`` it is another part of the same data: the ends of the colour map that
         somebody chose stay, and the time that is shown where the flow has the same times.
         """
-        camera, clock, flat = self.camera, self.clock, self.flat
-        times, time = self.field.times, self.handle.time
-        first = self._pane(_like(self.scene, {} if keep_range else {"clim": None}, field))
+        camera, flat, times, time = self.camera, self.flat, self.field.times, self.handle.time
+        own: dict[str, Any] = {} if keep_range else {"clim": None}
+        flows = [field, self._beside.get("field", field)]
+        scenes: list[Scene] = []
         try:
-            second = self._second(first.handle, self._beside)
+            for pane, flow in zip(self.panes, flows, strict=False):
+                scene = pane.handle.scene
+                scenes.append(_fitting(scene, partial(scene.showing, flow), own))
+                _ = scenes[-1].textures  # tracing may fail
         except BaseException:
-            first.handle.remove(render=False)
+            for scene in scenes:
+                scene.close()
             raise
-        self._put([first, *second], self._beside)
-        if keep_range and np.array_equal(times, field.times):
-            self.set_time(time)
+        for pane, scene in zip(self.panes, scenes, strict=True):
+            pane.handle.show_scene(scene)
+        same = keep_range and np.array_equal(times, field.times)
+        self.set_time(time if same else float(field.times[0]))
         self.home()
         if keep_view and flat == self.flat:
             self.camera = camera
-        self.clock = clock
 
     def compare(self, changes: Mapping[str, Any] | None) -> None:
         """Show a second pane that differs, or one pane again for ``None``.
@@ -218,7 +222,8 @@ class Viewport:
         if not changes:
             return []
         own = {name: value for name, value in changes.items() if name not in ("time", "field")}
-        scene = _like(first.scene, own, changes.get("field", first.field))
+        beside = partial(first.scene.beside, field=changes.get("field", first.field))
+        scene = _fitting(first.scene, beside, own)
         scene.time = _time_beside(first.scene, changes)
         return [self._pane(scene)]
 
@@ -231,8 +236,8 @@ class Viewport:
                 pane.handle.remove(render=False)
         self.panes, self._beside = panes, dict(changes)
         if len(panes) > 1:
-            scenes = [pane.handle.scene for pane in panes]
-            self._stop_following = follow(lambda: scenes[0], lambda: scenes[1], self._beside)
+            one, two = (pane.handle for pane in panes)
+            self._stop_following = follow(lambda: one.scene, lambda: two.scene, self._beside)
             self.clock = self.handle.clock
         self.resize(*self._size)
 
@@ -422,12 +427,11 @@ def _time_in(scene: Scene, field: FlowField) -> float:
     return time if first <= time <= last and not scene.field.steady else last
 
 
-def _like(scene: Scene, changes: Mapping[str, Any], field: FlowField) -> Scene:
-    """Return a scene of a field that looks like another one, but for changes."""
+def _fitting(like: Scene, make: Callable[[dict[str, Any]], Scene], own: dict[str, Any]) -> Scene:
+    """Make a scene like another one of a field that may have values without a logarithm."""
     try:
-        return scene.beside(changes, field)
+        return make(own)
     except ValueError:
-        if not scene.appearance.log_scale:
+        if not like.appearance.log_scale:
             raise
-        # The field has values that have no logarithm.
-        return scene.beside({**changes, "log_scale": False, "clim": None}, field)
+        return make({**own, "log_scale": False, "clim": None})

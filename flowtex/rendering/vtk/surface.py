@@ -109,6 +109,13 @@ class FlowSurface:
         """Whether tiles that the last frame has asked for are on their way."""
         return self._loader is not None and self._loader.busy
 
+    def show(
+        self, textures: TextureSet, pyramid: Pyramid | None, moment: tuple[int, int, float]
+    ) -> None:
+        """Draw another flow from now on, at a moment of it; what colours it is to be set anew."""
+        self._moment, self._scalars = moment, None
+        self.set_textures(textures, pyramid)
+
     def set_textures(self, textures: TextureSet, pyramid: Pyramid | None = None) -> None:
         """Draw another texture set from now on, of the same flow or of another one."""
         self._drop(list(self._tiles))

@@ -120,7 +120,7 @@ def test_both_panes_and_an_image_are_in_the_picture(plain: Viewport, tmp_path: P
 
 
 def test_the_page_goes_on_between_tiles(plain: Viewport, tmp_path: Path) -> None:
-    job = PictureJob(plain, tmp_path / "large.png", (900, 600))
+    job = PictureJob(plain, tmp_path / "large.png", (1800, 1200))
     seen: list[float] = []
 
     async def watch() -> None:
@@ -133,7 +133,7 @@ def test_the_page_goes_on_between_tiles(plain: Viewport, tmp_path: Path) -> None
 
     asyncio.run(watch())
     assert len(seen) > 8 and seen == sorted(seen) and 0.85 < seen[-1] <= 1
-    assert pixels(job.path).shape == (600, 900, 3)
+    assert pixels(job.path).shape == (1200, 1800, 3)
 
 
 def test_a_job_waits_while_the_view_is_busy(plain: Viewport, tmp_path: Path) -> None:
