@@ -427,9 +427,15 @@ class Options:
     settings: Mapping[str, Any]
     bodies: Bodies | None = None
 
-    def make_settings(self, **defaults: Any) -> Settings:
-        """Return all settings; an image keeps its own colours unless ``strength`` is given."""
+    def make_settings(self, field: FlowField | None = None, **defaults: Any) -> Settings:
+        """Return all settings.
+
+        An image keeps its own colours unless ``strength`` is given, and where winds and currents of
+        the Earth are calm the texture fades unless ``fade`` is.
+        """
         values = {**defaults, **self.settings}
+        if field is not None and field.projection is not None:
+            values.setdefault("fade", True)
         if self.appearance.image is not None:
             noise = values.setdefault("noise", "image")
             if noise != "image":

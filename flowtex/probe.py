@@ -248,7 +248,9 @@ class _Pixel:
         points, coordinates, noise = self._places(np.concatenate(recorder.displacement)[order])
         knots = np.concatenate([[0.0], values["u_lags"]])
         m, shares = bracket(knots, np.abs(lags), side="left")
-        cell = self._summing.cell(self._fragments.place)
+        known = self._summing.known(self._fragments.place, self._level)
+        faded = self._summing.faded(self._fragments.place, self._level, known)
+        cell = self._summing.cell(self._fragments.place, known)
         in_cell = cell is not None and cell.share[0] > 0
         path_lags, path = (lags, points) if in_cell else self._path(sides, knots, lags)
         pixel, grain = self._sizes()
@@ -273,7 +275,7 @@ class _Pixel:
             pixel=pixel,
             grain=grain,
             step=float(sides[0].step(np.zeros(1))[0]) * self._unit if moves else np.nan,
-            gain=recorder.gain,
+            gain=recorder.gain * (float(faded[0]) if np.ndim(value) == 0 else 1.0),
             value=float(value) if np.ndim(value) == 0 else np.asarray(value),
             path=path,
             path_lags=path_lags * self._unit,

@@ -133,7 +133,8 @@ class Scene:
     @classmethod
     def from_options(cls, mesh: Any, options: Options) -> Scene:
         """Return the scene of a mesh or a field; :meth:`of` has the errors."""
-        return cls(options.field.field(mesh), options.make_settings(), options.appearance)
+        field = options.field.field(mesh)
+        return cls(field, options.make_settings(field), options.appearance)
 
     def beside(self, changes: Mapping[str, Any], field: FlowField | None = None) -> Scene:
         """Return a second scene of the same field, or of another one, that differs in changes.

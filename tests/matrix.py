@@ -149,6 +149,8 @@ VIEWS: dict[str, View] = {
     "uncertain, without a sign": View(lambda: uncertain(lines()), MIDDLE),
     "uncertain, texture": View(uncertain_gyre, settings=TEXTURE),
     "uncertain, image": View(uncertain_gyre, settings={"noise": "image", "strength": 1.0}),
+    "fading": View(settings={"fade": 0.9}),
+    "fading, triangles": View(scattered_gyre, settings={"fade": 0.9}),
     "texture": View(settings=TEXTURE),
     "texture, stretched": View(settings=TEXTURE | {"noise_correction": False}),
     "texture, zoom 16": View(camera=straight(16), settings=TEXTURE),

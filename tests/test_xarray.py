@@ -16,6 +16,7 @@ from earth_data import winds
 import flowtex
 import flowtex.xarray
 from flowtex import FieldError
+from flowtex.scene import Scene
 from flowtex.settings import SettingsError
 
 
@@ -35,6 +36,14 @@ def test_a_dataset_has_the_calls_of_the_package(opengl: Any, tmp_path: Path) -> 
         ds.flowtex.render(plane="k=2")
     with pytest.raises(FieldError, match="globe applies to data of the Earth"):
         flowtex.render(flowtex.examples.double_gyre(), globe=True)
+
+
+def test_the_texture_of_the_earth_fades_where_it_is_calm() -> None:
+    ds = winds(np.arange(-20.0, 21.0, 2.0), np.arange(40.0, 61.0, 2.0))
+    assert Scene.of(ds).settings.fade == 0.2
+    assert Scene.of(ds, fade=False).settings.fade == 0
+    assert Scene.of(flowtex.examples.double_gyre()).settings.fade == 0
+    assert Scene.of(flowtex.examples.double_gyre(), fade=True).settings.fade == 0.2
 
 
 def test_values_are_told_at_a_place_of_the_earth(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ export interface ViewState {
 /** The table's settings with the types that they have there. */
 type Numbers = Record<"kernel" | "texture" | "noise" | "motion" | "speed_in", string> &
   Record<"two_sided" | "lod" | "fixed_grain" | "show_level", boolean> &
-  Record<"samples" | "spacing" | "grain" | "contrast" | "strength" | "seed", number> &
+  Record<"samples" | "spacing" | "grain" | "contrast" | "strength" | "fade" | "seed", number> &
   Record<"tiles" | "resolution" | "speed" | "period", number>;
 
 /** Uniforms of shaders/common/uniforms.glsl; `noiseShape` is that of the noise's part. */
@@ -59,6 +59,7 @@ export function uniforms(
     u_lod: s.lod,
     u_contrast: s.contrast,
     u_strength: s.strength,
+    u_fade: signFree ? 0 : s.fade,
     u_seed: s.seed,
     u_showLevel: s.show_level,
     u_fixed: s.fixed_grain,

@@ -274,7 +274,7 @@ def _prepare(
 ) -> tuple[FlowField, Options, FrameTimes]:
     """Return the field, the options with the motion in them, and what the frames show."""
     field = options.field.field(mesh)
-    settings = options.make_settings(**({"motion": "speed"} if field.steady else {}))
+    settings = options.make_settings(field, **({"motion": "speed"} if field.steady else {}))
     shown = frame_times(field, settings, fps=fps, seconds=seconds)
     own = dict(options.settings)
     if field.steady:

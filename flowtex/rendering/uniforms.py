@@ -175,6 +175,8 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_lod": settings.lod,
         "u_contrast": settings.contrast,
         "u_strength": settings.strength,
+        # Layer 2 of a node that points against others is one without the speed.
+        "u_fade": 0.0 if geometry.field.sign_free else settings.fade,
         "u_seed": settings.seed,
         "u_showLevel": settings.show_level,
         "u_fixed": settings.fixed_grain,

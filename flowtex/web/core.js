@@ -718,19 +718,19 @@ chosen==="ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,
 geometry.columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.
 two_sided||signFree||sparse2?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(
 header,settings)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.kernels.indexOf(
-kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,
-...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,
-u_apart:arrowDistance(header,settings)*view.density,u_bySpeed:settings.arrow_length==="speed",u_arrowSides:slices.sides,
-u_pieces:constants.arrows.pieces,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):{}}}function isMoving(header,settings){
-let streams=settings.motion!=="off"&&!isSignFree(header);return!header.paper&&(header.slices.steps>1||streams)}function isSparse(header,settings){
-return!header.paper&&settings.texture==="streaklets"}function hasArrows(header,settings){return Number(settings.arrows)>
-0&&!isSignFree(header)&&!header.paper}function arrowDistance({constants},{arrows}){return constants.arrows.least*Math.max(
-Number(arrows),constants.arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,constants}=header,s=settings,
-gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(
-view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.extent/s.resolution;return Math.floor(
-s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose){let chosen={
-FLOWTEX_CELLS:isClose,FLOWTEX_MOVING:isMoving(header,settings),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.entries(
-chosen).flatMap(([name,holds])=>holds?[name]:[])}var modulo=(value,by)=>value-by*Math.floor(value/by);function motionUniforms(header,s,view){
+kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_fade:signFree?0:s.fade,u_seed:s.seed,u_showLevel:s.show_level,
+u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),u_noiseFinest:finest,u_texel:geometry.
+extent/s.resolution,u_apart:arrowDistance(header,settings)*view.density,u_bySpeed:settings.arrow_length==="speed",u_arrowSides:slices.
+sides,u_pieces:constants.arrows.pieces,...header.paper&&noiseShape?paperUniforms(header.paper,s,noiseShape,view.density):
+{}}}function isMoving(header,settings){let streams=settings.motion!=="off"&&!isSignFree(header);return!header.paper&&(header.
+slices.steps>1||streams)}function isSparse(header,settings){return!header.paper&&settings.texture==="streaklets"}function hasArrows(header,settings){
+return Number(settings.arrows)>0&&!isSignFree(header)&&!header.paper}function arrowDistance({constants},{arrows}){return constants.
+arrows.least*Math.max(Number(arrows),constants.arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,
+constants}=header,s=settings,gap=Math.hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?
+Math.max(gap,0)/Math.hypot(...subtract2(view.eye,view.focus)):1,grain=s.lod?view.pixel*away*s.grain*view.density:geometry.
+extent/s.resolution;return Math.floor(s.samples/2)*s.spacing*grain<constants.farCells*slices.critical}function variantOf(header,settings,isClose){
+let chosen={FLOWTEX_CELLS:isClose,FLOWTEX_MOVING:isMoving(header,settings),FLOWTEX_SPARSE:isSparse(header,settings)};return Object.
+entries(chosen).flatMap(([name,holds])=>holds?[name]:[])}var modulo=(value,by)=>value-by*Math.floor(value/by);function motionUniforms(header,s,view){
 let{geometry,slices,constants}=header,varies=slices.steps>1,inPixels=!varies&&s.speed_in==="pixels",turns=varies?modulo(
 (view.time-slices.times[0])/(geometry.extent/slices.pace),constants.mostTurns):modulo(view.clock/s.period,1),travel=varies?
 geometry.extent:s.speed*s.period,coarse=Math.floor(turns/constants.clockStep)*constants.clockStep;return{u_clock:[coarse,
@@ -2062,11 +2062,11 @@ octave=Math.floor(octaves),late=octaves-octave,local=toFrame(geometry.frame,subt
 local,octave,geometry.planar,isSparse(header,settings),u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.
 map(weight=>weight**2)),pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(
 u.u_spacing)*2**(late/2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*
-Math.SQRT1_2**n,near,c)),gain=alone*total(weights2)/Math.sqrt(squares*total(variance)),moved=mover(at),samples=steps.map(
-({displacement,weight})=>{let[fine,coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(
-displacement)??at.position,weight:weight/total(weights2),noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.
-weight*sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*
-mean,Number(settings.contrast),c)}}var SVG4="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacin\
+Math.SQRT1_2**n,near,c)),slow=u.u_fade?clamp(layers(2)[3]/Number(u.u_fade),0,1):1,gain=slow**2*(3-2*slow)*alone*total(weights2)/
+Math.sqrt(squares*total(variance)),moved=mover(at),samples=steps.map(({displacement,weight})=>{let[fine,coarse]=noise(displacement),
+value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(displacement)??at.position,weight:weight/total(weights2),
+noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.weight*sample.noise));return{samples,middle:back.
+length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*mean,Number(settings.contrast),c)}}var SVG4="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacin\
 g","Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Another noise",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
 hann:"smooth",box:"even",ramp:"falling"},ROW2=40;function row(name,count2,marks){let svg=document.createElementNS(SVG4,"\
 svg");svg.setAttribute("viewBox",`0 0 ${count2} ${ROW2}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute(

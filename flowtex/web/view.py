@@ -194,7 +194,7 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
     """
     field = share_field(options.field.field(mesh))
     background, changes = options.view.background, options.view.beside
-    first = Scene(field, options.make_settings(), options.appearance)
+    first = Scene(field, options.make_settings(field), options.appearance)
     common: dict[str, Any] = {"background": background, "steps": steps, "bodies": options.bodies}
     views = [WebView(first, **common)]
     if changes is not None:

@@ -25,6 +25,7 @@ uniform int u_kernel;       // FLOWTEX_KERNEL_HANN, ..._BOX or ..._RAMP
 uniform bool u_lod;
 uniform float u_contrast;
 uniform float u_strength;
+uniform float u_fade;       // speed below which the texture fades, over the typical one
 uniform int u_seed;
 uniform bool u_showLevel;   // colour by the level of detail
 uniform bool u_fixed;       // grains no smaller on the surface than u_texel

@@ -497,6 +497,7 @@ SAMPLED: dict[str, tuple[tuple[float, float], Camera, dict[str, Any]]] = {
     "box to the border": ((0.4, 6.1), WHOLE, {"kernel": "box", "samples": 31}),
     "no level of detail": ((2.3, 5.6), straight(4), {"lod": False, "samples": 7}),
     "tilted": ((2.3, 5.6), TILTED, {"samples": 7}),
+    "fading": ((2.3, 3.6), WHOLE, {"samples": 9, "fade": 1.0}),
 }
 
 

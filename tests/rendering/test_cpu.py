@@ -441,6 +441,18 @@ def test_a_picture_says_what_it_shows() -> None:
     assert (drawn[seen][:, 0] == drawn[seen][:, 1]).all()
 
 
+def test_the_texture_fades_where_the_flow_is_slow() -> None:
+    y, x = np.mgrid[0:1:21j, 0:1:21j]
+    field = planar(np.stack([x, y], -1), np.stack([0 * x, x], -1))
+    shot = straight((0.5, 0.5), 0.02, (60, 50))
+    plain, faded = value(field, shot), value(field, shot, fade=0.8)
+    seen = np.isfinite(plain)
+    across = np.broadcast_to((np.arange(60) - 29.5) * 0.02 + 0.5, seen.shape)[seen]
+    share = np.clip(across / (0.8 * np.sqrt(np.mean(x**2))), 0, 1)
+    np.testing.assert_allclose(faded[seen], plain[seen] * share**2 * (3 - 2 * share), atol=0.01)
+    assert (faded[seen] == plain[seen])[share == 1].all()
+
+
 def test_an_empty_view_is_an_empty_picture() -> None:
     settings = Settings()
     picture = render(textures(gyre(), settings), settings, *straight((50, 50), 0.01, (8, 6)))

@@ -105,7 +105,7 @@ class Summing:
         values, lookup = self._values, self._lookup
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
-        known = self._known(coordinate, level)
+        known = self.known(coordinate, level)
         moving = values["moving"]
         lookup.move(speed, self._slices.layer(coordinate, 2, level)[:, 3] if moving else speed)
         sums = self._first(len(base))
@@ -113,10 +113,20 @@ class Summing:
         for side in self.sides(coordinate, level, base):
             self._add(sums, side, cell, self._count * known)
         value = lookup.blend(sums)
-        # A picture keeps its colours.
-        return value if value.ndim > 1 else value * (const.FADED + (1 - const.FADED) * known)
+        if value.ndim > 1:  # a picture keeps its colours
+            return value
+        return np.asarray(value * self.faded(coordinate, level, known))
 
-    def _known(self, coordinate: Places, level: Floats) -> Floats:
+    def faded(self, coordinate: Places, level: Floats, known: Floats) -> Floats:
+        """Share of the texture where its direction is not known or the flow is slow, (N,)."""
+        share = const.FADED + (1 - const.FADED) * known
+        if self._values["u_fade"] > 0:
+            speed = self._slices.layer(coordinate, 2, level)[:, 3]
+            usual = np.clip(speed / self._values["u_fade"], 0, 1)
+            share = share * usual**2 * (3 - 2 * usual)
+        return np.asarray(share)
+
+    def known(self, coordinate: Places, level: Floats) -> Floats:
         """Return how far the direction is known, (N,)."""
         if not self._slices.uncertain:
             return np.ones(len(level))
