@@ -31,8 +31,7 @@ test: $(VENV)/.ready-test ## set up if necessary, then run all checks and all te
 	@sh tools/browsers.sh $(BIN)/python
 	@sh tools/check.sh $(BIN) all $(PYTEST_ARGS)
 
-check: $(VENV)/.ready-test ## style, format, types, and the fast tests of changed modules, or all
-fast ones with TESTS=fast
+check: $(VENV)/.ready-test ## style, format, types, and the fast tests of changed modules, or all fast ones with TESTS=fast
 	@sh tools/opengl.sh $(BIN)/python
 	@sh tools/check.sh $(BIN) $(TESTS) $(PYTEST_ARGS)
 
@@ -44,8 +43,7 @@ coverage: $(VENV)/.ready-test ## measure the coverage of flowtex/ and client/src
 fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, files and messages
 	FLOWTEX_FUZZ=$(FUZZ) $(BIN)/pytest -n auto --maxprocesses 4 -m hypothesis $(PYTEST_ARGS)
 
-integrations: $(VENV)-integrations/.ready ## show the widget in Notebook 7, Panel, Shiny, Solara and
-Streamlit, in a separate environment
+integrations: $(VENV)-integrations/.ready ## show the widget in Notebook 7, Panel, Shiny, Solara and Streamlit, in a separate environment
 	@sh tools/browsers.sh $(VENV)-integrations/bin/python
 	$(VENV)-integrations/bin/python -m pytest tests/integrations $(PYTEST_ARGS)
 
@@ -62,8 +60,7 @@ client: $(VENV)/.ready-test ## build the browser client into the package
 docs: $(VENV)/.ready-test ## write the table of settings into the guide
 	FLOWTEX_WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/test_docs.py -k table
 
-site: $(VENV)/.ready-site ## build the site into out/site, and check its links, spelling and
-accessibility
+site: $(VENV)/.ready-site ## build the site into out/site, and check its links, spelling and accessibility
 	@sh tools/opengl.sh $(BIN)/python
 	@sh tools/browsers.sh $(BIN)/python
 	@sh tools/site.sh $(BIN)
