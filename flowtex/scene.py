@@ -20,17 +20,10 @@ from flowtex._util.colours import colour_table, is_diverging
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.dates import seconds_since
-from flowtex.field.derived import DERIVED
+from flowtex.field.derived import DERIVED, steps_of
 from flowtex.field.interpolation import steps_around
-from flowtex.field.steps import LazySteps, Steps
-from flowtex.options import (
-    ROBUST,
-    SPEED,
-    Appearance,
-    AppearanceAttributes,
-    FieldOptions,
-    Options,
-)
+from flowtex.field.steps import LazySteps
+from flowtex.options import ROBUST, SPEED, Appearance, FieldOptions, Options
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.settings import TABLE, Affects, Settings, SettingsError
 from flowtex.textures import TextureSet, check_noise
@@ -51,15 +44,7 @@ from flowtex.tiles import (
 )
 from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
 
-__all__ = [
-    "NO_IMAGE",
-    "AppearanceAttributes",
-    "Change",
-    "Scene",
-    "drawn_store",
-    "share_field",
-    "steps_of",
-]
+__all__ = ["NO_IMAGE", "Change", "Scene", "drawn_store", "follow", "lay_image", "share_field"]
 
 #: What has changed: what a setting affects, or the appearance.
 Change = Affects | Literal["appearance"]
@@ -535,17 +520,6 @@ def lay_image(scenes: Sequence[Scene], image: Any, own: Collection[str]) -> None
     for scene in reversed(scenes):
         if scene is scenes[0] or "noise" not in own or scene.settings.noise == "image":
             scene.set_image(image)
-
-
-def steps_of(field: FlowField, name: str) -> Steps:
-    """Return nodal values at all times, (T or 1, J, I); a FieldError lists the names there are."""
-    if name in field.scalars:
-        return field.scalars[name]
-    if name == SPEED:
-        return field.speed
-    names = ", ".join(map(repr, dict.fromkeys((SPEED, *field.scalars, *DERIVED))))
-    msg = f"the field has no scalar {name!r}; expected one of {names}"
-    raise FieldError(msg)
 
 
 def _with_scalars(field: FlowField, appearance: Appearance) -> FlowField:

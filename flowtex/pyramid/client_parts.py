@@ -14,6 +14,7 @@ import numpy as np
 
 from flowtex._util.array_types import Floats, Floats32
 from flowtex.field import FlowField
+from flowtex.field.derived import steps_of
 from flowtex.field.steps import typical_steps
 from flowtex.pyramid.layout import (
     FILE_BYTES,
@@ -106,7 +107,7 @@ def _values(pyramid: StoredPyramid, data: ClientData, step: int) -> dict[int, Fl
     result: dict[int, Floats32] = {}
     rows, columns = data.textures.grid.drawn
     for number, name in enumerate(value_names(pyramid.about)):
-        steps = _steps_of(data.field, name)
+        steps = steps_of(data.field, name)
         # The flow tells the speed.
         is_derived = data.traced and name not in data.field.scalars
         if is_derived or step >= len(steps):
@@ -124,7 +125,7 @@ def _colours(pyramid: StoredPyramid, field: FlowField) -> Colours:
     """Return colours by the speed, with all that a person may choose in its place."""
     ranges = _ranges(pyramid)
     choices = tuple({"name": k, "low": low, "high": high} for k, (low, high) in ranges.items())
-    first, *others = (_steps_of(field, name) for name in ranges)
+    first, *others = (steps_of(field, name) for name in ranges)
     low, high = ranges["speed"]
     numbered = tuple(enumerate(others, start=1))
     return Colours("speed", values=first, low=low, high=high, choices=choices, others=numbered)
@@ -133,9 +134,3 @@ def _colours(pyramid: StoredPyramid, field: FlowField) -> Colours:
 def _ranges(pyramid: StoredPyramid) -> dict[str, tuple[float, float]]:
     names = value_names(pyramid.about)
     return {name: widened(pyramid.ranges.get((name, False))) for name in names}
-
-
-def _steps_of(field: FlowField, name: str) -> Any:
-    if name in field.scalars:
-        return field.scalars[name]
-    return field.speed

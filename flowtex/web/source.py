@@ -22,9 +22,9 @@ from functools import partial
 
 from flowtex._util.cache import ByteCache
 from flowtex._util.progress import check, stoppable, track
+from flowtex.field.derived import steps_of
 from flowtex.rendering.webgl import ClientData, Packing, packing_of, tile_parts
 from flowtex.rendering.webgl.protocol import Parts
-from flowtex.scene import steps_of
 from flowtex.textures import TextureSet
 from flowtex.tiles import TileKey
 

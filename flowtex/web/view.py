@@ -11,11 +11,12 @@ from flowtex._util.arguments import checked_count
 from flowtex._util.colours import colour_table, rgb
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.derived import steps_of
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.rendering.webgl.marks import MARK_PARTS, Marks
-from flowtex.scene import Scene, share_field, steps_of
+from flowtex.scene import Scene, share_field
 from flowtex.settings import TABLE
 from flowtex.tiles import Pyramid
 

@@ -15,11 +15,11 @@ from packed import parts_of
 
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray
+from flowtex.field.derived import steps_of
 from flowtex.options import Options
 from flowtex.pyramid import build
 from flowtex.pyramid.layout import FILE_CHUNK
 from flowtex.rendering.webgl import tile_parts
-from flowtex.scene import steps_of
 from flowtex.tiles import Pyramid
 from flowtex.web.view import web_views
 

@@ -28,8 +28,8 @@ from flowtex.app.streaming.points import PointReader
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
-from flowtex.options import FieldOptions
-from flowtex.scene import AppearanceAttributes, Change, Scene
+from flowtex.options import AppearanceAttributes, FieldOptions
+from flowtex.scene import Change, Scene
 from flowtex.settings import Settings
 
 

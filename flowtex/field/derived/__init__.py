@@ -44,6 +44,17 @@ def derived_steps(
     return map_steps(velocity, scalar)
 
 
+def steps_of(field: Any, name: str) -> Steps:
+    """Return nodal values of a field at all times, (T or 1, J, I), by the name of a scalar."""
+    if name in field.scalars:
+        return field.scalars[name]
+    if name == "speed":
+        return field.speed
+    names = ", ".join(map(repr, dict.fromkeys(("speed", *field.scalars, *DERIVED))))
+    msg = f"the field has no scalar {name!r}; expected one of {names}"
+    raise FieldError(msg)
+
+
 def followed_steps(name: str, field: Any, horizon: float | None) -> Steps:
     """Return one of :data:`FOLLOWED` at each node and step of a field, (T, J, I)."""
     if name not in FOLLOWED:
