@@ -17,18 +17,14 @@ class UnreadableError(FieldError):
 
 @dataclass(frozen=True)
 class Form:
-    """How the values of an argument are written.
+    """How the values of an argument are written."""
 
-    ``words`` are what a shell says that the argument is for, where that is not what Python says.
-    ``read`` returns the value of a text; an UnreadableError says what was expected. ``write``
-    returns the text of a value. An argument that is ``repeated`` may be given several times;
-    ``read`` then takes all the texts.
-    """
-
+    #: What a shell says that the argument is for, where Python says something else.
     words: str = ""
+    #: Returns the value of a text, or of all texts; an UnreadableError says what was expected.
     read: Callable[[Any], Any] = str
-    write: Callable[[Any], str] = str
-    repeated: bool = False
+    write: Callable[[Any], str] = str  #: Returns the text of a value.
+    repeated: bool = False  #: Whether the argument may be given several times.
 
 
 def number_or_text(text: str) -> float | str:

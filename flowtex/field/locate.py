@@ -33,15 +33,11 @@ FLAT_TRIANGLE = 1e-20
 
 @dataclass(frozen=True, eq=False)
 class SurfacePoint:
-    """A point on a triangle of the surface.
+    """A point on a triangle of the surface."""
 
-    ``index`` is the point as (j, i), folded back into one period; ``nodes`` (3,) are the numbers of
-    the corners, j times the number of columns plus i; ``weights`` (3,) are their shares.
-    """
-
-    index: tuple[float, float]
-    nodes: Indices
-    weights: Floats
+    index: tuple[float, float]  #: The point as (j, i), folded back into one period.
+    nodes: Indices  #: Numbers of the corners, (3,): j times the number of columns plus i.
+    weights: Floats  #: Their shares, (3,).
 
     def corners(self, nodal: AnyArray) -> Floats:
         """Values at the corners of nodal data (J, I, ...), (3, ...)."""

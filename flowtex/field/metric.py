@@ -31,16 +31,12 @@ COLLAPSED_AREA = 1e-10
 
 @dataclass(frozen=True)
 class IndexVelocity:
-    """A velocity field in index space.
+    """A velocity field in index space."""
 
-    ``components`` (T, J, I, 2) are (u_i, u_j) in cells per unit of time, and ``speed`` (T, J, I) is
-    the length of the velocity along the surface in the mesh's units per unit of time.
-    ``normal_share`` is the root mean square of the part that points out of the surface over that of
-    the whole, 0 to 1.
-    """
-
-    components: Steps
+    components: Steps  #: (u_i, u_j) in cells per unit of time, (T, J, I, 2).
+    #: Length of the velocity along the surface in the mesh's units per unit of time, (T, J, I).
     speed: Steps
+    #: Root mean square of the part out of the surface over that of the whole, 0 to 1.
     normal_share: float
 
 

@@ -32,18 +32,16 @@ EVEN_CELLS = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Pole:
-    """One pole: the value ``line`` of one component of positions (i, j), 0 or 1.
+    """One pole, at which a component of positions (i, j) has one value."""
 
-    ``inward`` is 1 where the component grows away from the pole, -1 where it falls. ``plane`` holds
-    two orthonormal rows that span the plane at the pole, (2, 3); lines around the pole turn from
-    the first to the second. ``rays`` says how far a cell along each line that leads to the pole
-    goes in that plane, (n + 1, 2), in the mesh's units; the last is the first again.
-    """
-
-    component: int
-    line: int
-    inward: int
+    component: int  #: 0 or 1.
+    line: int  #: The value.
+    inward: int  #: 1 where the component grows away from the pole, -1 where it falls.
+    #: Two orthonormal rows that span the plane at the pole, (2, 3); lines around it turn from the
+    #: first to the second.
     plane: Floats
+    #: How far a cell along each line that leads to the pole goes in that plane, (n + 1, 2), in the
+    #: mesh's units; the last is the first again.
     rays: Floats
 
     @property

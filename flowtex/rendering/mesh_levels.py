@@ -293,17 +293,12 @@ NOT_DRAWN = 99
 
 
 class Region(NamedTuple):
-    """Where a part of a surface lies among the blocks of its finest nodes, and how it is drawn.
+    """Where a part of a surface lies among the blocks of its finest nodes, and how it is drawn."""
 
-    It begins at block (row, column), its nodes are every 2^step-th, and ``levels`` are those of its
-    own blocks, each of which covers 2^step blocks of the finest nodes along each side; -1 where
-    another part covers them.
-    """
-
-    step: int
-    row: int
+    step: int  #: Its nodes are every 2^step-th, as are its blocks.
+    row: int  #: The block at which it begins.
     column: int
-    levels: Ints
+    levels: Ints  #: Of its own blocks; -1 where another part covers them.
 
 
 def join(

@@ -240,19 +240,16 @@ class DrawnSurface:
 
 @dataclass(frozen=True, eq=False)
 class SurfaceGeometry(DrawnSurface):
-    """A surface ready to be drawn, with ``levels`` mip levels in its textures beside the finest.
-
-    ``rows`` and ``columns`` say how the j and i axes lie in the slice textures, and which nodes of
-    the field are drawn: in a tile, those around it only continue it. ``whole`` is the surface that
-    a tile is a part of, whose middle, size and frame it has; ``open_sides`` says whether the field
-    continues before and after its rows, and its columns.
-    """
+    """A surface ready to be drawn."""
 
     field: FlowField
-    levels: int
+    levels: int  #: Mip levels in its textures beside the finest.
+    #: How the j axis lies in the slice textures, and which nodes of the field are drawn: in a tile,
+    #: those around it only continue it.
     rows: Padding
-    columns: Padding
-    whole: Surface
+    columns: Padding  #: The same of the i axis.
+    whole: Surface  #: The surface that a tile is a part of, whose middle, size and frame it has.
+    #: Whether the field continues before and after its rows, and its columns.
     open_sides: tuple[tuple[bool, bool], ...] = ((False, False), (False, False))
 
     @classmethod

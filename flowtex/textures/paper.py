@@ -54,24 +54,19 @@ FEWEST_TEXELS = 256
 
 @dataclass(frozen=True, eq=False)
 class PaperTextures:
-    """Noise, or a picture in its place, and step size over the parameters of the surface.
+    """Noise, or a picture in its place, and step size over the parameters of the surface."""
 
-    ``noise`` has mean zero and unit variance, (H, W), and grains ``grain`` texels wide; or it is a
-    ``picture``, grey (H, W) or coloured (H, W, 4) as from
-    :func:`~flowtex.textures.images.as_picture`, which is averaged along the flow. Row 0 is at j =
-    0. ``step`` (H, W) is the lag in which the flow crosses a texel, in multiples of the unit of
-    lag; noise has the same texels, a picture has its own. ``along_i`` (I,) and ``along_j`` (J,) are
-    the noise coordinates of the lines of nodes, from 0 to 1. ``repeat`` says whether the noise goes
-    around along (v, u), ``corrected`` whether it is even on the surface instead of in the texture.
-    """
-
+    #: Of mean zero and unit variance, (H, W); or a picture, grey (H, W) or coloured (H, W, 4) as
+    #: from :func:`~flowtex.textures.images.as_picture`, averaged along the flow. Row 0 is at j = 0.
     noise: Floats32
+    #: Lag in which the flow crosses a texel, in multiples of the unit of lag, (H, W); noise has the
+    #: same texels, a picture has its own.
     step: Floats32
-    along_i: Floats
+    along_i: Floats  #: Noise coordinates of the lines of nodes, (I,) and (J,), from 0 to 1.
     along_j: Floats
-    repeat: tuple[bool, bool]
-    corrected: bool
-    grain: float = 1.0
+    repeat: tuple[bool, bool]  #: Whether the noise goes around along (v, u).
+    corrected: bool  #: Whether it is even on the surface instead of in the texture.
+    grain: float = 1.0  #: Width of grains in texels.
     picture: bool = False
 
     @classmethod

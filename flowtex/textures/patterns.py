@@ -32,16 +32,12 @@ SQUARES = 16
 
 @dataclass(frozen=True, eq=False)
 class TexelMap:
-    """Where the texels of a texture lie on a surface.
-
-    ``index`` is the middle of each texel as (i, j), and ``size`` its size in cells, (H, W, 2) both.
-    ``corrected`` says whether a pattern is even on the surface, not on the texels.
-    """
+    """Where the texels of a texture lie on a surface."""
 
     field: FlowField
-    index: Floats
-    size: Floats
-    corrected: bool
+    index: Floats  #: Middle of each texel as (i, j), (H, W, 2).
+    size: Floats  #: Its size in cells, (H, W, 2).
+    corrected: bool  #: Whether a pattern is even on the surface, not on the texels.
 
     @property
     def shape(self) -> tuple[int, int]:

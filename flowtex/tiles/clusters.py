@@ -36,22 +36,16 @@ MOST_LEFT = 0.7
 
 @dataclass(frozen=True, eq=False)
 class Clusters:
-    """Nodes of a level, each of which represents some nodes of the field.
+    """Nodes of a level, each of which represents some nodes of the field."""
 
-    ``whole`` is the field that has all nodes, ``field`` the one at this level, and ``triangles``
-    (M, 3) are those of it that are drawn, which face alike. ``number`` (N,) is the node of this
-    level that each node of the whole field is in, or -1. ``sides`` (n,) are those of the bins that
-    nodes are joined in next, a power of two times the first; ``border`` (n,) marks nodes on the
-    border of what is drawn, and ``normals`` (n, 3) are unit normals, or sums of them.
-    """
-
-    whole: FlowField
-    field: FlowField
-    triangles: Indices
-    number: Indices
+    whole: FlowField  #: The field that has all nodes.
+    field: FlowField  #: The field at this level.
+    triangles: Indices  #: Those of it that are drawn, which face alike, (M, 3).
+    number: Indices  #: Node of this level that each node of the whole field is in, or -1, (N,).
+    #: Of the bins that nodes are joined in next, a power of two times the first, (n,).
     sides: Floats
-    border: Bools
-    normals: Floats
+    border: Bools  #: Nodes on the border of what is drawn, (n,).
+    normals: Floats  #: Unit normals, or sums of them, (n, 3).
 
     @classmethod
     def of(cls, field: FlowField) -> Clusters:

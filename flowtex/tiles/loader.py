@@ -57,15 +57,11 @@ def _turn() -> Iterator[None]:
 
 @dataclass(eq=False)
 class Tile:
-    """One tile with the layers of the destination times that were requested.
-
-    ``textures`` are None where nothing of it is drawn; ``prepared`` is what the renderer has made
-    of them.
-    """
+    """One tile with the layers of the destination times that were requested."""
 
     key: TileKey
-    textures: TextureSet | None
-    prepared: Any = None
+    textures: TextureSet | None  #: ``None`` where nothing of it is drawn.
+    prepared: Any = None  #: What the renderer has made of them.
     layers: dict[int, Halves | None] = field(default_factory=dict)
 
     @property

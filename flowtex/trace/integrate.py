@@ -100,11 +100,7 @@ class _Columns:
 
 @dataclass
 class _Particles(_Columns):
-    """Particles still under way; the last axis is theirs.
-
-    Where there are poles, ``chart`` is what ``y`` is given on, and ``index`` the same in index
-    space; elsewhere both are None.
-    """
+    """Particles still under way; the last axis is theirs."""
 
     which: Indices
     unit: Floats
@@ -114,8 +110,8 @@ class _Particles(_Columns):
     step: Floats
     rate: Floats
     next: Indices
-    chart: Numbers | None
-    index: Floats | None
+    chart: Numbers | None  #: What ``y`` is given on where there are poles.
+    index: Floats | None  #: The same in index space.
 
 
 @dataclass

@@ -60,19 +60,15 @@ class Choice:
 
 @dataclass(frozen=True)
 class Section:
-    """Part of a variable that is drawn: two axes, and time where it has several steps.
+    """Part of a variable that is drawn: two axes, and time where it has several steps."""
 
-    ``array`` is the variable, ([time,] rows, columns) or ([time,] nodes or faces of a mesh), of
-    which nothing is read yet. ``times`` are dates, or seconds, one for each step, or ``None`` where
-    no time is known; ``notes`` say what was chosen automatically, ``level`` is the level as text,
-    and ``numbers`` are the indices that are drawn along axes with a choice, by name.
-    """
-
+    #: ([time,] rows, columns), or ([time,] nodes or faces of a mesh); nothing of it is read yet.
     array: xr.DataArray
+    #: Dates, or seconds, one for each step; ``None`` where no time is known.
     times: AnyArray | None
-    notes: tuple[str, ...]
-    level: str
-    numbers: Mapping[str, int]
+    notes: tuple[str, ...]  #: What was chosen automatically.
+    level: str  #: The level as text.
+    numbers: Mapping[str, int]  #: Indices that are drawn along axes with a choice, by name.
 
     @property
     def is_series(self) -> bool:

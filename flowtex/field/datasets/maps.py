@@ -65,18 +65,13 @@ class PlaneNodes:
 
 @dataclass(eq=False)
 class MapNodes:
-    """Nodes on a map.
-
-    ``points`` are (J, I, 3), ``lines`` is the index that takes an array of the grid (J, I) to the
-    order of the map, ``periodic`` the argument of :meth:`FlowField.from_arrays`; ``lon`` and
-    ``lat`` give the directions of vectors.
-    """
+    """Nodes on a map."""
 
     projection: Projection
-    points: Floats
-    lines: Any
-    periodic: str | None
-    lon: Floats
+    points: Floats  #: (J, I, 3).
+    lines: Any  #: Index that takes an array of the grid (J, I) to the order of the map.
+    periodic: str | None  #: As for :meth:`FlowField.from_arrays`.
+    lon: Floats  #: Longitudes and latitudes, for the directions of vectors.
     lat: Floats
 
     def at(self, values: Floats) -> Floats:
@@ -90,17 +85,13 @@ class MapNodes:
 
 @dataclass(frozen=True, eq=False)
 class MapLines:
-    """Lines of longitude (I,) and latitude (J,) in the order of a map.
-
-    ``shown`` is the former where the map has it, such as a turn further at its end. ``columns``
-    numbers it in the data, and ``periodic`` is as in :class:`MapNodes`.
-    """
+    """Lines of longitude (I,) and latitude (J,) in the order of a map."""
 
     lon: Floats
-    shown: Floats
+    shown: Floats  #: Longitudes where the map has them, such as a turn further at its end.
     lat: Floats
-    columns: Indices
-    periodic: str | None
+    columns: Indices  #: Numbers of the longitudes in the data.
+    periodic: str | None  #: As in :class:`MapNodes`.
 
 
 def on_map(places: Places, name: str | None) -> MapNodes:

@@ -70,18 +70,14 @@ WORDS = (
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """Two variables that are the components of a velocity.
-
-    ``along`` gives the directions: ``"earth"`` for eastward and northward, ``"grid"`` for those of
-    the grid, and ``""`` if unknown. ``why`` says how the two were found, and ``rank`` how likely
-    they are the velocity, 0 being the most likely.
-    """
+    """Two variables that are the components of a velocity."""
 
     u: xr.DataArray
     v: xr.DataArray
+    #: ``"earth"`` for eastward and northward, ``"grid"`` for along the grid, ``""`` if unknown.
     along: str
-    why: str
-    rank: int = 0
+    why: str  #: How the two were found.
+    rank: int = 0  #: How likely they are the velocity, 0 being the most likely.
 
     def __str__(self) -> str:
         return f"{self.u.name}, {self.v.name} ({self.why})"

@@ -37,19 +37,15 @@ MIDDLES = ("rho", "t", "c", "r", "")
 
 @dataclass(frozen=True)
 class Places:
-    """Positions of nodes, (J, I) each.
+    """Positions of nodes, (J, I) each."""
 
-    ``a`` and ``b`` are longitude and latitude in degrees where ``is_earth``, else x and y in units
-    of ``unit``. ``is_line`` says that a depends on the column only and b on the row only; both are
-    then views of two lines, :attr:`lines`, that take no room. ``why`` names the coordinates.
-    """
-
-    a: Floats
+    a: Floats  #: Longitude and latitude in degrees on the Earth, else x and y.
     b: Floats
     is_earth: bool
+    #: Whether a depends on the column only and b on the row only: views of :attr:`lines`.
     is_line: bool
-    why: str
-    unit: str = ""
+    why: str  #: Names of the coordinates.
+    unit: str = ""  #: That of x and y.
 
     @property
     def lines(self) -> tuple[Floats, Floats]:

@@ -69,30 +69,22 @@ LAND_SHARE = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Recognised:
-    """What was recognised in a dataset, and why.
+    """What was recognised in a dataset, and why."""
 
-    ``pair`` are the two variables of the velocity, and ``along`` is along what they are:
-    ``"earth"``, or ``"grid"``, where ``ahead`` gives the directions of rows and columns, 1 or -1.
-    ``staggered`` says that they lie on the sides of cells. ``grid``, ``coordinates`` and ``notes``
-    are words: the kind of grid, names of the coordinates, and what was chosen automatically.
-    ``places`` are the nodes in the middle of cells; ``factor`` makes components m/s, and ``mask``
-    is a variable that is positive where there is data.
-    """
-
-    pair: Pair
-    along: str
-    grid: str
-    coordinates: str
-    places: Places
-    notes: tuple[str, ...]
+    pair: Pair  #: The two variables of the velocity.
+    along: str  #: ``"earth"``, or ``"grid"`` for the directions of rows and columns.
+    grid: str  #: The kind of grid, as text.
+    coordinates: str  #: Names of the coordinates, as text.
+    places: Places  #: Nodes in the middle of cells.
+    notes: tuple[str, ...]  #: What was chosen automatically.
     u: Section
     v: Section
     steps: Callable[[int], tuple[Floats, Floats]]
     cells: tuple[str, ...]
-    factor: float
-    ahead: tuple[int, int] = (1, 1)
-    staggered: bool = False
-    mask: Any = None
+    factor: float  #: Makes components m/s.
+    ahead: tuple[int, int] = (1, 1)  #: Directions of rows and columns, 1 or -1.
+    staggered: bool = False  #: Whether components lie on the sides of cells.
+    mask: Any = None  #: A variable that is positive where there is data.
     kept: tuple[slice, ...] = ()
     trimmed: tuple[slice, ...] = ()
     mesh: Mesh | None = None

@@ -38,21 +38,16 @@ LARGEST_VALUE = 1e15
 
 @dataclass(frozen=True, eq=False)
 class RegionLines:
-    """Where the nodes lie: two lines of coordinates, and their numbers in the data.
+    """Where the nodes lie: two lines of coordinates, and their numbers in the data."""
 
-    ``a`` is the longitude of each column (I,) and ``b`` the latitude of each row (J,), or x and y;
-    ``shown`` is the former on the map, where the last column may be the first one, a turn further.
-    ``rows`` and ``columns`` are numbers in the data. ``projection`` is the map, ``None`` in a
-    plane, and ``closed`` says whether the last column repeats the first.
-    """
-
-    a: Floats
-    b: Floats
+    a: Floats  #: Longitude of each column, (I,), or x.
+    b: Floats  #: Latitude of each row, (J,), or y.
+    #: Longitudes on the map, where the last column may be the first one, a turn further.
     shown: Floats
-    rows: Indices
+    rows: Indices  #: Numbers in the data.
     columns: Indices
-    projection: Projection | None
-    closed: bool
+    projection: Projection | None  #: The map; ``None`` in a plane.
+    closed: bool  #: Whether the last column repeats the first.
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -90,21 +85,16 @@ class Words:
 
 @dataclass(frozen=True, eq=False)
 class Regions:
-    """A dataset on lines of coordinates.
+    """A dataset on lines of coordinates."""
 
-    ``words`` are what the field is called, and ``lines`` where its nodes lie. ``components`` are
-    the variables of the velocity, ([time,] row, column), and ``factor`` makes them m/s; ``mask`` is
-    positive where there is data, (row, column), and ``scalars`` are further variables. ``numbers``
-    are those of the time steps in the variables.
-    """
-
-    words: Words
-    lines: RegionLines
+    words: Words  #: What the field is called.
+    lines: RegionLines  #: Where its nodes lie.
+    #: Variables of the velocity, ([time,] row, column).
     components: tuple[xr.Variable, xr.Variable]
-    factor: float
-    mask: xr.Variable | None
+    factor: float  #: Makes them m/s.
+    mask: xr.Variable | None  #: Positive where there is data, (row, column).
     scalars: Mapping[str, xr.Variable]
-    numbers: tuple[int, ...]
+    numbers: tuple[int, ...]  #: Time steps in the variables.
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -92,16 +92,12 @@ OF_MESHES = ("plane", "slice", "contour", "block", "periodic", "sign_free")
 
 @dataclass(frozen=True)
 class OpenFile:
-    """A file that was opened, of which no more is read than its format asks for.
-
-    ``source`` is one of PyVista's readers, a mesh, or a list of time steps; ``velocity`` is the
-    name of the velocity where the format fixes it; ``problem`` says why nothing can be drawn.
-    """
+    """A file that was opened, of which no more is read than its format asks for."""
 
     path: Path
-    source: Any
-    velocity: str | None
-    problem: str = ""
+    source: Any  #: One of PyVista's readers, a mesh, or a list of time steps.
+    velocity: str | None  #: Name of the velocity where the format fixes it.
+    problem: str = ""  #: Why nothing can be drawn.
 
 
 def read_file(

@@ -55,28 +55,20 @@ class BlockSummary(NamedTuple):
 
 @dataclass(frozen=True)
 class FileSummary:
-    """What a file holds.
-
-    ``grid`` is the type of its mesh: of the default block if it has several. ``size`` is a
-    text, ``cells`` counts the cells of an unstructured mesh by kind, ``bounds`` are ((x, x), (y,
-    y), (z, z)), and ``volume`` says whether a volume can be cut. ``blocks`` are those that hold
-    something, when there are several; ``candidates`` are names of what may be the velocity,
-    ``blanked`` counts hidden nodes, and ``problem`` is what keeps :meth:`FlowField.from_file` from
-    reading it as it stands.
-    """
+    """What a file holds."""
 
     path: Path
-    grid: str
-    size: str
-    cells: dict[str, int]
-    bounds: tuple[tuple[float, float], ...]
-    volume: bool
-    blocks: tuple[BlockSummary, ...]
+    grid: str  #: Type of its mesh: of the default block if it has several.
+    size: str  #: As text.
+    cells: dict[str, int]  #: Number of cells of an unstructured mesh by kind.
+    bounds: tuple[tuple[float, float], ...]  #: ((x, x), (y, y), (z, z)).
+    volume: bool  #: Whether a volume can be cut.
+    blocks: tuple[BlockSummary, ...]  #: Those that hold something, where there are several.
     arrays: tuple[ArraySummary, ...]
-    candidates: tuple[str, ...]
+    candidates: tuple[str, ...]  #: Names of what may be the velocity.
     times: tuple[float, ...]
-    blanked: int
-    problem: str
+    blanked: int  #: Number of hidden nodes.
+    problem: str  #: What keeps :meth:`FlowField.from_file` from reading it as it stands.
 
 
 def describe(path: str | Path, block: int | str | None = None) -> FileSummary:

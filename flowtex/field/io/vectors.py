@@ -30,18 +30,14 @@ _PLACES: tuple[Literal["points"], Literal["cells"]] = ("points", "cells")
 
 @dataclass(frozen=True)
 class MeshArray:
-    """An array of a mesh: its name, where its values are, and how many there are at each.
-
-    ``parts`` are the names of the arrays of one component that it is made of; none for one that
-    the mesh itself has.
-    """
+    """An array of a mesh: its name, where its values are, and how many there are at each."""
 
     name: str
     where: Literal["points", "cells"]
     components: int
     numeric: bool = True
     real: bool = True
-    parts: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()  #: Names of the arrays of one component that it is made of, if any.
 
     def __str__(self) -> str:
         made = f" from {', '.join(self.parts)}" if self.parts else ""

@@ -112,23 +112,18 @@ class Colours:
 
 @dataclass(frozen=True, eq=False)
 class ClientData:
-    """A flow and its colours, ready to be sent.
-
-    ``chosen`` are the numbers of the destination times that are sent, increasing; all are where it
-    is empty. ``pyramid`` has the tiles of a large flow, of which this is the root, and ``finest``
-    is the finest level of those that are sent. If the client ``traces``, it receives the velocity
-    instead of slices, where it can trace them. ``bodies`` are other meshes, and ``marks`` describe
-    its structure.
-    """
+    """A flow and its colours, ready to be sent."""
 
     textures: TextureSet
     colours: Colours = data_field(default_factory=Colours)
+    #: Numbers of the destination times that are sent, increasing; empty for all.
     chosen: tuple[int, ...] = ()
-    pyramid: Pyramid | None = None
-    finest: int = 0
+    pyramid: Pyramid | None = None  #: Tiles of a large flow, of which this is the root.
+    finest: int = 0  #: Finest level of those that are sent.
+    #: Whether the client receives the velocity instead of slices, where it can trace them.
     traces: bool = False
-    bodies: Bodies | None = None
-    marks: Marks | None = None
+    bodies: Bodies | None = None  #: Other meshes.
+    marks: Marks | None = None  #: Its structure.
 
     @cached_property
     def traced(self) -> bool:

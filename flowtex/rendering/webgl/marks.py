@@ -35,15 +35,11 @@ SADDLE, ORBIT, LEAVING, SIDE = 8, 4, 2, 1
 
 @dataclass(frozen=True, eq=False)
 class Marks:
-    """What there is of the structure of a flow.
-
-    ``kinds`` are the parts that can be had; where they are ``carried`` they come with each step,
-    and elsewhere when they are requested.
-    """
+    """What there is of the structure of a flow."""
 
     structure: Structure
-    kinds: tuple[str, ...] = tuple(MARK_PARTS.values())
-    carried: bool = False
+    kinds: tuple[str, ...] = tuple(MARK_PARTS.values())  #: Parts that can be had.
+    carried: bool = False  #: Whether they come with each step, or when requested.
 
     def header(self) -> Header:
         """Return their part of the header."""

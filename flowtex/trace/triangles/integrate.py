@@ -146,20 +146,17 @@ def _three(two: Floats) -> Floats:
 
 @dataclass
 class _Particles:
-    """Particles still under way; the last axis is theirs.
-
-    ``edge`` is the corner opposite to the edge by which they came into their triangle, -1 where
-    there is none; ``due`` is the next lag to record, and ``next`` its index.
-    """
+    """Particles still under way; the last axis is theirs."""
 
     which: Indices
     triangle: Indices
+    #: Corner opposite to the edge by which they came into their triangle, -1 for none.
     edge: Indices
-    next: Indices
+    next: Indices  #: Index of the next lag to record.
     standing: Indices
     shares: Floats
     lag: Floats
-    due: Floats
+    due: Floats  #: The next lag to record.
     last: Floats
 
     def pick(self, mask: Bools | Indices) -> Self:

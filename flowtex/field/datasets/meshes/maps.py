@@ -24,21 +24,16 @@ NEAREST_NODE = 1e-5
 
 @dataclass(eq=False)
 class MeshMap:
-    """Nodes and triangles on a map.
-
-    ``points`` are (P, 3), ``triangles`` (M, 3) their numbers. Each lies between two nodes of the
-    mesh, ``nodes`` (P, 2), at a ``share`` (P,) of the way: triangles are cut at the map's edge.
-    ``lost`` counts the triangles that are left out as the map would tear them apart.
-    """
+    """Nodes and triangles on a map, at whose edge triangles are cut."""
 
     projection: Projection
-    points: Floats
-    triangles: Indices
-    nodes: Indices
-    share: Floats
+    points: Floats  #: (P, 3).
+    triangles: Indices  #: Numbers of points, (M, 3).
+    nodes: Indices  #: Two nodes of the mesh between which each point lies, (P, 2).
+    share: Floats  #: How far it is from the first to the second, (P,).
     lon: Floats
     lat: Floats
-    lost: int
+    lost: int  #: Triangles that are left out, as the map would tear them apart.
 
     def at(self, values: Floats) -> Floats:
         """Return values (P,) of those at the nodes of the mesh, (N,)."""

@@ -26,20 +26,15 @@ RADIANS = re.compile(r"^rad(ian)?s?$", re.IGNORECASE)
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A mesh of polygons; its numbers are read when they are requested.
+    """A mesh of polygons; its numbers are read when they are requested."""
 
-    ``kind`` is the name of the convention. ``x`` and ``y`` are coordinates of the nodes, or those
-    of the corners of each face where ``corners``, the nodes of each face, is missing. ``counts`` is
-    the number of corners of each face, where these differ, and ``first`` the index of the first
-    node.
-    """
-
-    kind: str
+    kind: str  #: Name of the convention.
+    #: Coordinates of the nodes, or of the corners of each face where ``corners`` is missing.
     x: Any
     y: Any
-    corners: Any = None
-    counts: Any = None
-    first: int = 0
+    corners: Any = None  #: Nodes of each face.
+    counts: Any = None  #: Number of corners of each face, where these differ.
+    first: int = 0  #: Index of the first node.
 
     @property
     def dims(self) -> tuple[str, str]:
