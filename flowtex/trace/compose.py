@@ -5,10 +5,13 @@ one ends (hierarchical line integration, Hlawatsch, Sadlo and Weiskopf 2011). Do
 costs one look-up for each node, whatever the length, where integration would cost as many steps
 as the path has cells.
 
-A look-up between the nodes is as good as the slice is smooth there. Around a centre or near a
-separatrix long paths of neighbours part, so each slice's second differences are compared with its
-length, and where they are large the path is continued in shorter, smooth pieces. What is left is of
-the order of the error that bilinear velocity has itself.
+A look-up between the nodes is bilinear, corrected by the mean second differences around its cell,
+and as good as the slice is smooth there. Around a centre or beside a separatrix long paths of
+neighbours part, so how much the second differences change in a cell is held against the slice's
+length, and where that is much the path is continued in shorter pieces that are smooth. What is
+left is of the order of the error that bilinear velocity has itself.
+
+Displacements are complex numbers, i + j sqrt(-1), as one gather takes both components then.
 
 A flow that varies is composed only when its lags are whole numbers of its equal time steps, from
 one step up: then each piece begins at a time for which there are slices.
@@ -25,8 +28,9 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 
-from flowtex._util.array_types import AnyArray, Bools, Floats, Floats32, Indices
+from flowtex._util.array_types import AnyArray, Bools, Complexes, Floats, Floats32, Indices
 from flowtex._util.progress import check
 from flowtex.field import FlowField
 from flowtex.trace.node_grid import Corners, NodeGrid
@@ -42,6 +46,10 @@ SEARCH_PARTS, SEARCH_BISECTIONS = 16, 6
 
 #: Error of a look-up that is allowed, as a share of the path's length, and in cells.
 ERROR_SHARE, ERROR_CELLS = 0.002, 0.003
+#: Typical error of a look-up over the range of the second differences at the corners of its cell.
+ERROR_CHANGE = 1 / 64
+#: How many times that is allowed in the first slice that is composed, whose pieces are many.
+ROUGH = 4
 #: Lags closer to a slice than this share are taken from it.
 LAG_ROUNDING = np.float32(1e-4)
 
@@ -85,7 +93,7 @@ def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
 
 @dataclass(frozen=True, eq=False)
 class SideSlices:
-    """Slices of one direction, (2, M + 1, T, J, I), the first of them the slope at lag zero.
+    """Slices of one direction, (M + 1, T, J, I, 2), the first of them the slope at lag zero.
 
     Their reach, and which paths have come close to a pole, are (T, J, I). While paths are
     integrated, the nodes of all three are one axis.
@@ -98,7 +106,7 @@ class SideSlices:
     @property
     def displacement(self) -> Floats32:
         """The slices beyond lag zero as (T, M, J, I, 2)."""
-        return np.moveaxis(self.slices[:, 1:], (0, 2), (4, 0))
+        return np.swapaxes(self.slices[1:], 0, 1)
 
 
 def compose(
@@ -124,9 +132,11 @@ def compose(
     wanted = np.maximum(np.searchsorted(lags, longest / unit) + 1, known)
     lookup = _SliceLookup(field, lags, unit, side, landing * int(direction), wanted)
     beside = None if field.surface.poles is None else integrate
-    for m in range(known + 1, len(lags) + 1):
-        lookup.judge(m - 1, always=m - 1 == known)
-        _Doubling(lookup, m, beside).run(run)
+    for m in range(1, len(lags) + 1):
+        if m > known:
+            _Doubling(lookup, m, beside).run(run)
+        if m < len(lags):
+            lookup.judge(m, np.inf if m <= known else ROUGH if m == known + 1 else 1)
     ends = np.where(wanted < len(lags), lookup.knots[np.minimum(wanted, len(lags))], np.inf)
     np.minimum(side.reach, ends, out=side.reach)
 
@@ -134,7 +144,7 @@ def compose(
 class _Piece(NamedTuple):
     """Continuations of n paths."""
 
-    moved: Floats32  #: displacement, (2, n)
+    moved: Complexes  #: displacement, (n,)
     covered: Floats32  #: lag that they cover
     ends: Floats32 | None  #: lag at which they end, beyond ``covered`` where they do not
     steps: Indices | int  #: time steps that they continue, negative backward
@@ -157,7 +167,6 @@ class _SliceLookup:
         landing: Indices,
         wanted: Indices,
     ) -> None:
-        slices, reach = side.slices, side.reach
         #: Number of slices of each node whose paths are followed, (J, I).
         self.wanted = wanted
         self.grid = NodeGrid.of(field)
@@ -171,37 +180,39 @@ class _SliceLookup:
         #: Whether all nodes have one unit.
         self.even = bool(np.ptp(self.unit) <= LAG_ROUNDING * self.unit[0])
         self.unsteady = not field.steady
-        self.slices = slices.reshape(2, len(self.knots), -1)
-        self.reach = reach.reshape(-1)
+        self.slices = side.slices.view(np.complex64).reshape(len(self.knots), -1)
+        self.reach = side.reach.reshape(-1)
         i, j = np.meshgrid(np.arange(self.grid.columns), np.arange(self.grid.rows))
-        self.nodes = np.stack([i, j]).reshape(2, -1).astype(np.float32)
-        self._grids = slices
-        self._pace = np.abs(slices[:, 0]).max(axis=0)
-        self._trust = np.zeros(reach.shape, np.float32)
+        self.nodes = (i + 1j * j).ravel().astype(np.complex64)
+        self._grids = side.slices
+        #: Mean second differences along j and i around each cell, at its lower corner.
+        self._bends = np.zeros((2, *side.slices.shape[:-1]), np.complex64)
+        self._pace = _corners(np.minimum, _greatest(np.abs(side.slices[0])))
+        self._trust = np.zeros(self._pace.shape, np.float32)
+        # The second differences at the corners of a cell take the nodes beside them.
+        self._known = _corners(np.minimum, scipy.ndimage.minimum_filter(wanted, 3)[None])
         self._longest = self._capped = np.empty(0, np.float32)
         self._endless = False
-        self._first = np.float32(0)
-        #: Which nodes have a path that has come close to a pole, (T, J, I).
+        #: Which nodes have a path that has come right beside a pole, (T, J, I).
         self.polar = side.polar
 
-    def judge(self, m: int, *, always: bool) -> None:
-        """Find where slice m is smooth enough to be looked up.
+    def judge(self, m: int, share: float) -> None:
+        """Find the cells in which slice m errs by no more than so many times what is allowed.
 
-        Where it is not, the longest slice that is, is used; ``always`` accepts it everywhere.
+        Where it does, the longest slice that does not is used.
         """
-        if always:
-            self._trust[:] = np.where(self.polar, 0, self.knots[m])
-            self._first = self.knots[m]
-        else:
-            grid = self._grids[:, m]
-            error = (_bend(grid, 2) + _bend(grid, 3)).max(axis=0)
-            good = error <= 8 * (ERROR_SHARE * self.knots[m] * self._pace + ERROR_CELLS)
-            good &= (self._trust == self.knots[m - 1]) & ~self.polar & (m <= self.wanted)
-            self._trust[good] = self.knots[m]
-        # A cell may use what is good at its four nodes.
-        trust = np.minimum(self._trust[:, :-1], self._trust[:, 1:])
-        trust = np.minimum(trust[:, :, :-1], trust[:, :, 1:])
-        self._longest = np.pad(trust, ((0, 0), (0, 1), (0, 1))).ravel()
+        error: Any = 0.0
+        for axis, means in zip((1, 2), self._bends[:, m], strict=True):
+            bend = _bend(self._grids[m], axis)
+            means[:, :-1, :-1] = _corners(np.add, bend.view(np.complex64)[..., 0]) / 4
+            if np.isfinite(share):
+                error = error + (_corners(np.maximum, bend) - _corners(np.minimum, bend))
+        good = ~_corners(np.logical_or, self.polar) & (m <= self._known)
+        if np.isfinite(share):
+            limit = share * (ERROR_SHARE * self.knots[m] * self._pace + ERROR_CELLS)
+            good &= (ERROR_CHANGE * _greatest(error) <= limit) & (self._trust == self.knots[m - 1])
+        self._trust[good] = self.knots[m]
+        self._longest = np.pad(self._trust, ((0, 0), (0, 1), (0, 1))).ravel()
         # Endless ones count as so long that a path ends only between nodes whose paths all end.
         self._capped = np.minimum(self.reach, 1e4 * self.knots[m])
         self._endless = bool(np.isinf(self.reach).all())
@@ -209,7 +220,11 @@ class _SliceLookup:
     def continued(
         self, position: Floats32, corners: Corners, left: Floats32, step: Indices | int, most: Any
     ) -> _Piece:
-        """Continue paths from positions (2, n), in these cells, by up to ``left`` of lag."""
+        """Continue paths from positions (2, n), in these cells, by up to ``left`` of lag.
+
+        They go on by a whole slice, or by a part of the first: between slices of long lags nothing
+        can be interpolated that would be as good.
+        """
         base = self._base(step)
         unit = self.unit[:1] if self.even else self.grid.blend(self.unit, corners)
         longest = self._longest[corners.at + base] if most is None else most
@@ -217,18 +232,12 @@ class _SliceLookup:
         if lag.min() == lag.max():
             # Even cells, smooth slices: one slice for all.
             lag = lag[:1]
-        if self.unsteady:
-            m = np.searchsorted(self.knots * (1 - LAG_ROUNDING), lag, side="right") - 1
-            lag = self.knots[m]
-        else:
-            m = np.maximum(np.searchsorted(self.knots, lag * (1 - LAG_ROUNDING)), 1)
-            if self.grid.poles is not None:
-                # Past a pole an index turns so quickly that nothing can be interpolated between
-                # lags.
-                before = self.knots[m - 1]
-                within = (lag < self.knots[m] * (1 - LAG_ROUNDING)) & (before > self._first)
-                lag, m = np.where(within, before, lag), m - within
-        moved = self._displaced(corners, base, m, lag)
+        m = np.maximum(self._below(lag), 1)
+        moved = self._blend(corners, base, m)
+        part = lag < self.knots[1] * (1 - LAG_ROUNDING)
+        if part.any():
+            moved *= np.where(part, lag / self.knots[1], 1)
+        lag = np.where(part, lag, self.knots[m])
         self._mirror(moved, position)
         ends = None
         if not self._endless:
@@ -244,13 +253,15 @@ class _SliceLookup:
         """Return the same for positions in these cells, at a time step."""
         return np.asarray(self._longest[corners.at + self._base(step)] == 0)
 
-    def displaced(self, position: Floats32, lag: Floats32, step: Indices) -> Floats32:
-        """Displacements (2, n) of paths from positions (2, n) at any lags up to the last slice."""
+    def displaced(self, position: Floats32, lag: Floats32, step: Indices) -> Complexes:
+        """Displacements (n,) of paths from positions (2, n) at any lags up to the last slice."""
         corners = self.grid.corners(position)
         base = self._base(step)
         units: Any = lag / (self.unit[:1] if self.even else self.grid.blend(self.unit, corners))
-        m = np.clip(np.searchsorted(self.knots, units), 1, len(self.knots) - 1)
-        moved = self._displaced(corners, base, m, units)
+        m = self._below(units * (1 - 2 * LAG_ROUNDING))
+        late = (units - self.knots[m]) / (self.knots[m + 1] - self.knots[m])
+        before, after = (self._blend(corners, base, k) * self._inverse[k] for k in (m, m + 1))
+        moved = np.asarray((before + late * (after - before)) * units)
         self._mirror(moved, position)
         return moved
 
@@ -262,30 +273,29 @@ class _SliceLookup:
         """Return the number, among those of all steps, of the first node of a step."""
         return step * self.grid.size if self.unsteady else 0
 
-    def _mirror(self, moved: Floats32, position: Floats32) -> None:
+    def _mirror(self, moved: Complexes, position: Floats32) -> None:
         """Turn displacements from positions beyond a pole to run as index space does there."""
         poles = self.grid.poles
         if poles is not None:
-            moved[poles.component, poles.mirrored(position)] *= -1
+            (moved.imag if poles.component else moved.real)[poles.mirrored(position)] *= -1
 
-    def _displaced(
-        self, corners: Corners, base: Indices | int, m: Indices, lag: Floats32
-    ) -> Floats32:
-        """Displacements at lags (n,) or (1,), between the slices m - 1 and m."""
-        late = (lag - self.knots[m - 1]) / (self.knots[m] - self.knots[m - 1])
-        exact = bool((late > 1 - 10 * LAG_ROUNDING).all())
-        if len(m) == 1:
-            m = m[0]
-        result = np.empty((2, len(corners.at)), np.float32)
-        stride = self.slices.shape[2]
-        for out, data in zip(result, self.slices.reshape(2, -1), strict=True):
-            slope = self.grid.blend(data, corners, base + m * stride) * self._inverse[m]
-            if not exact:
-                before = self.grid.blend(data, corners, base + (m - 1) * stride)
-                before *= self._inverse[m - 1]
-                slope = before + late * (slope - before)
-            np.multiply(slope, lag, out=out)
-        return result
+    def _below(self, lag: Floats32) -> Indices:
+        """Return the number of the longest slice up to each lag.
+
+        To compare with all takes a quarter of the time of a search.
+        """
+        longer = lag >= self.knots[1:, None] * (1 - LAG_ROUNDING)
+        return np.asarray(longer.view(np.int8).sum(axis=0, dtype=np.int8), np.intp)
+
+    def _blend(self, corners: Corners, base: Indices | int, m: Indices) -> Complexes:
+        """Displacements (n,) by the slices m, (n,) or (1,)."""
+        corners = Corners(corners.at + (base + m * self.slices.shape[1]), *corners[1:])
+        result = self.grid.blend(self.slices.ravel(), corners)
+        for bend, inside in zip(self._bends, (corners.t, corners.s), strict=True):
+            weight: AnyArray = (inside * (1 - inside) / 2).astype(np.complex64)
+            weight *= bend.ravel().take(corners.at, mode="clip")
+            result -= weight
+        return np.asarray(result)
 
 
 class _Doubling:
@@ -295,8 +305,8 @@ class _Doubling:
         count, nodes = len(lookup.reach), lookup.grid.size
         before, lag = lookup.knots[m - 1], lookup.knots[m]
         self._lookup, self._lag, self._before = lookup, lag, before
-        self._moved = lookup.slices[:, m]
-        self._moved[:] = lookup.slices[:, m - 1]
+        self._moved = lookup.slices[m]
+        self._moved[:] = lookup.slices[m - 1]
         going = np.tile(lookup.wanted.ravel() >= m, count // nodes)
         #: Paths that are followed, ``None`` for all; the others stay where they are.
         self._which = None if going.all() else np.flatnonzero(going)
@@ -346,8 +356,7 @@ class _Doubling:
         piece = lookup.continued(position, corners, left, self._at(some), longest)
         whole = self._whole[:1] if lookup.even else self._whole[self._node(some)]
         self._suspect(some, position, piece)
-        for row, part in zip(self._moved, piece.moved, strict=True):
-            row[some] += part
+        self._moved[some] += piece.moved
         left -= piece.covered
         self._left[some] = left
         if lookup.unsteady:
@@ -366,9 +375,7 @@ class _Doubling:
 
     def _where(self, some: Some) -> Floats32:
         """Where some paths have come, (2, n)."""
-        node, nodes, moved = self._node(some), self._lookup.nodes, self._moved
-        # Row by row, which is several times as fast with numbers of paths.
-        return np.stack([nodes[0][node] + moved[0][some], nodes[1][node] + moved[1][some]])
+        return _rows(self._lookup.nodes[self._node(some)] + self._moved[some])
 
     def _pass(self, which: Indices, *, final: bool) -> Indices:
         """Integrate paths by a pole, or to their end, and return those that must go further."""
@@ -380,7 +387,7 @@ class _Doubling:
         scale = lookup.scale
         moved, covered, ends = self._integrate(position, left.astype(float) * scale, step, within)
         covered, ends = covered / scale, ends / scale
-        self._moved[:, which] += moved
+        self._moved[which] += moved[0] + 1j * moved[1]
         self._left[which] = left - covered
         lookup.polar.reshape(-1)[which] = True
         new = np.isinf(lookup.reach[which]) & np.isfinite(ends)
@@ -393,7 +400,7 @@ class _Doubling:
         lookup = self._lookup
         if piece.ends is None and lookup.grid.endless:
             return
-        ending = ~lookup.grid.alive(position + piece.moved, BORDER_CELLS)
+        ending = ~lookup.grid.alive(position + _rows(piece.moved), BORDER_CELLS)
         rest = np.full(1, np.inf, np.float32)
         if piece.ends is not None:
             rest = piece.ends
@@ -422,12 +429,13 @@ class _Doubling:
         # _Pieces come in order, and only the first in which a path ends counts.
         which, once = np.unique(which, return_index=True)
         start, length, rest, left, step = (p[..., once] for p in (start, length, rest, left, step))
-        first = np.full(len(which), np.inf, np.float32)
-        for share in np.linspace(1, 0, SEARCH_PARTS, endpoint=False, dtype=np.float32):
-            first[self._outside(start, share * length, step)] = share
-        leaves = np.isfinite(first)
-        high = np.where(leaves, first, 0)
-        low = np.maximum(high - np.float32(1 / SEARCH_PARTS), 0)
+        shares = np.linspace(0, 1, SEARCH_PARTS + 1, dtype=np.float32)[1:]
+        many = np.outer(shares, length).ravel()
+        outside = self._outside(np.tile(start, SEARCH_PARTS), many, np.tile(step, SEARCH_PARTS))
+        outside = outside.reshape(SEARCH_PARTS, -1)
+        leaves = outside.any(axis=0)
+        high = np.where(leaves, shares[outside.argmax(axis=0)], 0)
+        low = np.maximum(high - shares[0], 0)
         for _ in range(SEARCH_BISECTIONS):
             middle = (low + high) / 2
             outside = self._outside(start, middle * length, step)
@@ -438,7 +446,7 @@ class _Doubling:
 
     def _outside(self, start: Floats32, lag: Floats32, step: Indices) -> Bools:
         moved = self._lookup.displaced(start, lag, step)
-        return ~self._lookup.grid.alive(start + moved, BORDER_CELLS)
+        return ~self._lookup.grid.alive(start + _rows(moved), BORDER_CELLS)
 
 
 def _numbers(some: Some, which: Indices) -> Indices:
@@ -452,9 +460,25 @@ def _parts(which: Indices) -> list[Some]:
     return [which[k : k + BLOCK] for k in range(0, len(which), BLOCK)]
 
 
+def _rows(numbers: Complexes) -> Floats32:
+    """Complex numbers (n,) as rows (2, n)."""
+    return np.stack([numbers.real, numbers.imag])
+
+
 def _bend(grid: Floats32, axis: int) -> Floats32:
-    """Size of second differences along an axis of (2, T, J, I), as beside it at the border."""
+    """Second differences along an axis of (T, J, I, 2), as beside it at the border."""
     if grid.shape[axis] < 3:
         return np.zeros_like(grid)
-    bend = np.abs(np.diff(grid, 2, axis=axis))
-    return np.pad(bend, [(int(a == axis),) * 2 for a in range(grid.ndim)], mode="edge")
+    width = [(int(a == axis),) * 2 for a in range(grid.ndim)]
+    return np.pad(np.diff(grid, 2, axis=axis), width, mode="edge")
+
+
+def _greatest(parts: AnyArray) -> AnyArray:
+    """Return the greater of two components (..., 2)."""
+    return np.asarray(np.maximum(parts[..., 0], parts[..., 1]))
+
+
+def _corners(combine: np.ufunc, nodal: AnyArray) -> AnyArray:
+    """Combine what the four nodes of each cell have, (T, J, I, ...) to (T, J - 1, I - 1, ...)."""
+    sides = combine(nodal[:, :-1], nodal[:, 1:])
+    return np.asarray(combine(sides[:, :, :-1], sides[:, :, 1:]))

@@ -14,6 +14,8 @@ from flowtex.field import FlowField
 
 #: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
 FIRST_CELLS, LAST_EXTENTS, MOST_CHOSEN_LAGS = 0.25, 0.25, 24
+#: Parts of an octave, in one of which a last lag lies that is chosen.
+LAST_PARTS = 8
 #: Percentile of the sizes of cells that small ones have.
 SMALL_CELLS = 5
 #: Sizes of cells, in one unit for all, from which and up to which they share it.
@@ -103,7 +105,9 @@ def drawn_lags(
     unit = np.full(field.shape, even)
     if longest is None:
         return choose_lags(field, parameter), unit
-    last = longest / even
+    # The last is a sum of few that double, as paths are composed of whole slices.
+    part = 2.0 ** np.floor(np.log2(longest / even)) / LAST_PARTS
+    last = np.ceil(longest / even / part) * part
     doubled = FIRST_CELLS * RATIO ** np.arange(MOST_CHOSEN_LAGS - 1)
     # A last lag that is hardly longer than the one before takes its place.
     return np.append(doubled[doubled < last / np.sqrt(RATIO)], last), unit

@@ -361,7 +361,7 @@ class _Tracing:
         shape = (len(self.samplers), self.field.valid.size)
         sides = {
             direction: SideSlices(
-                np.zeros((2, len(self.lags) + 1, *shape), np.float32),
+                np.zeros((len(self.lags) + 1, *shape, 2), np.float32),
                 np.zeros(shape, np.float32),
                 np.zeros(shape, bool),
             )
@@ -402,16 +402,16 @@ class _Tracing:
         def work(job: tuple[int, float, slice]) -> None:
             step, direction, block = job
             side, nodes = sides[direction], at[block]
-            slices, reach = side.slices[:, 1 : known + 1, step], side.reach[step]
+            slices, reach = side.slices[1 : known + 1, step], side.reach[step]
             options: dict[str, Any] = {"direction": direction, "tolerance": self.tolerance}
             lags, units = self.lags[:known], unit[block]
             result = integrate(self.samplers[step], start[block], lags, units, **options)
-            moved = np.moveaxis(_in_single(result.positions - start[block]), 2, 0)
+            moved = _in_single(result.positions - start[block])
             some: Indices | slice = nodes
             if nodes[-1] - nodes[0] == len(nodes) - 1:
                 # Writing to a slice is several times as fast as to a list of nodes.
                 some = slice(nodes[0], nodes[-1] + 1)
-            slices[..., some] = moved
+            slices[:, some] = moved
             reach[some] = result.reach
             side.polar[step, some] = result.polar
 
@@ -454,11 +454,11 @@ class _Tracing:
     def _as_grids(self, flat: SideSlices, direction: float) -> SideSlices:
         """Lay out by nodes, with the slope at lag zero; nodes left out move as the nearest."""
         grid = self.field.shape
-        slices = flat.slices.reshape(*flat.slices.shape[:3], *grid)
-        slices[:, 0] = direction * np.moveaxis(_in_single(self.rate), -1, 0)
+        slices = flat.slices.reshape(*flat.slices.shape[:2], *grid, 2)
+        slices[0] = direction * _in_single(self.rate)
         blank = ~self.followed
         if blank.any() and self.followed.any():
             # In place: the slices are large, and few of them are blank.
             rows, columns = nearest_known(self.followed)
-            slices[..., blank] = slices[..., rows[blank], columns[blank]]
+            slices[:, :, blank] = slices[:, :, rows[blank], columns[blank]]
         return SideSlices(slices, flat.reach.reshape(-1, *grid), flat.polar.reshape(-1, *grid))
