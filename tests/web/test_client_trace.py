@@ -204,7 +204,8 @@ def agree(textures: TextureSet, found: Floats, wanted: Floats, few: float = 0.03
         for m, lag in enumerate(lags[:5]):
             goes_on = np.minimum(reach, expected) > 1.5 * lag
             off = np.linalg.norm((found - wanted)[first + m, ..., :3], axis=-1)[goes_on]
-            assert np.median(off) < 4e-3 and np.mean(off < 0.05) > 1 - few, (side, lag)
+            # The client looks paths up between nodes without second differences.
+            assert np.median(off) < 5e-3 and np.mean(off < 0.05) > 1 - few, (side, lag)
 
 
 @pytest.mark.parametrize("name", FIELDS)
