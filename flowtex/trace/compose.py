@@ -6,9 +6,9 @@ costs one look-up for each node, whatever the length, where integration would co
 as the path has cells.
 
 A look-up between the nodes is bilinear, corrected by the mean second differences around its cell,
-and as good as the slice is smooth there. Around a centre or beside a separatrix long paths of
-neighbours part, so how much the second differences change in a cell is held against the slice's
-length, and where that is much the path is continued in shorter pieces that are smooth. What is
+and as good as the slice is smooth there. Around a centre or near a separatrix long paths of
+neighbours part, so the change of the second differences in a cell is compared with the slice's
+length, and where it is large the path is continued in shorter, smooth pieces. What is
 left is of the order of the error that bilinear velocity has itself.
 
 Displacements are complex numbers, i + j sqrt(-1), as one gather takes both components then.
@@ -193,7 +193,7 @@ class _SliceLookup:
         self._known = _corners(np.minimum, scipy.ndimage.minimum_filter(wanted, 3)[None])
         self._longest = self._capped = np.empty(0, np.float32)
         self._endless = False
-        #: Which nodes have a path that has come right beside a pole, (T, J, I).
+        #: Which nodes have a path that has come close to a pole, (T, J, I).
         self.polar = side.polar
 
     def judge(self, m: int, share: float) -> None:
