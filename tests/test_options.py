@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from flowtex.options import (
     accepts_options,
     option_text,
 )
-from flowtex.scene import Scene
+from flowtex.scene import Scene, follow, lay_image
 from flowtex.settings import SettingsError
 
 
@@ -108,6 +109,29 @@ def test_a_view_beside_another_differs_in_what_it_is_told() -> None:
     assert second.settings.noise == "image"
     with pytest.raises(ValueError, match=r"^beside has plane, which selects data"):
         first.beside({"plane": "k=2"})
+
+
+def test_a_second_view_follows_the_first_in_what_is_not_its_own() -> None:
+    field = gyre().with_derived("vorticity")
+    first = Scene.of(field, clim=(0.0, 2.0), cmap="magma", image=np.ones((4, 4)))
+    own = {"scalars": "vorticity", "noise": "procedural"}  # beside an image the noise
+    second = first.beside(own)
+    assert second.scalar_limits == second.scalar_range("vorticity") != first.scalar_limits
+    assert (second.settings.noise, second.appearance.cmap) == ("procedural", "magma")
+    end = follow(lambda: first, lambda: second, own)
+    first.settings.update(samples=9, noise="checkerboard")
+    first.appearance = replace(first.appearance, cmap="gray", clim=(0.0, 1.0), log_scale=False)
+    assert (second.settings.samples, second.settings.noise) == (9, "procedural")
+    assert second.appearance.cmap == "gray"
+    assert second.scalar_limits == second.scalar_range("vorticity")
+    lay_image([first, second], np.zeros((4, 4)), own)
+    assert (first.settings.noise, second.settings.noise) == ("image", "procedural")
+    # The logarithm of what has no sign is left to the first.
+    first.appearance = replace(first.appearance, log_scale=True, clim=(0.1, 1.0))
+    assert not second.appearance.log_scale and second.appearance.scalars == "vorticity"
+    end()
+    first.settings.samples = 5
+    assert second.settings.samples == 9
 
 
 def test_choices_of_a_mesh_are_refused_for_a_field() -> None:
