@@ -78,8 +78,8 @@ def open_source(path: str | Path | Sequence[str | Path]) -> Source:
     if not paths:
         if not isinstance(path, (str, Path)):
             msg = (
-                f"{len(path)} files are given; several files are read only as data of the Earth, "
-                "so give one file with a mesh"
+                f"{len(path)} files are given, but several are read only as data of the Earth; for "
+                "the steps of a mesh give a .pvd file, or in Python a list of meshes"
             )
             raise FieldError(msg)
         return FlowSource.from_file(path)

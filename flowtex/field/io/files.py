@@ -217,8 +217,8 @@ def read_files(
     _refuse(chosen, "data of the Earth, but this is a mesh")
     if not isinstance(path, (str, Path)):
         msg = (
-            f"{len(path)} files are given; several files are read only as data of the Earth, so "
-            "give one file with a mesh"
+            f"{len(path)} files are given, but several are read only as data of the Earth; for the "
+            "steps of a mesh give a .pvd file, or in Python a list of meshes"
         )
         raise FieldError(msg)
     if isinstance(time, str):
