@@ -25,8 +25,10 @@ if TYPE_CHECKING:
     from flowtex.offscreen.movie import movie
     from flowtex.offscreen.render import render
     from flowtex.trace.structure import (
+        ClosedOrbit,
         CriticalPoints,
         Separatrices,
+        closed_orbits,
         critical_points,
         separatrices,
     )
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Camera",
+    "ClosedOrbit",
     "CriticalPoints",
     "FieldError",
     "FlowField",
@@ -42,6 +45,7 @@ __all__ = [
     "Settings",
     "TraceSlices",
     "axes",
+    "closed_orbits",
     "critical_points",
     "examples",
     "export",
@@ -59,10 +63,12 @@ __all__ = [
 #: Names that are imported when they are first used: what they need is slow to load, or optional.
 _LAZY = {
     "Camera": "camera",
+    "ClosedOrbit": "trace.structure",
     "CriticalPoints": "trace.structure",
     "FlowWidget": "widget",
     "Separatrices": "trace.structure",
     "axes": "offscreen.figure",
+    "closed_orbits": "trace.structure",
     "critical_points": "trace.structure",
     "export": "web.export",
     "extent": "offscreen.figure",

@@ -1,5 +1,5 @@
-// Fixed points of a formula, and the separatrices of its saddles: zeros of the rates themselves, and lines
-// that are followed along them. What a point is called is as in flowtex/trace/structure/critical_points.py.
+// Fixed points of a formula, the separatrices of its saddles, and closed orbits: zeros of the rates themselves,
+// and lines that are followed along them. What a point is called is as in flowtex/trace/structure/critical_points.py.
 
 export type Pair = [x: number, y: number];
 /** The rates of change at a place; not finite if they do not exist. */
@@ -38,6 +38,11 @@ const CENTRE_SHARE = 0.05;
 const [STEPS, MOST_STEPS, BEGIN, END] = [800, 2400, 0.02, 1.5];
 /** Steps of a turn at least; distances of two turns at which a line is closed, and winds up, in steps. */
 const [LEAST_TURN, CLOSED, WOUND] = [8, 0.08, 2];
+
+/** Points around which closed orbits are looked for; places of a ray: ratio, and distance as a share of the diagonal. */
+const [MOST_AROUND, RATIO, APART] = [8, 1.2, 0.03];
+/** How much farther out or in lines return where they move away, as a share of the distance; halvings of a stretch. */
+const [MOVED, HALVINGS] = [0.05, 24];
 
 const difference = (a: Pair, b: Pair): Pair => [a[0] - b[0], a[1] - b[1]];
 const along = (a: Pair, way: Pair, step: number): Pair => [a[0] + step * way[0], a[1] + step * way[1]];
@@ -133,8 +138,60 @@ export function separatrices(rate: Rate, ends: Ends, points: FixedPoint[], saddl
   });
 }
 
-/** The line from the last of some points on, of so long steps, to a fixed point or a border. */
-function followed(rate: Rate, ends: Ends, points: FixedPoint[], path: Pair[], step: number): Pair[] {
+/**
+ * Closed orbits to which lines come, or which they leave: where lines return to a ray from a point that is no
+ * saddle. flowtex/trace/structure/orbits.py finds them on grids.
+ */
+export function closedOrbits(rate: Rate, ends: Ends, points: FixedPoint[]): Pair[][] {
+  const diagonal = Math.hypot(...ends.map(([low, high]) => high - low));
+  const step = diagonal / STEPS;
+  const found: Pair[][] = [];
+  for (const { at: [x, y] } of points.filter(({ ways }) => !ways).slice(0, MOST_AROUND)) {
+    /** The turn from a place of the ray on, forward or back; its last point is on the ray. */
+    const turn = (place: number, way: number): Pair[] | null => {
+      const side = Math.sign(way * rate(x + place, y)[1]);
+      const isBack = (path: Pair[]) => {
+        const [before, after] = path.slice(-2).map((at) => side * (at[1] - y));
+        return path.length > LEAST_TURN && before < 0 && after >= 0 && path[path.length - 1][0] > x;
+      };
+      const path = followed(rate, ends, points, [[x + place, y]], way * step, isBack);
+      if (path.length < 2 || !isBack(path)) return null;
+      const [before, after] = path.slice(-2);
+      return [...path.slice(0, -1), along(before, difference(after, before), (y - before[1]) / (after[1] - before[1]))];
+    };
+    const moved = (place: number, way: number) => (turn(place, way)?.at(-1)?.[0] ?? NaN) - x - place;
+    let last: { place: number; out: number } | null = null;
+    for (let place = 2 * step; x + place < ends[0][1]; place += Math.min((RATIO - 1) * place, APART * diagonal)) {
+      const forward = moved(place, 1);
+      const out: number = Number.isNaN(forward) ? -moved(place, -1) : forward;
+      if (Math.abs(out) <= Math.max(MOVED * place, CLOSED * step)) continue;
+      if (last && last.out * out < 0) {
+        const way = Math.sign(last.out);
+        let [low, high] = [last.place, place];
+        for (let n = 0; n < HALVINGS; n += 1) {
+          const middle = (low + high) / 2;
+          if (moved(middle, way) > 0) low = middle;
+          else high = middle;
+        }
+        const orbit = turn(low, way);
+        const isNew = orbit && !found.some((other) => other.some((at) => distance(at, orbit[0]) < 2 * step));
+        if (orbit && isNew && distance(orbit[0], orbit[orbit.length - 1]) < CLOSED * step) found.push(orbit);
+      }
+      last = Number.isNaN(out) ? null : { place, out };
+    }
+  }
+  return found;
+}
+
+/** The line from the last of some points on, of so long steps, to a fixed point, a border, or where it is to end. */
+function followed(
+  rate: Rate,
+  ends: Ends,
+  points: FixedPoint[],
+  path: Pair[],
+  step: number,
+  isEnd: (path: Pair[]) => boolean = () => false,
+): Pair[] {
   const unit = (at: Pair): Pair => {
     const [u, v] = rate(...at);
     const size = Math.hypot(u, v);
@@ -156,7 +213,7 @@ function followed(rate: Rate, ends: Ends, points: FixedPoint[], path: Pair[], st
       return Number.isNaN(beyond) ? 1 : Math.max((beyond - at[k]) / (next[k] - at[k]), 0);
     }));
     path.push(along(at, difference(next, at), share));
-    if (share < 1) return path;
+    if (share < 1 || isEnd(path)) return path;
     const end = points.find((point) => distance(point.at, next) < near);
     if (end && isAway) return [...path, end.at];
     isAway ||= !points.some((point) => distance(point.at, next) < 2 * near);

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { fixedPoints, separatrices, type Ends, type Rate } from "../src/fixedpoints.ts";
+import { closedOrbits, fixedPoints, separatrices, type Ends, type Rate } from "../src/fixedpoints.ts";
 import { FormulaSource } from "../src/formula.ts";
 import { LINE, type FormulaHeader, type Header } from "../src/protocol.ts";
 
@@ -53,6 +53,28 @@ test("separatrices end at points and borders, and on closed orbits", () => {
     const [first, last] = [orbit[0], orbit[orbit.length - 1]];
     assert.ok(Math.hypot(first[0] - last[0], first[1] - last[1]) < 0.01);
   }
+});
+
+test("closed orbits are found where no separatrix ends", () => {
+  const box: Ends = [[-3, 3], [-4, 4]];
+  const orbitsOf = (rate: Rate) => closedOrbits(rate, box, fixedPoints(rate, box));
+  for (const sign of [1, -1]) {
+    const [orbit, ...others] = orbitsOf((x, y) => [sign * y, sign * ((1 - x * x) * y - x)]);
+    assert.equal(others.length, 0);
+    assert.ok(Math.abs(Math.max(...orbit.map(([x]) => x)) - 2.0086) < 1e-3);
+  }
+  const turning = (growth: (r: number) => number): Rate => (x, y) => {
+    const k = growth(x * x + y * y);
+    return [k * x - y, k * y + x];
+  };
+  for (const k of [1, 0.05]) {
+    const [orbit] = orbitsOf(turning((r) => k * (1 - r)));
+    assert.ok(orbit.every((at) => Math.abs(Math.hypot(...at) - 1) < 1e-4));
+  }
+  const two = orbitsOf(turning((r) => (1 - r) * (r - 2.25)));
+  assert.deepEqual(two.map((orbit) => Math.round(1e3 * Math.hypot(...orbit[0]))), [1000, 1500]);
+  const none: Rate[] = [(x, y) => [-y, x], (x, y) => [y, -Math.sin(x)], (x, y) => [y, -Math.sin(x) - 0.2 * y], (x, y) => [-Math.sin(2 * x), -Math.cos(y)]];
+  for (const rate of none) assert.deepEqual(orbitsOf(rate), []);
 });
 
 test("the points and lines of a formula are those of Python", async () => {

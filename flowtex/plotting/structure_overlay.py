@@ -22,7 +22,7 @@ from flowtex.rendering.structure_marks import (
 )
 from flowtex.rendering.vtk import FlowSurface
 from flowtex.scene import Scene
-from flowtex.trace.structure import CriticalPoints, Separatrices
+from flowtex.trace.structure import ClosedOrbit, CriticalPoints, Separatrices
 
 #: Structures are found one after the other, beside what else goes on.
 _pool = ThreadPoolExecutor(1, thread_name_prefix="flowtex-structure")
@@ -79,12 +79,14 @@ class StructureOverlay(Overlay):
             return
         self._shown = self._wanted
         if settings.separatrices:
-            self._add_separatrices(scene.structure.lines(scene.step, settings.separatrices))
+            lines = scene.structure.lines(scene.step, settings.separatrices)
+            self._add_lines_of(lines, scene.structure.orbits(scene.step))
         if settings.critical_points:
             self._add_points(scene.structure.points(scene.step)[: settings.critical_points])
 
-    def _add_separatrices(self, lines: Separatrices) -> None:
+    def _add_lines_of(self, lines: Separatrices, orbits: Sequence[ClosedOrbit]) -> None:
         by_color: dict[str, list[Floats]] = {name: [] for name in LINE_COLORS}
+        by_color["closed orbit"] += [orbit.points for orbit in orbits]
         for line in lines:
             by_color["leaving" if line.forward else "coming"].append(line.unwound)
             if line.orbit is not None:

@@ -12,9 +12,11 @@ from flowtex.settings import TABLE, Settings, SettingsError
 from flowtex.tiles.coarse import coarsened_field
 from flowtex.tiles.shared import has_pyramid, shared_pyramid
 from flowtex.trace.structure import (
+    ClosedOrbit,
     CriticalPoints,
     Separatrices,
     critical_points,
+    orbits_around,
     separatrices_between,
 )
 
@@ -41,6 +43,7 @@ class Structure:
         self._every: tuple[int, CriticalPoints] | None = None
         self._points: OrderedDict[int, CriticalPoints] = OrderedDict()
         self._lines: OrderedDict[int, tuple[int, Separatrices]] = OrderedDict()
+        self._orbits: OrderedDict[int, list[ClosedOrbit]] = OrderedDict()
 
     def points(self, step: int) -> CriticalPoints:
         """Return the critical points of a step, the strongest first."""
@@ -69,17 +72,28 @@ class Structure:
             kept = {id(saddle) for saddle in _saddles(lines)[:saddles]}
             return Separatrices(line for line in lines if id(line.saddle) in kept)
 
+    def orbits(self, step: int) -> list[ClosedOrbit]:
+        """Return the closed orbits of a step, whether or not a separatrix ends there."""
+        with self._lock:
+            if step not in self._orbits:
+                points = self._every_point(step)
+                self._orbits[step] = orbits_around(self._field.at_step(step), points)
+                _trim(self._orbits)
+            return self._orbits[step]
+
     def find(self, step: int, points: int, saddles: int) -> None:
         """Have what shows this many points, and the lines of this many saddles, of a step."""
         if points:
             self.points(step)
         if saddles:
             self.lines(step, saddles)
+            self.orbits(step)
 
     def has(self, step: int, points: int, saddles: int) -> bool:
         """Return whether all that shows these has been found."""
         found = self._lines.get(step, (0, None))[0]
-        return (not points or step in self._points) and saddles <= found
+        has_lines = saddles <= found and (not saddles or step in self._orbits)
+        return (not points or step in self._points) and has_lines
 
 
 def _saddles(lines: Separatrices) -> CriticalPoints:

@@ -1281,45 +1281,56 @@ camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(co
 "next"||command==="previous")viewer.step(command==="next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.
 lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.
 follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[CELLS,NEWTON_STEPS,FAR_CELLS]=[160,40,2],[ZERO_SHARE2,SINGULAR,SAME_CELLS]=[1e-7,1e-7,.001],CENTRE_SHARE=.05,[STEPS2,
-MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[8,.08,2],difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[
-a[0]+step*way[0],a[1]+step*way[1]],distance=(a,b)=>Math.hypot(a[0]-b[0],a[1]-b[1]);function gradient(rate,[x,y],[dx,dy]){
-let[east,west,north,south]=[rate(x+dx,y),rate(x-dx,y),rate(x,y+dy),rate(x,y-dy)];return[0,1].flatMap(k=>[(east[k]-west[k])/
-(2*dx),(north[k]-south[k])/(2*dy)])}function described(at,[a,b,c,d]){let[trace,steepness]=[a+d,Math.abs(a*d-b*c)],square=trace**
-2/4-(a*d-b*c),root=Math.sqrt(Math.abs(square)),turned=Math.abs(trace)/2<=CENTRE_SHARE*root?"centre":trace>0?"spiral sour\
-ce":"spiral sink",kind=a*d-b*c<0?"saddle":square<0?turned:trace>0?"source":"sink",way=value=>{let[one,two]=[[b,value-a],
-[value-d,c]],[x,y]=Math.hypot(...one)>Math.hypot(...two)?one:two;return[x/Math.hypot(x,y),y/Math.hypot(x,y)]},ways=kind===
-"saddle"?{leaving:way(trace/2+root),coming:way(trace/2-root)}:null;return{at,kind,steepness,ways}}function fixedPoints(rate,[
-xs,ys]){let sides=[xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.map(side=>Math.max(Math.round(CELLS*side/Math.max(...sides)),
-8)),cell=[sides[0]/columns,sides[1]/rows],nodes=Array.from({length:(rows+1)*(columns+1)},(_,n)=>rate(xs[0]+cell[0]*(n%(columns+
-1)),ys[0]+cell[1]*Math.floor(n/(columns+1)))),points=[];for(let n=0;n<rows*columns;n+=1){let low=n+Math.floor(n/columns),
-corners=[low,low+1,low+columns+1,low+columns+2].map(node=>nodes[node]);if(![0,1].every(k=>corners.some(v2=>v2[k]>=0)&&corners.
-some(v2=>v2[k]<=0)))continue;let middle=[xs[0]+cell[0]*(n%columns+.5),ys[0]+cell[1]*(Math.floor(n/columns)+.5)],found=zero(
-rate,middle,cell,Math.max(...corners.map(v2=>Math.hypot(...v2)))),isInside=found&&[xs,ys].every(([least,most],k)=>found.
-at[k]>=least-SAME_CELLS*cell[k]&&found.at[k]<=most+SAME_CELLS*cell[k]);!found||!isInside||points.some(({at})=>distance(at,
-found.at)<SAME_CELLS*Math.hypot(...cell))||points.push(found)}return points.sort((one,two)=>two.steepness-one.steepness)}
-function zero(rate,start,cell,speed){let small=[1e-5*cell[0],1e-5*cell[1]],at=start;for(let n=0;n<NEWTON_STEPS;n+=1){let[
-u,v2]=rate(...at),matrix=gradient(rate,at,small),[a,b,c,d]=matrix,determinant2=a*d-b*c;if(!(Math.abs(determinant2)>SINGULAR*
-(a*a+b*b+c*c+d*d)))return null;let step=[(b*v2-d*u)/determinant2,(c*u-a*v2)/determinant2],share=Math.min(1,1/Math.max(Math.
-abs(step[0]/cell[0]),Math.abs(step[1]/cell[1]),1e-30));if(at=along(at,step,share),!(Math.max(...difference(at,start).map(
-(x,k)=>Math.abs(x/cell[k])))<FAR_CELLS))return null;if(Math.hypot(step[0]/cell[0],step[1]/cell[1])<1e-10)break}return Math.
-hypot(...rate(...at))<=ZERO_SHARE2*speed?described(at,gradient(rate,at,small)):null}function separatrices(rate,ends2,points,saddles){
+MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[8,.08,2],[MOST_AROUND,RATIO,APART]=[8,1.2,.03],[MOVED,
+HALVINGS]=[.05,24],difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[a[0]+step*way[0],a[1]+step*way[1]],distance=(a,b)=>Math.
+hypot(a[0]-b[0],a[1]-b[1]);function gradient(rate,[x,y],[dx,dy]){let[east,west,north,south]=[rate(x+dx,y),rate(x-dx,y),rate(
+x,y+dy),rate(x,y-dy)];return[0,1].flatMap(k=>[(east[k]-west[k])/(2*dx),(north[k]-south[k])/(2*dy)])}function described(at,[
+a,b,c,d]){let[trace,steepness]=[a+d,Math.abs(a*d-b*c)],square=trace**2/4-(a*d-b*c),root=Math.sqrt(Math.abs(square)),turned=Math.
+abs(trace)/2<=CENTRE_SHARE*root?"centre":trace>0?"spiral source":"spiral sink",kind=a*d-b*c<0?"saddle":square<0?turned:trace>
+0?"source":"sink",way=value=>{let[one,two]=[[b,value-a],[value-d,c]],[x,y]=Math.hypot(...one)>Math.hypot(...two)?one:two;
+return[x/Math.hypot(x,y),y/Math.hypot(x,y)]},ways=kind==="saddle"?{leaving:way(trace/2+root),coming:way(trace/2-root)}:null;
+return{at,kind,steepness,ways}}function fixedPoints(rate,[xs,ys]){let sides=[xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.
+map(side=>Math.max(Math.round(CELLS*side/Math.max(...sides)),8)),cell=[sides[0]/columns,sides[1]/rows],nodes=Array.from(
+{length:(rows+1)*(columns+1)},(_,n)=>rate(xs[0]+cell[0]*(n%(columns+1)),ys[0]+cell[1]*Math.floor(n/(columns+1)))),points=[];
+for(let n=0;n<rows*columns;n+=1){let low=n+Math.floor(n/columns),corners=[low,low+1,low+columns+1,low+columns+2].map(node=>nodes[node]);
+if(![0,1].every(k=>corners.some(v2=>v2[k]>=0)&&corners.some(v2=>v2[k]<=0)))continue;let middle=[xs[0]+cell[0]*(n%columns+
+.5),ys[0]+cell[1]*(Math.floor(n/columns)+.5)],found=zero(rate,middle,cell,Math.max(...corners.map(v2=>Math.hypot(...v2)))),
+isInside=found&&[xs,ys].every(([least,most],k)=>found.at[k]>=least-SAME_CELLS*cell[k]&&found.at[k]<=most+SAME_CELLS*cell[k]);
+!found||!isInside||points.some(({at})=>distance(at,found.at)<SAME_CELLS*Math.hypot(...cell))||points.push(found)}return points.
+sort((one,two)=>two.steepness-one.steepness)}function zero(rate,start,cell,speed){let small=[1e-5*cell[0],1e-5*cell[1]],
+at=start;for(let n=0;n<NEWTON_STEPS;n+=1){let[u,v2]=rate(...at),matrix=gradient(rate,at,small),[a,b,c,d]=matrix,determinant2=a*
+d-b*c;if(!(Math.abs(determinant2)>SINGULAR*(a*a+b*b+c*c+d*d)))return null;let step=[(b*v2-d*u)/determinant2,(c*u-a*v2)/determinant2],
+share=Math.min(1,1/Math.max(Math.abs(step[0]/cell[0]),Math.abs(step[1]/cell[1]),1e-30));if(at=along(at,step,share),!(Math.
+max(...difference(at,start).map((x,k)=>Math.abs(x/cell[k])))<FAR_CELLS))return null;if(Math.hypot(step[0]/cell[0],step[1]/
+cell[1])<1e-10)break}return Math.hypot(...rate(...at))<=ZERO_SHARE2*speed?described(at,gradient(rate,at,small)):null}function separatrices(rate,ends2,points,saddles){
 let step=Math.hypot(...ends2.map(([low,high])=>high-low))/STEPS2;return saddles.flatMap(saddle=>{let{ways}=saddle;return ways?
 [!0,!1].flatMap(leaves=>[1,-1].map(side=>{let way=leaves?ways.leaving:ways.coming,begin=along(saddle.at,way,side*BEGIN*step),
 path=followed(rate,ends2,points,[saddle.at,begin],leaves?step:-step),closed=turnOf(path,step,CLOSED),wound=turnOf(path,step,
 WOUND);return{path:wound?path.slice(0,2*wound[1]-wound[0]+1):path,saddle,leaves,orbit:closed&&path.slice(closed[0],closed[1]+
-1)}})):[]})}function followed(rate,ends2,points,path,step){let unit2=at=>{let[u,v2]=rate(...at),size=Math.hypot(u,v2);return[
-u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<MOST_STEPS;n+=1){let at=path[path.length-1],one=unit2(at),
-two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/2)),four=unit2(along(at,three,step)),next=along(at,[0,1].map(
-k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(Number.isFinite))return path;let share=Math.min(...ends2.
-map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/
-(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),share)),share<1)return path;let end=points.find(point=>distance(
-point.at,next)<near);if(end&&isAway)return[...path,end.at];isAway||=!points.some(point=>distance(point.at,next)<2*near)}
-return path}function turnOf(path,step,apart){let around2=Math.max(.75,1.25*apart)*step,places=new Map,cellOf=at=>at.map(
-x=>Math.floor(x/around2));for(let n=0;n<path.length;n+=1){let[i,j]=cellOf(path[n]);for(let m=0;m<9;m+=1)for(let before of places.
-get(`${i+m%3-1} ${j+Math.floor(m/3)-1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>around2||before+1>=
-path.length)continue;let way=difference(path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],path[before]);
-if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;
-places.set(name,[...places.get(name)??[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,PATH_SHARE=.99,OPERATIONS=new Map(
+1)}})):[]})}function closedOrbits(rate,ends2,points){let diagonal=Math.hypot(...ends2.map(([low,high])=>high-low)),step=diagonal/
+STEPS2,found=[];for(let{at:[x,y]}of points.filter(({ways})=>!ways).slice(0,MOST_AROUND)){let turn=(place,way)=>{let side=Math.
+sign(way*rate(x+place,y)[1]),isBack=path2=>{let[before2,after2]=path2.slice(-2).map(at=>side*(at[1]-y));return path2.length>
+LEAST_TURN&&before2<0&&after2>=0&&path2[path2.length-1][0]>x},path=followed(rate,ends2,points,[[x+place,y]],way*step,isBack);
+if(path.length<2||!isBack(path))return null;let[before,after]=path.slice(-2);return[...path.slice(0,-1),along(before,difference(
+after,before),(y-before[1])/(after[1]-before[1]))]},moved=(place,way)=>(turn(place,way)?.at(-1)?.[0]??NaN)-x-place,last=null;
+for(let place=2*step;x+place<ends2[0][1];place+=Math.min((RATIO-1)*place,APART*diagonal)){let forward=moved(place,1),out=Number.
+isNaN(forward)?-moved(place,-1):forward;if(!(Math.abs(out)<=Math.max(MOVED*place,CLOSED*step))){if(last&&last.out*out<0){
+let way=Math.sign(last.out),[low,high]=[last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+high)/2;moved(middle,
+way)>0?low=middle:high=middle}let orbit=turn(low,way),isNew=orbit&&!found.some(other=>other.some(at=>distance(at,orbit[0])<
+2*step));orbit&&isNew&&distance(orbit[0],orbit[orbit.length-1])<CLOSED*step&&found.push(orbit)}last=Number.isNaN(out)?null:
+{place,out}}}}return found}function followed(rate,ends2,points,path,step,isEnd=()=>!1){let unit2=at=>{let[u,v2]=rate(...at),
+size=Math.hypot(u,v2);return[u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<MOST_STEPS;n+=1){let at=path[path.
+length-1],one=unit2(at),two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/2)),four=unit2(along(at,three,step)),
+next=along(at,[0,1].map(k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(Number.isFinite))return path;let share=Math.
+min(...ends2.map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:NaN;return Number.isNaN(beyond)?1:Math.max(
+(beyond-at[k])/(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),share)),share<1||isEnd(path))return path;
+let end=points.find(point=>distance(point.at,next)<near);if(end&&isAway)return[...path,end.at];isAway||=!points.some(point=>distance(
+point.at,next)<2*near)}return path}function turnOf(path,step,apart){let around2=Math.max(.75,1.25*apart)*step,places=new Map,
+cellOf=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.length;n+=1){let[i,j]=cellOf(path[n]);for(let m=0;m<9;m+=
+1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>
+around2||before+1>=path.length)continue;let way=difference(path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],
+path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i}\
+ ${j}`;places.set(name,[...places.get(name)??[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,PATH_SHARE=.99,OPERATIONS=new Map(
 Object.entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
 b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.min(a,b),
 max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
@@ -1357,34 +1368,35 @@ header.geometry,this.parameters]),before!==this.state}load=(key,steps,_signal,_h
 step=>this.marks(mark,step))):Promise.resolve(key?this.tile(key,steps):this.whole(steps));marks(kind,step){let{grid:grid2,
 header}=this,rate=grid2.rate(header.slices.times[step],this.parameters),points=fixedPoints(rate,grid2.ends),kinds=header.
 structure?.kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid2.localOf(at),number],rows=[];if(kind==="critical")rows.
-push(...points.map(point=>row2(point.at,kinds.indexOf(point.kind))));else{let saddles=points.filter(({ways})=>ways).slice(
-0,MOST_SADDLES);separatrices(rate,grid2.ends,points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.saddle*
-saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??
-[]).map(at=>row2(at,number+LINE.orbit)))})}return this.named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[
-rows.length,4]})}whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts(
-{level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.
-state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(
-window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=
-1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,start+shape2[1]),j*shape2[1])}let values=`scalar\
-s/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flow/${step}`,flow),this.named(`${prefix}${values}`,
-{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,{mesh,pyramid,geometry,slices}=header,{trace}=slices;
-if(!pyramid||!trace)throw new Error("the levels of the formula are missing");let[level,...place]=key,cells=pyramid.tileBlocks*
-mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-
-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-
-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,
-to},{middle,part:padded}=grid2.padded(window2),share=2**-grid2.doublings(level),longest=PATH_SHARE*pyramid.pathCells,lags=[
-...slices.lags.filter(lag=>lag<longest),longest],texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),
-own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,
-lags,count:slices.count-slices.sides*(slices.lags.length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,
-critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.
-timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.
-stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);return[this.named(`${prefix}header`,{data:text,shape:[
-text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).
-fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.
-header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(
-rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=
-1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+
-column)??[];data.set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+push(...points.map(point=>row2(point.at,kinds.indexOf(point.kind))));else{closedOrbits(rate,grid2.ends,points).forEach((orbit,n)=>{
+rows.push(...orbit.map(at=>row2(at,LINE.orbit+n%2)))});let saddles=points.filter(({ways})=>ways).slice(0,MOST_SADDLES);separatrices(
+rate,grid2.ends,points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.saddle*saddles.indexOf(saddle)+
+LINE.leaving*Number(leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??[]).map(at=>row2(at,number+
+LINE.orbit)))})}return this.named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[rows.length,4]})}whole(steps){
+let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,from:[0,0],to:[shape2[0]-
+1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
+return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
+shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
+start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
+w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
+{mesh,pyramid,geometry,slices}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("the levels of the formula are \
+missing");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*
+cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map(
+(at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),
+shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),share=2**
+-grid2.doublings(level),longest=PATH_SHARE*pyramid.pathCells,lags=[...slices.lags.filter(lag=>lag<longest),longest],texels=n=>({
+before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),
+columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.
+length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,
+first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},
+prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,
+prefix);return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(
+`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(
+key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.
+tileCells)),size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),
+tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),
+block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,(block+1)*size-PLACE2)}
+return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=

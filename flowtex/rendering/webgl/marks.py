@@ -1,8 +1,9 @@
 """Critical points and separatrices for browsers: two parts of each time step.
 
 ``critical/3`` has a row for each point of step 3, (K, 4): where it is, and the number of its kind.
-``separatrices/3`` has one for each point of its lines, (N, 4): its position, and a number that
-identifies the line. Both begin with the strongest; ``client/src/marks.ts`` is the other side.
+``separatrices/3`` has one for each point of its closed orbits and lines, (N, 4): its position, and
+a number that identifies the line. Both begin with the strongest; ``client/src/marks.ts`` is the
+other side.
 """
 
 from __future__ import annotations
@@ -72,6 +73,9 @@ class Marks:
 
     def _lines(self, step: int) -> Floats:
         rows = [np.empty((0, 4))]
+        for n, found in enumerate(self.structure.orbits(step)):
+            codes = np.full((len(found.points), 1), ORBIT + SIDE * (n % 2))
+            rows.append(np.concatenate([found.points, codes], axis=1))
         ranks: dict[int, int] = {}
         count: dict[int, int] = {}
         for line in self.structure.lines(step):

@@ -8,6 +8,7 @@ from flowtex.trace.structure.critical_points import (
     CriticalPoints,
     critical_points,
 )
+from flowtex.trace.structure.orbits import ClosedOrbit, closed_orbits, orbits_around
 from flowtex.trace.structure.separatrices import (
     Separatrices,
     Separatrix,
@@ -17,11 +18,14 @@ from flowtex.trace.structure.separatrices import (
 
 __all__ = [
     "KINDS",
+    "ClosedOrbit",
     "CriticalPoint",
     "CriticalPoints",
     "Separatrices",
     "Separatrix",
+    "closed_orbits",
     "critical_points",
+    "orbits_around",
     "separatrices",
     "separatrices_between",
 ]

@@ -1,0 +1,281 @@
+"""Closed orbits: lines that end where they began, to which others come, or which they leave.
+
+A closed orbit in a plane turns around a critical point that is no saddle, so it crosses every ray
+from there. Where the flow returns to a ray one turn later (its Poincare map) tells on which side of
+an orbit it is: it comes nearer from both sides, or moves away. Around a centre it returns to where
+it was, and no orbit is found there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import scipy
+
+from flowtex._util.arguments import check_field
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.progress import track
+from flowtex.field import FlowField
+from flowtex.field.locate import locator, surface_point
+from flowtex.trace.structure.critical_points import CriticalPoints, critical_points
+from flowtex.trace.trace import paths
+
+#: Distance between the points of a line in cells, points that are followed at once, and the length
+#: of a turn at most, as a share of the surface's extent and in points.
+POINT_CELLS, CHUNK, TURN_EXTENTS, MOST_POINTS = 0.5, 200, 3.0, 3000
+#: Points of a ray: the first one in cells, the ratio of the distances of two, and the distance of
+#: two at most, as a share of the extent.
+FIRST_CELLS, RATIO, EXTENT_SHARE = 1.0, 1.2, 0.03
+#: How much farther out or in a line returns where the flow moves away, in cells and as a share of
+#: the distance from the middle; and how far from its beginning an orbit may end, in cells.
+MOVED_CELLS, MOVED_SHARE, CLOSED_CELLS = 0.05, 0.05, 0.1
+#: Parts into which a stretch of a ray with an orbit is divided, and how often.
+PARTS, ROUNDS = 8, 4
+#: Distances from a critical point and from a wall, in cells, at which a line ends.
+REST_CELLS, WALL_CELLS = 0.25, 0.05
+#: Critical points around which orbits are searched for, the strongest ones.
+MOST_RAYS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class ClosedOrbit:
+    """A line that ends where it began.
+
+    Attributes
+    ----------
+    points
+        The line, (N, 3), in the mesh's units and in the direction of the flow; its last point is
+        the first one.
+    stable
+        Whether the lines beside it come to it; they leave it otherwise.
+    period
+        How long a particle takes for a turn.
+    time
+        When, in the unit of time of the field.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.formula("y", "(1 - x**2) * y - x", x=(-3, 3), y=(-4, 4), resolution=65)
+    >>> flowtex.closed_orbits(field)[0].stable
+    True
+    """
+
+    points: Floats
+    stable: bool
+    period: float
+    time: float
+
+
+def closed_orbits(field: FlowField, *, steps: Sequence[int] | None = None) -> list[ClosedOrbit]:
+    """Find closed orbits that lines come to or leave, such as limit cycles.
+
+    Parameters
+    ----------
+    field
+        The flow; of a time-varying one, the streamlines of each step.
+    steps
+        Indices of the time steps; all by default.
+
+    Returns
+    -------
+    list of ClosedOrbit
+
+    Raises
+    ------
+    FieldError
+        When the field is sign-free, or a step does not exist.
+
+    Notes
+    -----
+    Searched are orbits around the 8 strongest critical points that are no saddles. Orbits that lie
+    closer together than a thirtieth of the surface may be missed.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.formula("y", "(1 - x**2) * y - x", x=(-3, 3), y=(-4, 4))
+    >>> (orbit,) = flowtex.closed_orbits(field)
+    >>> orbit.stable, round(orbit.period, 1), round(float(orbit.points[:, 0].max()), 1)
+    (True, 6.7, 2.0)
+    """
+    check_field(field, FlowField)
+    numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
+    found: list[ClosedOrbit] = []
+    for number in track(numbers, len(numbers), "Finding closed orbits"):
+        part = field.at_step(number)
+        found += orbits_around(part, critical_points(part))
+    return found
+
+
+def orbits_around(field: FlowField, points: CriticalPoints) -> list[ClosedOrbit]:
+    """Find the closed orbits of a steady field whose critical points are known."""
+    turning = [p for p in points if p.poincare_index > 0 and _leaves(p.eigenvalues[0])]
+    around = CriticalPoints(turning).strongest(MOST_RAYS)
+    if not around:
+        return []
+    rays = _Rays(field, points, around)
+    low, high, ray, stable = rays.turns()
+    found: list[ClosedOrbit] = []
+    for forward in (True, False):
+        some = stable == forward
+        for orbit in rays.orbits(low[some], high[some], ray[some], forward=forward):
+            near = (scipy.spatial.KDTree(o.points).query(orbit.points[0])[0] for o in found)
+            if not any(distance < 2 * rays.spacing for distance in near):
+                found.append(orbit)
+    return found
+
+
+def _leaves(eigenvalue: complex) -> bool:
+    """Tell whether lines around a point come nearer or move away, by enough in a turn."""
+    return 2 * np.pi * abs(eigenvalue.real) > MOVED_SHARE * abs(eigenvalue.imag)
+
+
+class _Rays:
+    """Rays from critical points, and where lines return to them.
+
+    Starts on rays are (N,) each: the distance from the middle, and the number of the ray.
+    """
+
+    def __init__(self, field: FlowField, points: CriticalPoints, around: CriticalPoints) -> None:
+        self._field, surface = field, field.surface
+        self._middle = np.array([point.position for point in around])
+        nodes = [surface.node_near(point.index) for point in around]
+        self._cell = np.array([float(surface.cell_size[node]) for node in nodes])
+        self.spacing = POINT_CELLS * float(np.median(self._cell))
+        vectors = np.array([point.eigenvectors for point in around])
+        plane = np.linalg.svd(np.concatenate([vectors.real, vectors.imag], axis=1))[2]
+        self._along, self._across = plane[:, 0], plane[:, 1]
+        near = scipy.spatial.KDTree([point.index[::-1] for point in points])
+
+        # Along a wall lines go on in ever shorter steps.
+        ends = np.subtract(field.shape[::-1], 1.0)
+        ends[list(field.periodic[::-1])] = np.inf
+        low, high = np.where(np.isinf(ends), -np.inf, WALL_CELLS), ends - WALL_CELLS
+
+        def within(index: Floats) -> Bools:
+            away = np.isinf(near.query(index.T, distance_upper_bound=REST_CELLS)[0])
+            return np.asarray(away & ((low < index.T) & (high > index.T)).all(axis=1))
+
+        self._follow = partial(paths, field, parameter="arclength", within=within)
+
+    def turns(self) -> tuple[Floats, Floats, Indices, Bools]:
+        """Return stretches of rays with an orbit: both ends, the ray, and whether it is stable."""
+        extent = self._field.surface.extent
+        wanted: list[tuple[float, int]] = []
+        for which, cell in enumerate(self._cell):
+            place = FIRST_CELLS * cell
+            while place < extent:
+                wanted.append((place, which))
+                place += min((RATIO - 1) * place, max(EXTENT_SHARE * extent, cell))
+        places, number, index = self._put(*map(np.array, zip(*wanted, strict=True)))
+        moved = self._returns(index, number, forward=True) - places
+        lost = np.isnan(moved)
+        moved[lost] = places[lost] - self._returns(index[lost], number[lost], forward=False)
+        with np.errstate(invalid="ignore"):
+            least = np.maximum(MOVED_CELLS * self._cell[number], MOVED_SHARE * places)
+            known = np.flatnonzero(np.abs(moved) > least)
+        one, two = known[:-1], known[1:]
+        gaps = np.cumsum(np.isnan(moved))
+        turned = (moved[one] * moved[two] < 0) & (number[one] == number[two])
+        turned &= gaps[one] == gaps[two]
+        one, two = one[turned], two[turned]
+        return places[one], places[two], number[one], moved[one] > 0
+
+    def orbits(
+        self, low: Floats, high: Floats, ray: Indices, *, forward: bool
+    ) -> list[ClosedOrbit]:
+        """Return the orbits between two places of rays, which lines join in a direction."""
+        low, high = low.copy(), high.copy()
+        for _ in range(ROUNDS):
+            share = np.linspace(0, 1, PARTS + 1)
+            wanted = low[:, None] + (high - low)[:, None] * share
+            number = np.repeat(np.arange(len(ray)), PARTS + 1)
+            places, kept, index = self._put(wanted.ravel(), number, ray)
+            moved = self._returns(index, ray[kept], forward=forward) - places
+            first = np.flatnonzero((moved[:-1] >= 0) & (moved[1:] < 0) & (kept[:-1] == kept[1:]))
+            # Where rounding hides it, the stretch stays as it is.
+            low[kept[first]], high[kept[first]] = places[first], places[first + 1]
+        places, kept, index = self._put(0.5 * (low + high), np.arange(len(ray)), ray)
+        lines: list[Floats] = [at[None] for at in index]
+        end = self._returns(index, ray[kept], forward=forward, lines=lines)
+        # Where lines jump from one side to the other there is no orbit.
+        closed = np.abs(end - places) < CLOSED_CELLS * self._cell[ray[kept]]
+        return [self._orbit(lines[n], stable=forward) for n in np.flatnonzero(closed)]
+
+    def _put(
+        self, places: Floats, number: Indices, ray: Indices | None = None
+    ) -> tuple[Floats, Indices, Floats]:
+        """Return the places (N,) that are on the surface, their numbers, and indices (N, 2).
+
+        The number is that of the ray, or of an entry of ``ray``.
+        """
+        own = number if ray is None else ray[number]
+        if not len(places):
+            return places, number, np.empty((0, 2))
+        wanted = self._middle[own] + places[:, None] * self._along[own]
+        index, _ = locator(self._field).nearest(wanted)
+        index = np.array(index[:, ::-1], dtype=float)
+        along, across = self._off(self._field.surface.at(index)[None], own)
+        reached = np.abs(along[0] - places) < 0.5 * self._cell[own] + 0.1 * places
+        there = reached & (np.abs(across[0]) < 0.05 * self._cell[own])
+        return along[0][there], number[there], index[there]
+
+    def _off(self, points: Floats, ray: Indices) -> tuple[Floats, Floats]:
+        """Return how far points (M, N, 3) are along the rays and beside them, (M, N) each."""
+        off = points - self._middle[ray]
+        return (
+            np.einsum("mnc,nc->mn", off, self._along[ray]),
+            np.einsum("mnc,nc->mn", off, self._across[ray]),
+        )
+
+    def _returns(
+        self, index: Floats, ray: Indices, *, forward: bool, lines: list[Floats] | None = None
+    ) -> Floats:
+        """Return where lines from indices (N, 2) return to the rays after a turn, (N,), or NaN.
+
+        The points of a turn are appended to ``lines``.
+        """
+        result = np.full(len(index), np.nan)
+        going, side, begin = np.arange(len(index)), np.zeros(len(index)), index
+        most = int(min(TURN_EXTENTS * self._field.surface.extent / self.spacing, MOST_POINTS))
+        lags = self.spacing * np.arange(1.0, CHUNK + 1)
+        for done in range(0, most, CHUNK):
+            if not len(going):
+                break
+            found = self._follow(begin, lags, forward=forward)
+            positions = np.concatenate([begin[None], found.positions])
+            along, across = self._off(self._field.surface.at(positions), ray[going])
+            if not done:
+                side = np.where(across[1] > across[0], 1.0, -1.0)
+            across = across * side
+            alive = np.arange(1, CHUNK + 1)[:, None] <= np.searchsorted(lags, found.reach)
+            back = (across[:-1] < 0) & (across[1:] >= 0) & (along[1:] > 0) & alive
+            back[: 0 if done else 2] = False
+            at, returned = np.argmax(back, axis=0), np.asarray(back.any(axis=0))
+            n = np.arange(len(going))
+            share = across[at, n] / np.where(returned, across[at, n] - across[at + 1, n], 1.0)
+            ends = along[at, n] + share * (along[at + 1, n] - along[at, n])
+            result[going[returned]] = ends[returned]
+            for here, k in enumerate(going):
+                if lines is not None:
+                    last = at[here] + 1 if returned[here] else CHUNK + 1
+                    lines[k] = np.concatenate([lines[k], positions[1:last, here]])
+            left = ~returned & alive.all(axis=0)
+            going, side, begin = going[left], side[left], positions[-1, left]
+        return result
+
+    def _orbit(self, line: Floats, *, stable: bool) -> ClosedOrbit:
+        """Make an orbit of a turn, indices (N, 2)."""
+        surface, speed = self._field.surface, self._field.speed[0]
+        points = surface.at(np.concatenate([line, line[:1]]))
+        slow = 1 / np.array(
+            [float(surface_point(surface, index[::-1]).interpolate(speed)) for index in line]
+        )
+        lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        period = float(np.sum(lengths * 0.5 * (slow + np.roll(slow, -1))))
+        ordered = points if stable else points[::-1]
+        return ClosedOrbit(ordered, stable, period, float(self._field.times[0]))
