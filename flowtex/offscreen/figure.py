@@ -26,6 +26,7 @@ from flowtex.offscreen.earth_axes import (
     unit_of,
 )
 from flowtex.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
+from flowtex.offscreen.scaled_axes import AxesScales
 from flowtex.options import (
     Appearance,
     FieldOptions,
@@ -40,6 +41,8 @@ Extent = tuple[float, float, float, float]
 
 #: Ends of a colour bar beyond which values lie, below and above, in matplotlib's words.
 EXTENDED = {(False, True): "max", (True, False): "min", (True, True): "both"}
+#: Names of the scales of usual axes.
+LINEAR = ("linear", "linear")
 #: Dots per inch at which a grain has the pixels that the settings speak of.
 USUAL_DPI = 100.0
 #: Longest side of what is drawn where the scales of the axes differ, in pixels.
@@ -126,11 +129,11 @@ def axes(
     Parameters
     ----------
     ax
-        Rectilinear axes with linear scales, or map axes of cartopy
+        Rectilinear axes, with logarithmic or other scales too, or map axes of cartopy
         (``projection=ccrs.Robinson()``). Their limits become those of the surface, unless they have
-        been set, and the aspect of rectilinear axes becomes equal. Data on longitudes and latitudes
-        are drawn in degrees, or in the projection of the argument ``projection``, with meridians
-        and parallels as ticks; axes of cartopy already have a projection.
+        been set, and the aspect of axes with linear scales becomes equal. Data on longitudes and
+        latitudes are drawn in degrees, or in the projection of the argument ``projection``, with
+        meridians and parallels as ticks; axes of cartopy already have a projection.
     mesh
         As for :func:`flowtex.render`; its surface must be flat.
     time, clock, supersampling
@@ -159,16 +162,12 @@ def axes(
     >>> figure.savefig("gyre.png", dpi=50)
     >>> plt.close(figure)
     """
-    if not is_geo(ax):
-        if getattr(ax, "name", "") != "rectilinear":
-            msg = (
-                f"ax is {ax!r}; expected rectilinear matplotlib axes, such as those of "
-                "plt.subplots(), or axes of cartopy's"
-            )
-            raise FieldError(msg)
-        if (scales := (ax.get_xscale(), ax.get_yscale())) != ("linear", "linear"):
-            msg = f"ax has scales {scales}; expected linear ones, see ax.set_xscale('linear')"
-            raise FieldError(msg)
+    if not is_geo(ax) and getattr(ax, "name", "") != "rectilinear":
+        msg = (
+            f"ax is {ax!r}; expected rectilinear matplotlib axes, such as those of "
+            "plt.subplots(), or axes of cartopy"
+        )
+        raise FieldError(msg)
     chosen = Options.split("field", "appearance", **options)
     image = FlowImage(ax, mesh, chosen, supersampling)
     image.time, image.clock = image.time if time is None else time, clock
@@ -195,7 +194,7 @@ class FlowImage(AxesImage):
     """
 
     def __init__(self, ax: Axes, mesh: Any, options: Options, supersampling: int) -> None:
-        self._unit = AxesUnit()
+        self._unit: AxesUnit | AxesScales = AxesUnit()
         if is_geo(ax):
             name, self._unit = projection_of_axes(ax)
             options = _in_projection(mesh, options, name)
@@ -213,6 +212,11 @@ class FlowImage(AxesImage):
         self._frame = _frame(surface)
         # The scene keeps alive what each drawing shares with it.
         self._options = replace(options, field=FieldOptions())
+        self._flow = scene.field
+        self._scales: AxesScales | None = None
+        if not is_geo(ax) and (ax.get_xscale(), ax.get_yscale()) != LINEAR:
+            self._follow_scales(AxesScales(ax, framed=False))
+            scene, surface = self._scene, self._scene.whole.surface
         self._supersampling, self._clock = supersampling, 0.0
         self._shown: tuple[Any, ...] = ()
         self._picture = np.zeros((1, 1, 4), np.uint8)
@@ -233,6 +237,23 @@ class FlowImage(AxesImage):
             self.set_norm((LogNorm if look.log_scale else Normalize)(*scene.legend_limits))
         self._first_clim = self.get_clim()
         self._title = ""
+
+    def _follow_scales(self, scales: AxesScales | None) -> None:
+        """Show the flow as the scales of the axes take it."""
+        if (scales and scales.key) == (self._scales and self._scales.key):
+            return
+        if scales is not None and self._projection is not None:
+            msg = (
+                f"ax has scales {scales.names}, but the data are of the Earth; expected linear ones"
+            )
+            raise FieldError(msg)
+        flow, time = self._flow, self._scene.time
+        self._unit, self._scales = AxesUnit() if scales is None else scales, scales
+        if scales is not None:
+            flow = scales.field(flow, _frame(flow.surface))
+        self._scene = Scene.from_options(flow, self._options)
+        self._scene.time = time
+        self._frame = _frame(self._scene.whole.surface)
 
     @property
     def colour_label(self) -> str:
@@ -279,7 +300,7 @@ class FlowImage(AxesImage):
         if ax.get_autoscaley_on():
             ax.set_ylim(bottom, top)
         self._tell()
-        if is_geo(ax):
+        if is_geo(ax) or isinstance(self._unit, AxesScales):
             return
         across, up = self._unit.scale
         ax.set_aspect(up / across)
@@ -303,6 +324,10 @@ class FlowImage(AxesImage):
     ) -> tuple[Any, float, float, Any]:
         """Return the pixels of the axes and their position, for matplotlib."""
         del renderer, unsampled
+        if self._projection is None:
+            ax = self.axes
+            straight = ax.get_aspect() != "auto" and (ax.get_xscale(), ax.get_yscale()) == LINEAR
+            self._follow_scales(None if straight else AxesScales(ax))
         box = self.axes.bbox
         # Whole pixels, of which matplotlib cuts those at the border.
         low = np.floor(np.multiply(box.min, magnification))

@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import flowtex
 from flowtex import FieldError, FlowField
+from flowtex._util.array_types import Floats
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -187,12 +189,69 @@ def test_a_colour_bar_has_the_range_and_the_colours(figure: Figure) -> None:
     pixels(figure)
 
 
-@pytest.mark.parametrize("options", [{"projection": "polar"}, {"xscale": "log"}])
-def test_axes_of_another_kind_are_refused(figure: Figure, options: dict[str, Any]) -> None:
-    with pytest.raises(
-        FieldError, match=r"^ax .*; expected (rectilinear matplotlib axes|linear ones)"
-    ):
-        flowtex.axes(figure.add_subplot(**options), edge())
+def section() -> tuple[Floats, Floats]:
+    """Positions and velocity of cells in a section whose height counts by the logarithm."""
+    x, y = np.meshgrid(np.linspace(-60, 60, 61), np.logspace(0, 3, 41))
+    phase = np.pi * x / 30, np.pi * np.log10(y)
+    velocity = 9 * np.sin(phase[0]) * np.cos(phase[1]), -0.7 * y * np.cos(phase[0])
+    return np.stack([x, y], axis=-1), np.stack(velocity, axis=-1)
+
+
+def drawn(ax: Axes, field: FlowField, **options: Any) -> Floats:
+    """Picture of a flow in axes whose sides have units of different lengths."""
+    image = flowtex.axes(ax, field, scalars=False, samples=9, **options)
+    ax.set_aspect("auto")
+    return np.asarray(image.make_image(None)[0], dtype=float)
+
+
+def test_a_flow_on_logarithmic_axes_is_that_of_the_logarithm(figure: Figure) -> None:
+    points, velocity = section()
+    ours = drawn(figure.add_subplot(yscale="log"), FlowField.from_arrays(points, velocity))
+    logs = np.stack([points[..., 0], np.log10(points[..., 1])], axis=-1)
+    slopes = velocity / np.stack([1 + 0 * points[..., 1], np.log(10) * points[..., 1]], axis=-1)
+    figure.clear()
+    theirs = drawn(figure.add_subplot(), FlowField.from_arrays(logs, slopes))
+    assert ours.shape == theirs.shape and theirs.std() > 20
+    assert np.abs(ours - theirs).mean() < 1
+
+
+def test_scales_and_limits_are_followed(figure: Figure) -> None:
+    points, velocity = section()
+    ax = figure.add_subplot()
+    ax.set_ylim(500, 2)
+    field = FlowField.from_arrays(points, velocity)
+    image = flowtex.axes(ax, field, samples=5, scalars=False)
+    assert ax.get_ylim() == (500, 2) and ax.get_aspect() == 1
+    linear = np.asarray(image.make_image(None)[0], dtype=float)
+    ax.set_yscale("log")
+    ax.set_aspect("auto")
+    down = image.make_image(None)[0]
+    assert ax.get_ylim() == (500, 2) and np.abs(linear - down).mean() > 20
+    ax.invert_yaxis()
+    up = image.make_image(None)[0]
+    # The axes end within a pixel, at one side or the other.
+    moved = [np.roll(up[::-1, :, 0], rows, axis=0).ravel() for rows in (-1, 0, 1)]
+    assert max(np.corrcoef(one, down[..., 0].ravel())[0, 1] for one in moved) > 0.97
+    assert image.time == 0
+
+
+def test_what_scales_do_not_have_is_blank(figure: Figure) -> None:
+    y, x = np.mgrid[0:2:21j, -1:1:21j]
+    field = FlowField.from_arrays(np.stack([x, y], -1), np.stack([1 + 0 * x, y], -1))
+    ax = figure.add_subplot(xscale="log")
+    picture = drawn(ax, field)
+    assert ax.get_xlim() == pytest.approx((0.1, 1))
+    assert (picture[..., :3] != 255).any(axis=-1).mean() > 0.95
+    below = FlowField.from_arrays(np.stack([x - 5, y], -1), field.velocity[0])
+    with pytest.raises(FieldError, match=r"^x is from -6 to -4 .*expected values that the scales"):
+        flowtex.axes(figure.add_subplot(xscale="log"), below)
+    with pytest.raises(FieldError, match="data are of the Earth; expected linear ones"):
+        flowtex.axes(figure.add_subplot(yscale="log"), flowtex.examples.weather(), level=500)
+
+
+def test_axes_of_another_kind_are_refused(figure: Figure) -> None:
+    with pytest.raises(FieldError, match=r"^ax .*; expected rectilinear matplotlib axes"):
+        flowtex.axes(figure.add_subplot(projection="polar"), edge())
 
 
 def test_a_curved_surface_has_no_axes(figure: Figure) -> None:
