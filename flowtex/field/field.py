@@ -456,7 +456,7 @@ class FlowField(FieldConstructors):
         Parameters
         ----------
         name
-            ``"vorticity"``: positive where the flow turns counterclockwise, seen from outside, or
+            ``"vorticity"``: positive where the flow turns anticlockwise, seen from outside, or
             from the positive side of a flat surface. ``"divergence"``. ``"shear"``: the magnitude
             of the rate of strain without divergence, sqrt((du/dx - dv/dy)^2 + (dv/dx + du/dy)^2).
             ``"okubo_weiss"``: the square of the shear less that of the vorticity, negative in
@@ -497,7 +497,7 @@ class FlowField(FieldConstructors):
         return derived_steps(name, self.surface, self.projection, self.velocity)
 
     def with_derived(self, name: str, *, horizon: float | None = None) -> FlowField:
-        """Return the field with the result of :meth:`derive` among its scalars.
+        """Return the field with the result of ``derive`` among its scalars.
 
         Examples
         --------

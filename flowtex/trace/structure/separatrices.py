@@ -162,7 +162,7 @@ def separatrices(
     Returns
     -------
     Separatrices
-        A sequence of :class:`Separatrix`. A line ends at another critical point, at a border or a
+        A sequence of ``Separatrix``. A line ends at another critical point, at a border or a
         gap, where it joins a closed orbit, or at the maximum length.
 
     Raises
