@@ -299,7 +299,7 @@ def _packages() -> list[Check]:
 
 
 def print_checks(checks: Sequence[Check]) -> None:
-    """Print the checks as a table, and each remedy on a line of its own that can be copied."""
+    """Print the checks as a table, and each remedy on its own line that can be copied."""
     from rich.table import Table
     from rich.text import Text
 

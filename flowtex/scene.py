@@ -241,7 +241,7 @@ class Scene:
 
     @property
     def store(self) -> SliceStore:
-        """Traces of :attr:`whole`, made step by step when asked for, shared by all its scenes."""
+        """Traces of :attr:`whole`, made step by step on request, shared by all its scenes."""
         if self._store is None:
             self._store = shared_store(self.whole, self.settings.parameter, self.lines)
         return self._store
@@ -515,7 +515,7 @@ def follow(
 
 
 def lay_image(scenes: Sequence[Scene], image: Any, own: Collection[str]) -> None:
-    """Lay an image in scenes, of which others than the first may have a noise of their own."""
+    """Lay an image in scenes, of which others than the first may have their own noise."""
     # The others follow the first one, and have to have the image by then.
     for scene in reversed(scenes):
         if scene is scenes[0] or "noise" not in own or scene.settings.noise == "image":

@@ -186,7 +186,7 @@ class FlowtexAccessor:
         return images[0] if panels is None else panels
 
     def probe(self, x: float, y: float, **options: Any) -> PointValues | None:
-        """Return the values of the flow at a point; ``None`` beside the data.
+        """Return the values of the flow at a point; ``None`` outside the data.
 
         Parameters
         ----------

@@ -62,8 +62,8 @@ class WeakCache(Generic[V]):
         """Return the value of a key, computing it on the first call.
 
         Threads that ask for the same key meanwhile wait for the value, so ``make`` must not ask for
-        it. An ``owner`` has values of its own for each key, which live as long as it does; they
-        must not refer to it, or neither is ever freed.
+        it. An ``owner`` has its own values for each key, which live as long as it does; they must
+        not refer to it, or neither is ever freed.
         """
         if owner is not None:
             key = (weakref.ref(owner), key)

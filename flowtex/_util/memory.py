@@ -26,8 +26,7 @@ def available_bytes(root: Path = Path("/")) -> int:
 def give_back() -> None:
     """Return to the system what has been freed.
 
-    glibc keeps it, in a heap of its own for each of many threads, of which another thread makes
-    no use.
+    glibc keeps it, in its own heap for each of many threads, of which another thread makes no use.
     """
     with suppress(OSError, AttributeError):  # of another C library
         ctypes.CDLL("libc.so.6").malloc_trim(0)

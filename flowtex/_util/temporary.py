@@ -78,7 +78,7 @@ class TemporaryFolder:
         _folders.add(self)
 
     def new_folder(self) -> Path:
-        """Make a folder in it, under a name of its own."""
+        """Make a folder in it, under its own name."""
         return Path(tempfile.mkdtemp(dir=self.path))
 
     def close(self) -> None:

@@ -13,8 +13,8 @@
                                        Viewport: panes, colours, camera, window (VTK)
 
 :class:`FlowApp` is a whole page, :class:`FlowArea` the view alone, for other trame applications.
-:func:`serve` runs pages on one port of this machine, each with a state of its own, behind a
-secret; :class:`Library` is what they may open. Imports run one way: ``server`` < ``streaming`` <
+:func:`serve` runs pages on one port of this machine, each with its own state, behind a secret;
+:class:`Library` is what they may open. Imports run one way: ``server`` < ``streaming`` <
 ``controllers`` < ``ui`` < ``flow_app``.
 """
 

@@ -47,8 +47,8 @@ WHOLE_SHAPE = "_whole_shape"
 
 #: What is computed from positions and velocity alone.
 _SHARED = ("surface", "index_velocity")
-#: Share of the flow normal to the surface from which on the speed in it has a name of its own. A
-#: curved mesh alone gives 1 or 2 %; at 5 % the speeds differ by a thousandth.
+#: Share of the flow normal to the surface from which on the speed in it has its own name. A curved
+#: mesh alone gives 1 or 2 %; at 5 % the speeds differ by a thousandth.
 NOTABLE_SHARE = 0.05
 #: Share of the flow normal to a surface of triangles from which on a notice says so.
 MOST_LOST = 0.5

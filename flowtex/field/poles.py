@@ -2,7 +2,7 @@
 
 The first or the last line of an axis is a pole where all its nodes coincide, the other axis
 closes on itself, and the next line goes once around the point: the ends of a sphere, the middle
-of a disc. Index space goes on beyond it, on the far side:
+of a disc. Index space continues beyond it, on the far side:
 
     (i, -j) is the point (i + n / 2, j)                       for n even cells around j = 0,
 

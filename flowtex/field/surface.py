@@ -25,7 +25,7 @@ class Surface(ABC):
 
     points: Floats  #: Positions of the nodes, (J, I, 3); a surface of triangles has one row.
     valid: Bools  #: Nodes that carry data, (J, I).
-    has_position: Bools  #: Nodes with a position of their own, (J, I).
+    has_position: Bools  #: Nodes with their own position, (J, I).
     periodic: tuple[bool, bool]  #: Whether the (j, i) axis closes on itself.
     offset: Floats  #: What to add to a position when index j, or i, grows by one period, (2, 3).
     on_globe: bool  #: Whether it lies on a globe around the origin, with north at +z.
@@ -53,7 +53,7 @@ class Surface(ABC):
     @property
     @abstractmethod
     def placed_cells(self) -> Bools:
-        """Cells whose nodes have positions of their own, in the shape of :attr:`cells`."""
+        """Cells whose nodes have their own positions, in the shape of :attr:`cells`."""
 
     @abstractmethod
     def nodes_of(self, cells: Bools) -> Indices:
@@ -118,7 +118,7 @@ class Surface(ABC):
     @cached_property
     @abstractmethod
     def apart(self) -> Bools:
-        """Nodes of what is drawn that have a place of their own, (J, I); all where none has."""
+        """Nodes of what is drawn that have their own place, (J, I); all where none has."""
 
     @cached_property
     @abstractmethod

@@ -38,7 +38,7 @@ def with_uncertainty(field: Field, value: Any) -> Field:
     Raises
     ------
     FieldError
-        When there is no such scalar, the array does not fit the nodes, or a number is negative.
+        When the scalar does not exist, the array does not fit the nodes, or a number is negative.
     """
     flow: Any = field
     scalars = flow.scalars

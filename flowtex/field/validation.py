@@ -143,7 +143,7 @@ def nodal_faults(
 
 
 def time_faults(t: Floats | None, count: int) -> list[str]:
-    """Return faults in the times of so many steps, where they are given."""
+    """Return faults in the times of this many steps, where they are given."""
     if t is None:
         return []
     if t.shape != (count,):

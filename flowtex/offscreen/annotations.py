@@ -1,7 +1,7 @@
 """Legends, time, scale bar and title, written on pictures that are drawn already.
 
-Each stands on a plate of its own in a corner. What has no room is left out, the title first and
-the legend last. Text grows with the picture, so that small and large ones look alike.
+Each stands on its own plate in a corner. What has no room is left out, the title first and the
+legend last. Text grows with the picture, so that small and large ones look alike.
 """
 
 from __future__ import annotations
@@ -334,7 +334,7 @@ def length_text(length: float, unit: str) -> str:
 def map_scale(field: FlowField, position: ArrayLike) -> float:
     """Return lengths of the map for one of the Earth, at a place of a field with a projection.
 
-    It is 1 for another field, and beside the map.
+    It is 1 for another field, and outside the map.
     """
     if field.projection is None:
         return 1.0

@@ -166,7 +166,7 @@ class PillowEncoder:
             yield self._picture(number)
 
     def _save(self, pictures: Iterator[Any], unit: int, **options: Any) -> None:
-        """Save pictures whose durations are whole units of so many milliseconds."""
+        """Save pictures whose durations are whole units of this many milliseconds."""
         ends = [round(1000 * n / self._fps / unit) * unit for n in range(self._count + 1)]
         durations = [after - before for before, after in pairwise(ends)]
         next(pictures).save(
@@ -236,9 +236,9 @@ class MovieWriter:
     """Takes pictures and makes a file of them, which is there whole or not at all.
 
     The file is ``.mp4``, with even sides in pixels, ``.gif``, with at most 50 frames in a second,
-    or ``.webp``. The higher the quality, 1 to 100, the truer and the larger; a GIF has so many
-    hundredths of 256 colours. Raises what :func:`check_movie` does, and an OSError when there is no
-    such folder, or no right to write there.
+    or ``.webp``. The higher the quality, 1 to 100, the truer and the larger; a GIF has this many
+    hundredths of 256 colours. Raises what :func:`check_movie` does, and an OSError when the folder
+    does not exist, or no right to write there.
     """
 
     def __init__(self, path: str | Path, size: Size, fps: float, quality: int) -> None:

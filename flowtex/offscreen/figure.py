@@ -385,7 +385,7 @@ class FlowImage(AxesImage):
 
 
 def _in_projection(mesh: Any, options: Options, name: str) -> Options:
-    """Return options with which data are drawn in a projection, and lines where asked for."""
+    """Return options with which data are drawn in a projection, and lines if requested."""
     if options.field.projection is not None or options.field.globe is not None:
         msg = (
             "projection and globe are those of the axes, which are of a map; leave them out, or "

@@ -2,7 +2,7 @@
 
 A steady flow streams round: its frames lie evenly in one period, and after the last one comes the
 first again, bit for bit. A field that varies in time is shown from its first to its last time;
-where that is a period of its own, the last time is left out, because it is the first again.
+where that is its own period, the last time is left out, because it is the first again.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A PyVista plotter that shows a scene, or two beside each other, in a window or without one."""
+"""A PyVista plotter that shows a scene, or two side by side, in a window or without one."""
 
 from __future__ import annotations
 

@@ -201,7 +201,7 @@ def _edges(polygons: Cells) -> Cells:
 def _body(mesh: Any, corners: tuple[Indices, ...], colour: Any = None, **look: Any) -> Body:
     """Return triangles or pieces of lines, by their corners and the cells that these are of.
 
-    Where colours are those of cells, each has vertices of its own.
+    Where colours are those of cells, each has its own vertices.
     """
     ends, owners = corners[:-1], corners[-1]
     cells, points = np.stack(ends, axis=1), np.asarray(mesh.points, dtype=float)

@@ -155,7 +155,7 @@ class FlowHandle(AppearanceAttributes):
         return self._surface.meshes
 
     def draw_for(self, height: int, whole: int) -> None:
-        """Choose tiles for so many pixels of a ``whole`` picture; the next ones are its drafts."""
+        """Choose tiles for this many pixels of a ``whole`` picture and its drafts."""
         self._surface.full_height, self._surface.whole_height = height, whole
 
     @property

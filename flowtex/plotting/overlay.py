@@ -91,7 +91,7 @@ class Overlay:
     ) -> None:
         """Add lines of a width in pixels, as meshes by the distances of their points.
 
-        Those that are ``above`` so many others hide them; without a number they let them through.
+        Those that are ``above`` this many others hide them; without a number they let them through.
         """
         nearer = LINES_NEARER * (1 + ABOVE_SHARE * (above or 0))
         variant = frozenset() if above is None else frozenset({"FLOWTEX_OPAQUE"})

@@ -26,7 +26,7 @@ def apply_camera(camera: Camera, vtk_camera: Any) -> None:
     vtk_camera.SetFocalPoint(*camera.focal_point)
     vtk_camera.SetViewUp(*camera.up)
     vtk_camera.SetParallelProjection(camera.parallel)
-    if hasattr(vtk_camera, "parallel_projection"):  # PyVista's camera has a flag of its own
+    if hasattr(vtk_camera, "parallel_projection"):  # PyVista's camera has its own flag
         vtk_camera.parallel_projection = camera.parallel
     vtk_camera.SetParallelScale(camera.parallel_scale)
     vtk_camera.SetViewAngle(camera.view_angle)

@@ -91,7 +91,7 @@ def _projection(value: Any) -> bool:
 
 
 def is_scalar_name(name: str) -> bool:
-    """Whether a name leads nowhere but to an array of its own."""
+    """Whether a name leads nowhere but to its own array."""
     return bool(name) and "/" not in name and name not in (".", "..", "zarr.json")
 
 

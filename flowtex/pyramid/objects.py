@@ -84,7 +84,7 @@ class Objects(WrapperStore[Any]):
                     result = await self._store.get(key, prototype, byte_range)
                     break
                 except Exception as error:
-                    # An answer that was begun is not asked for again by obstore.
+                    # An answer that was begun is not requested again by obstore.
                     if "Interrupted" in str(error) and trial < MOST_REPEATS:
                         continue
                     if is_refused(error) and key != "zarr.json" and not _CHUNK.search(key):

@@ -23,8 +23,8 @@ from flowtex.pyramid.places import PyramidError, plain_faults
 PART_BYTES, TILE_BYTES, OWN_BYTES = 500_000_000, 1_500_000_000, 500_000_000
 #: Times that a task is tried.
 MOST_TRIALS = 3
-#: Parameters of glibc's ``mallopt``, and bytes: arrays above the second have pages of their own,
-#: which go back when they are freed; of others so much may stay free.
+#: Parameters of glibc's ``mallopt``, and bytes: arrays above the second have their own pages, which
+#: go back when they are freed; of others so much may stay free.
 TRIM, MMAP = (-1, 64 << 20), (-3, 1 << 20)
 #: Size of what may be sent to the workers of a cluster; a source that is larger holds its data.
 MOST_SENT = 64_000_000

@@ -68,7 +68,7 @@ def shader_names() -> tuple[str, ...]:
 def shader_source(name: str) -> str:
     """Return the text of one shader.
 
-    Raises a FileNotFoundError when there is no such shader; the text lists those that there are.
+    Raises a FileNotFoundError when the shader does not exist; the text lists those that there are.
     """
     path = shader_folder() / name
     # Listing all names takes longer than reading one, and is left to the error.
@@ -86,7 +86,7 @@ def shader_text(name: str, variants: Iterable[str] = ()) -> str:
     """Return a shader with its includes, and names out of :data:`VARIANTS` defined before it.
 
     Raises a GLSLError when a variant is unknown, or files include one another in a circle; a
-    FileNotFoundError when there is no such file.
+    FileNotFoundError when the file does not exist.
     """
     unknown = sorted(set(variants) - set(VARIANTS))
     if unknown:

@@ -65,7 +65,7 @@ class ViewState:
     pixel: float = 0.0
     #: Number of lags of the slices that are drawn with, the shortest; ``None`` for all.
     lags: int | None = None
-    #: Mip levels of the slices beside the finest that are drawn with; ``None`` for all.
+    #: Mip levels of the slices besides the finest that are drawn with; ``None`` for all.
     levels: int | None = None
 
 

@@ -73,7 +73,7 @@ class NodeDisplacements:
         return result.reshape(-1, rows, columns)
 
 
-#: Mip levels of a texture beside its finest one, at most, and of a tile's.
+#: Mip levels of a texture besides its finest one, at most, and of a tile's.
 DEEPEST, TILE_LEVELS = 5, 3
 #: Percentile of the sides of cells that small ones have.
 SMALL_CELLS = 5
@@ -243,7 +243,7 @@ class SurfaceGeometry(DrawnSurface):
     """A surface ready to be drawn."""
 
     field: FlowField
-    levels: int  #: Mip levels in its textures beside the finest.
+    levels: int  #: Mip levels in its textures besides the finest.
     #: How the j axis lies in the slice textures, and which nodes of the field are drawn: in a tile,
     #: those around it only continue it.
     rows: Padding

@@ -126,7 +126,7 @@ def load_image(image: Any) -> Any:
     """Read an image when it is a path, and return anything else as it is.
 
     Returns (H, W), (H, W, 3) or (H, W, 4), row 0 at the top, as the file's own orientation says. An
-    :class:`ImageError` says that there is no such file, or no picture that can be read.
+    :class:`ImageError` says that the file does not exist, or no picture that can be read.
     """
     if not isinstance(image, (str, Path)):
         return image

@@ -38,7 +38,7 @@ class TriangleGeometry(DrawnSurface):
     #: Centre, radius and longest side of a triangle of each block, (rows, C, 5).
     block_places: Floats
 
-    #: Mip levels beside the finest: none, for other levels of detail are other meshes.
+    #: Mip levels besides the finest: none, for other levels of detail are other meshes.
     levels = 0
     periodic = (False, False)
 

@@ -181,7 +181,7 @@ def _averaged(field: FlowField, number: Indices, triangles: Indices) -> FlowFiel
 def _sides(areas: Floats, triangles: Indices, count: int, extent: float) -> Floats:
     """Side of the first bins of each node, (N,): so many times the typical edge around it.
 
-    A triangle counts by twice its area: needles, as beside the hull of points at random, are no
+    A triangle counts by twice its area: needles, as beside the hull of points at random, are not
     edges.
     """
     size = np.sqrt(areas)

@@ -28,7 +28,7 @@ from flowtex.tiles.pyramid import Pyramid, TileKey
 BUDGET_BYTES = 1_000_000_000
 #: Memory of a texel, four numbers of half precision, and of a node beside it.
 TEXEL_BYTES, NODE_BYTES = 8, 200
-#: Memory of a triangle that has vertices of its own.
+#: Memory of a triangle that has its own vertices.
 TRIANGLE_BYTES = 250
 #: Tiles that are made at once for one view, at most. All views of a process together have as many,
 #: or one for each core.

@@ -1,4 +1,4 @@
-"""The structure of a flow as it is drawn: of any step, the strongest of it, when asked for."""
+"""The structure of a flow as it is drawn: of any step, the strongest of it, on request."""
 
 from __future__ import annotations
 

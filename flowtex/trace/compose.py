@@ -222,8 +222,8 @@ class _SliceLookup:
     ) -> _Piece:
         """Continue paths from positions (2, n), in these cells, by up to ``left`` of lag.
 
-        They go on by a whole slice, or by a part of the first: between slices of long lags nothing
-        can be interpolated that would be as good.
+        They continue by a whole slice, or by a part of the first: between slices of long lags
+        nothing can be interpolated that would be as good.
         """
         base = self._base(step)
         unit = self.unit[:1] if self.even else self.grid.blend(self.unit, corners)

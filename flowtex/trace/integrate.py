@@ -32,7 +32,7 @@ Numbers = NDArray[np.int8]
 STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9
 #: Bisections that find where inside a step a path ends.
 BISECTIONS = 20
-#: Rounds of steps after which the paths that still go on are ended where they are: so many for
+#: Rounds of steps after which the paths that still continue are ended where they are: so many for
 #: each line of nodes, as a path in few cells goes round and round, and between these ends.
 STEPS_PER_LINE, LEAST_STEPS, MOST_STEPS = 50, 1_000, 20_000
 #: Share of a step by which rounding may miss a lag.
@@ -46,7 +46,7 @@ class Paths:
     """Positions at the lags, and how far the paths lead."""
 
     positions: Floats  #: Positions in index space, (M, N, 2) as (i, j).
-    reach: Floats  #: Lag at which each path ended, (N,), infinite where it goes on.
+    reach: Floats  #: Lag at which each path ended, (N,), infinite where it continues.
     polar: Bools  #: Which paths came right near a pole, (N,).
     #: Which paths came where they are not to be followed, (N,): ``reach`` is the lag at which they
     #: did, and all their later positions are the one where they did.

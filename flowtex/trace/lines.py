@@ -2,8 +2,7 @@
 
 Pathlines are where particles went, and go; streamlines are those of the flow at one moment, as
 if it stood still. Both are the same in a steady field. Where the flow turns while a particle goes
-the length of a streak, pathlines through points beside each other cross, and what is drawn is
-speckle.
+the length of a streak, pathlines through points side by side cross, and what is drawn is speckle.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Bilinear look-ups between the nodes of a structured surface.
 
-Every component is an array of its own: one gather of scalars costs a tenth of a gather of short
-rows, and look-ups are most of what tracing does.
+Every component is its own array: one gather of scalars costs a tenth of a gather of short rows, and
+look-ups are most of what tracing does.
 """
 
 from __future__ import annotations

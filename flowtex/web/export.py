@@ -1,4 +1,4 @@
-"""A flow as one file that draws without a server of its own: an HTML page, or a module for one.
+"""A flow as one file that draws without its own server: an HTML page, or a module for one.
 
 The client, its style, the header and all arrays lie in the file. The header and the arrays are
 gzipped, these with the bytes of equal significance side by side, which is where slopes resemble one
@@ -165,7 +165,7 @@ def write_page(
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
-    """Write a view, or two beside each other, as a page.
+    """Write a view, or two side by side, as a page.
 
     ``store`` and ``announce`` are those of :func:`export`, the options those of
     :func:`page_pieces`.
@@ -337,7 +337,7 @@ def _values(
 ) -> dict[str, str]:
     """Return what the page's template asks for."""
     ground = headers[0]["background"]
-    # A browser has a colour of its own for light and for dark pages.
+    # A browser has its own colour for light and for dark pages.
     background = (
         "Canvas" if ground is None else f"rgb({' '.join(f'{255 * c:.0f}' for c in ground)})"
     )

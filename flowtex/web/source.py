@@ -8,7 +8,7 @@
     parts(None, (3,), kind)  marks of a kind at a time step: critical points, or separatrices
 
 A widget sends them in messages, the application as files, and an exported page holds them;
-``client/src/sources`` is the other side. A store has the same parts in files of its own, which
+``client/src/sources`` is the other side. A store has the same parts in its own files, which
 :mod:`flowtex.pyramid.client_parts` writes and a browser reads without a server.
 """
 

@@ -1,4 +1,4 @@
-"""The view of a widget, or two beside each other that differ in some settings.
+"""The view of a widget, or two side by side that differ in some settings.
 
 Both are one widget: the second has the settings of the first except its own, and the browser links
 their cameras, so that they move in the same frame.

@@ -1,8 +1,8 @@
 """A few threads that work for all widgets of a process: the urgent jobs first.
 
-Thirty widgets with threads of their own would all be slow together; so would be all behind one
-whose trace takes long. Threads are there while there is work, and are daemons, so that a long
-trace does not keep a kernel from ending.
+Thirty widgets with their own threads would all be slow together; so would be all behind one whose
+trace takes long. Threads are there while there is work, and are daemons, so that a long trace does
+not keep a kernel from ending.
 """
 
 from __future__ import annotations

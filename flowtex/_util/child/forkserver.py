@@ -2,7 +2,7 @@
 
 It has one thread, unlike the process that asks for children. It holds one end of a pipe for each
 child: it writes the status of one that has ended, and kills one that does not end soon after its
-pipe was closed. So no child outlives the process that asked for it, in whatever way that ends.
+pipe was closed. So no child outlives the process that requested it, in whatever way that ends.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class ForkServer:
 
     def __init__(self, preload: tuple[str, ...]) -> None:
         self._control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        # A session of its own: Ctrl-C in the terminal is for the process that asks.
+        # Its own session: Ctrl-C in the terminal is for the process that asks.
         self._process = subprocess.Popen(
             command(main, control=other.fileno(), preload=preload),
             pass_fds=[other.fileno()],

@@ -72,7 +72,7 @@ class Child:
     without arguments. That takes a value of JSON, and returns one with a list of arrays.
     ``preload`` are modules that a child that is forked has at once, and ``memory`` bytes that it
     may take, where the system has a limit (not on macOS and Windows); by default a share of what is
-    available. A ``lasting`` child goes on when the process that it was forked from dies, and has
+    available. A ``lasting`` child continues when the process that it was forked from dies, and has
     the standard error of this process.
     """
 
@@ -116,7 +116,7 @@ class Child:
 
         Raises a ChildError when the child is dead, dies, exceeds its memory, raises an error, or
         does not answer in ``timeout`` seconds, after which it is ended. Where the work was
-        cancelled, it hears of it, and goes on.
+        cancelled, it hears of it, and continues.
         """
         while not self._asking.acquire(timeout=CHECK_INTERVAL_S):
             check()

@@ -1,8 +1,8 @@
 """Which flow is shown: files, arrays, and planes of a mesh of three dimensions.
 
-Reading and tracing go on in a thread. A new request cancels the one before; a large flow is first
-shown with few of its nodes, and the view on the page stays until there is another to put in its
-place.
+Reading and tracing continue in a thread. A new request cancels the one before; a large flow is
+first shown with few of its nodes, and the view on the page stays until there is another to put in
+its place.
 """
 
 from __future__ import annotations

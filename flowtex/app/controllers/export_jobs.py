@@ -1,6 +1,6 @@
 """Pictures and movies of what a page shows, made beside it.
 
-A job draws a copy of the viewport a tile at a time, and lets the event loop go on between two
+A job draws a copy of the viewport a tile at a time, and lets the event loop continue between two
 tiles. Tracing and writing files is done in a thread::
 
     job = PictureJob(viewport, path, (8000, 6000))
@@ -128,7 +128,7 @@ class TiledPicture:
 
 
 class Job:
-    """Something that is drawn and written while a page goes on; nothing of the view is changed.
+    """Something that is drawn and written while a page continues; nothing of the view is changed.
 
     ``supersampling`` are the pixels that are drawn, along each side, for one of the result, 1 to 4,
     and ``density`` those of the result for one that the settings speak of: 2 has grains of twice as

@@ -271,7 +271,7 @@ def _add_lines(state: Mapping[str, Any], different: Mapping[str, Any]) -> list[s
         appearance |= {name: state[name] for name in ("cmap", "clim") if state.get(name)}
     others = (name for name in LOOK if name not in ("cmap", "clim"))
     appearance |= {n: state[n] for n in others if state.get(n) not in (None, DEFAULTS[n])}
-    if "scalars" in different:  # with a range of its own
+    if "scalars" in different:  # with its own range
         appearance = {**appearance, "scalars": different["scalars"]}
         appearance.pop("clim", None)
     settings = {**(state.get("settings") or {}), **different}

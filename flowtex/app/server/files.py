@@ -216,7 +216,7 @@ class Downloads:
         return len(self._files)
 
     def reserve(self, name: str) -> Path:
-        """Return where a file of this name can be written, in a folder of its own."""
+        """Return where a file of this name can be written, in its own folder."""
         return self._folder.new_folder() / plain_name(name)
 
     def add(self, path: Path) -> str:

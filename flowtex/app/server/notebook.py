@@ -1,8 +1,8 @@
 """A page in a cell of a notebook.
 
 The kernel serves its application itself, in its own event loop, on this machine's own address
-and behind a secret of its own; the cell holds a frame that shows it. All frames of one application
-show the same state, which is also that of the Python objects.
+and behind its own secret; the cell holds a frame that shows it. All frames of one application show
+the same state, which is also that of the Python objects.
 
 Where the browser cannot reach the kernel's machine, the frame goes through jupyter-server-proxy,
 which Jupyter's own token guards as well. JupyterHub is recognised; elsewhere the path of the

@@ -2,7 +2,7 @@
 
 trame admits everybody who knows the secret, but its default is a public constant, and it does not
 check the origin of a web page: any page open in the same browser could drive the program. So every
-start has a secret of its own, which only the printed address carries, and a connection from another
+start has its own secret, which only the printed address carries, and a connection from another
 site's page is refused. Who comes without the secret gets a page that says so (``door.html``). The
 page itself may load nothing from elsewhere.
 

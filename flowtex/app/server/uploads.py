@@ -68,7 +68,7 @@ class Uploads:
         self._arrived(name, path)
 
     async def _written(self, name: str, content: AsyncIterable[bytes]) -> Path:
-        """Write a file into a folder of its own, which does not stay after an error."""
+        """Write a file into its own folder, which does not stay after an error."""
         path = self._folder.new_folder() / name
         size = 0
         try:

@@ -1,4 +1,4 @@
-"""The view as a component of its own, for any trame application.
+"""The view as its own component, for any trame application.
 
 ::
 

@@ -67,7 +67,7 @@ CHOICES: dict[str, tuple[type, ...]] = {
 
 
 class HandedScene:
-    """A scene as the page has it: its header, and files of its parts at an address of its own."""
+    """A scene as the page has it: its header, and files of its parts at its own address."""
 
     def __init__(self, routes: Routes) -> None:
         self._routes = routes

@@ -335,7 +335,7 @@ class ViewPainter:
         return self.painters
 
     def _joined(self, pictures: list[Bytes]) -> Bytes:
-        """Put pictures beside each other, a line between them."""
+        """Put pictures side by side, a line between them."""
         if len(pictures) == 1:
             return pictures[0]
         from PIL import Image

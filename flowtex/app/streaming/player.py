@@ -17,7 +17,7 @@ class Player:
     def __init__(self, viewport: Viewport, stream: FrameStream) -> None:
         #: Signals after a change of the time that is shown, and of whether time goes by.
         self.time_changed, self.playing_changed = Signal(), Signal()
-        #: Name of the page that asked for the time that is shown; empty where it comes from here.
+        #: Name of the page that requested the time that is shown; empty where it comes from here.
         self.page = ""
         self._viewport = viewport
         self._stream = stream

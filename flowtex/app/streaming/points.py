@@ -57,7 +57,7 @@ class PointReader:
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="flowtex reading")
 
     async def read(self, pane: Any, at: Any) -> dict[str, Any] | None:
-        """Return what is at a point of a pane; ``None`` beside the surface.
+        """Return what is at a point of a pane; ``None`` outside the surface.
 
         ``at`` has the ``place`` in the view, (x, y) from -1 to 1, the ``index`` (i, j) on a
         grid, or the ``position`` on triangles; with ``path`` the path as well.

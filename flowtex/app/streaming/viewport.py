@@ -1,4 +1,4 @@
-"""A flow, its camera and its colours, in one pane or in two beside each other.
+"""A flow, its camera and its colours, in one pane or in two side by side.
 
 Two panes are seen from the same camera. They show the same flow with other settings, or two flows
 with the same.
@@ -37,7 +37,7 @@ GAP_PX = 2
 
 
 class Pane:
-    """One of the views beside each other: a texture with settings of its own."""
+    """One of the views side by side: a texture with its own settings."""
 
     def __init__(self, handle: FlowHandle, viewport: Viewport) -> None:
         self.handle = handle
@@ -90,7 +90,7 @@ class Viewport:
         self._stop_following: Callable[[], Any] = lambda: None
         self._tile_ready: Callable[[], None] | None = None
         first = Options.split("appearance", **{**options, "show_scalar_bar": False})
-        #: The views beside each other, one or two.
+        #: The views side by side, one or two.
         self.panes: list[Pane] = [self._pane(Scene.from_options(field, first))]
         self.window.suppress_rendering()
         self.resize(*self._size)
@@ -168,7 +168,7 @@ class Viewport:
         self.window.close()
 
     def copy(self) -> Viewport:
-        """Return a viewport with a window of its own that shows the same."""
+        """Return a viewport with its own window that shows the same."""
         image = self.scene.image if self.settings.noise == "image" else None
         options = {**vars(self.scene.appearance), **dict(self.settings)}
         options["image"] = None if image is None else as_image(image)

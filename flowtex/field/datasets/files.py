@@ -75,7 +75,7 @@ def open_datasets(paths: Sequence[Path]) -> list[xr.Dataset]:
 def open_files(path: Path) -> list[xr.Dataset]:
     """Open one file; GRIB gives a dataset for each group of messages that share their axes."""
     xarray = import_extra("xarray", "xarray")
-    # Its library has to be loaded before those of other readers, which bring a PROJ of their own.
+    # Its library has to be loaded before those of other readers, which bring their own PROJ.
     import_extra("pyproj", "xarray")
     suffix = path.suffix.lower()
     inspect_file(path, whole=False)

@@ -229,7 +229,7 @@ def centred(values: Floats, axis: int, sides: Sides) -> Floats:
 
 
 def first_side(side: str, cell: str, counts: tuple[int, int], datasets: Sequence[Any]) -> int:
-    """Return the number of the side before the first cell, for dimensions of so many of each."""
+    """Return the number of the side before the first cell, for dimensions of this many of each."""
     sides, cells = counts
     if sides != cells:
         return 0 if sides > cells else -1

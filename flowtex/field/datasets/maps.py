@@ -12,7 +12,7 @@ from flowtex.earth import GLOBE, Projection
 from flowtex.field.datasets.places import Places
 
 #: The flat map that is drawn where none is chosen, and those on which an axis that goes around the
-#: Earth goes on at the other side, a map further.
+#: Earth continues at the other side, a map further.
 FLAT = "platecarree"
 CYLINDERS = (FLAT, "mercator")
 #: Latitudes that a map shows, where it cannot show all.

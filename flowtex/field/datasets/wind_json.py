@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 #: Names of the components by the number of the parameter, those of the categories that move.
 NUMBERS = {2: "u", 3: "v"}
-#: Bytes in memory of one byte of JSON, at most: "[]," is a list of its own.
+#: Bytes in memory of one byte of JSON, at most: "[]," is its own list.
 JSON_GROWTH = 24
 WORDS = {"u": "eastward_wind", "v": "northward_wind"}
 

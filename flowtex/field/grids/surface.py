@@ -53,7 +53,7 @@ class GridSurface(Surface):
         self.valid = valid
         self.periodic = periodic
         self.on_globe = on_globe
-        #: Nodes with a position of their own, (J, I); the others have that of the nearest one.
+        #: Nodes with their own position, (J, I); the others have that of the nearest one.
         self.has_position = known_positions(points, valid)
         self.points = fill_blanked(points, self.has_position)
         #: What to add to a position when index j, or i, grows by one period, (2, 3).
@@ -81,7 +81,7 @@ class GridSurface(Surface):
 
     @property
     def placed_cells(self) -> Bools:
-        """Cells whose four nodes have positions of their own, (J - 1, I - 1)."""
+        """Cells whose four nodes have their own positions, (J - 1, I - 1)."""
         return np.asarray(np.logical_and.reduce([self.has_position[at] for at in CELL_CORNERS]))
 
     def nodes_of(self, cells: Bools) -> Indices:
@@ -170,7 +170,7 @@ class GridSurface(Surface):
 
     @cached_property
     def apart(self) -> Bools:
-        """Nodes of what is drawn that have a place of their own, (J, I); all where none has.
+        """Nodes of what is drawn that have their own place, (J, I); all where none has.
 
         Where many nodes lie at one point, those nearest to a point beside it may be on the far
         side; the nodes of the next line do better.
@@ -273,9 +273,9 @@ class GridSurface(Surface):
 class CubicMap:
     """Positions of a surface relative to ``origin`` (3,), along the rows of ``frame`` (C, 3).
 
-    Made for millions of look-ups: each coordinate is an array of its own. Catmull-Rom's cubic
-    between two nodes is the line between them, and -s (1 - s) / 2 times the line between their
-    second differences; of both axes together, these four are bilinear between the nodes. A second
+    Made for millions of look-ups: each coordinate is its own array. Catmull-Rom's cubic between two
+    nodes is the line between them, and -s (1 - s) / 2 times the line between their second
+    differences; of both axes together, these four are bilinear between the nodes. A second
     difference that is too small to count need not be looked up.
     """
 

@@ -54,7 +54,7 @@ class _CGNSReader:
         from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
         self._reader = reader
-        # With patches each zone is a tree of its own, and patches are not structured grids.
+        # With patches each zone is its own tree, and patches are not structured grids.
         reader.load_boundary_patch = False
         reader.enable_all_bases()
         reader.reader.UpdateInformation()

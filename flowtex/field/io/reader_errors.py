@@ -44,7 +44,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
                 raise
             cause = error
     if catcher.error_events:
-        # VTK goes on after an error and gives a part of the data, or none: the cause is here.
+        # VTK continues after an error and gives a part of the data, or none: the cause is here.
         first = _first_line(catcher.error_events[0].alert)
         msg = f"{file}: the file is damaged or incomplete. VTK reports: {first}"
         raise FieldError(msg) from cause

@@ -1,4 +1,4 @@
-"""Files that are read in a process of their own."""
+"""Files that are read in their own process."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ class RemoteSource(Source):
 
     @property
     def alive(self) -> bool:
-        """Whether its process goes on, as far as is known."""
+        """Whether its process continues, as far as is known."""
         return self._file.child.alive
 
     def close(self) -> None:

@@ -12,9 +12,9 @@ class Mips:
 
     The texels are (layers, H, W, C). A coarser level is the finer one, filtered linearly down to
     half its size: the mean of blocks of two by two texels where sizes are even. Every level is
-    rounded to half precision, as a graphics card stores it. There are so many beside the finest,
-    or all of them. The texture goes around along (v, u) where ``repeat`` says so, and is clamped
-    at its edges otherwise.
+    rounded to half precision, as a graphics card stores it. There are so many besides the finest,
+    or all of them. The texture goes around along (v, u) where ``repeat`` says so, and is clamped at
+    its edges otherwise.
     """
 
     def __init__(
@@ -37,7 +37,7 @@ class Mips:
 
     @property
     def levels(self) -> int:
-        """Mip levels beside the finest."""
+        """Mip levels besides the finest."""
         return len(self._heights) - 1
 
     def at(self, coordinate: Floats, level: Floats, layer: int | Indices = 0) -> Floats:

@@ -129,7 +129,7 @@ class Window(Mips):
 
     @property
     def levels(self) -> int:
-        """Mip levels beside the finest."""
+        """Mip levels besides the finest."""
         return self._last
 
     def at(self, coordinate: Floats, level: Floats, layer: int | Indices = 0) -> Floats:

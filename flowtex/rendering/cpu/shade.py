@@ -28,7 +28,7 @@ def mean_colours(table: Bytes, settings: Settings) -> Bytes:
     """Colours that a picture has on average where a map has those of a table, (N, 4), for a legend.
 
     They are the mean over the values of a texture: chroma shrinks where it is dark and where it is
-    light. An image on the surface has colours of its own.
+    light. An image on the surface has its own colours.
     """
     if settings.noise == "image":
         return table

@@ -78,8 +78,8 @@ def weight(x: Any, values: Values) -> Any:
 def shared(apart: Floats, near: Floats) -> Floats:
     """Variance of a sum over that of independent samples, (N,).
 
-    Two samples are so many grains ``apart``; ``near`` is the correlation of the weights with those
-    of the next sample. Both are (N,).
+    Two samples are this many grains ``apart``; ``near`` is the correlation of the weights with
+    those of the next sample. Both are (N,).
     """
     total = np.ones(np.broadcast_shapes(np.shape(apart), np.shape(near)))
     for m in range(1, const.SHARED_TERMS + 1):
@@ -169,7 +169,7 @@ class Summing:
         return samples // 2 if self._values["u_sides"] == 2 else samples - 1
 
     def _add(self, sums: Sums, one: Side, cell: CellPath | None, count: Floats) -> None:
-        """Add one side of the paths, of so many samples (N,), and where it stays in its cell."""
+        """Add one side of the paths, of this many samples (N,), and where it stays in its cell."""
         values, path, side, scale = self._values, one.path, one.sign, one.scale
         last = np.minimum(one.reach, self._lags[-1])
         lag, live = np.zeros(len(scale)), np.isfinite(one.reach)

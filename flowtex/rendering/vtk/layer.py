@@ -59,7 +59,7 @@ class GPUTexture:
     with the window at the latest. ``vtkTexture`` has neither arrays nor half precision, and of
     VTK's textures from memory the arrays alone get mip levels. The texels (layers, H, W, channels),
     with 1, 2 or 4 channels, are stored in half precision; 2 or 3 may be in ``single``. There are so
-    many mip levels beside the finest, or all of them; ``repeat`` says whether the texture goes
+    many mip levels besides the finest, or all of them; ``repeat`` says whether the texture goes
     around along (v, u).
     """
 
@@ -355,7 +355,7 @@ class FlowLayer:
             self.view.lags = self.view.levels = None
             self._retire("u_slices")
         if "u_slices" not in self._gpu and not self._take:
-            # A thread of its own traces while this one goes on with meshes and shaders.
+            # A separate thread traces while this one continues with meshes and shaders.
             self._prefetch.prepare(self._steps[0], self.view.lags)
 
     def _move_anchor(self, seen: float) -> None:

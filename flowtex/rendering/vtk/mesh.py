@@ -97,7 +97,7 @@ class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):
 def use_flow_mapper(actor: pv.Actor, mesh: pv.PolyData) -> FlowMapper:
     """Give an actor a polygon mapper that is coloured by a point array of its mesh by name.
 
-    PyVista's mapper relies on the active array of a mesh of its own instead.
+    PyVista's mapper relies on the active array of its own mesh instead.
     """
     mapper = FlowMapper(mesh)
     mapper.ShallowCopy(actor.mapper)

@@ -106,7 +106,7 @@ class FlowSurface:
 
     @property
     def busy(self) -> bool:
-        """Whether tiles that the last frame has asked for are on their way."""
+        """Whether tiles that the last frame has requested are on their way."""
         return self._loader is not None and self._loader.busy
 
     def show(

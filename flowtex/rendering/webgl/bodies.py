@@ -1,4 +1,4 @@
-"""What stands beside a flow: meshes, lines, points and labels in colours of their own.
+"""What stands beside a flow: meshes, lines, points and labels in their own colours.
 
 A client draws them with the flow, and hides each behind what lies before it. All meshes are in a
 few parts together; the header says which triangles and pieces of lines belong to which body.
@@ -24,7 +24,7 @@ BEYOND = 1.01
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A mesh in colours of its own."""
+    """A mesh in its own colours."""
 
     points: Floats  #: Vertices in the mesh's own coordinates, (N, 3).
     colours: Bytes  #: Red, green, blue and opacity of each, (N, 4) uint8.

@@ -285,7 +285,7 @@ class ClientData:
     def step(self, step: int) -> Parts:
         """Return the arrays of one destination time, the smallest first.
 
-        What is not yet traced is traced. Raises an IndexError when there is no such step.
+        What is not yet traced is traced. Raises an IndexError when the step does not exist.
         """
         if not 0 <= step < self.steps:
             msg = f"time step {step} does not exist: expected 0 to {self.steps - 1}"

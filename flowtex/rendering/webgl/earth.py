@@ -32,7 +32,7 @@ LINE_STEPS = 65535
 #: Places along the longer side of a map at which longitude and latitude are sent, at most, their
 #: least distance in metres, and their fewest along a side: a cubic goes through so many.
 LONLAT_PLACES, NEAREST_PLACES_M, FEWEST_PLACES = 65, 5e4, 4
-#: Weights by which four places in a row go on to the next, and lines of places that do so.
+#: Weights by which four places in a row continue to the next, and lines of places that do so.
 ONWARD, MOST_ONWARD = (4.0, -6.0, 4.0, -1.0), 3
 
 
@@ -85,7 +85,7 @@ def earth_parts(geometry: DrawnSurface, *, has_land: bool, tiled: bool) -> Parts
 
 
 def dates_of(field: FlowField, times: Floats) -> Header:
-    """Return the date at time 0 as ISO text, or those of all times in a calendar of its own.
+    """Return the date at time 0 as ISO text, or those of all times in its own calendar.
 
     ``step`` is the precision of dates: the shortest time between two of them.
     """

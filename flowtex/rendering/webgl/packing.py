@@ -31,7 +31,7 @@ class PackedStep:
 
 
 class Packing:
-    """Packed slices of some textures; those asked for last are cached.
+    """Packed slices of some textures; those requested last are cached.
 
     A slope has so many ``channels``, two in a plane and in noise coordinates. ``extra`` are the
     layers whose fourth channel says something: unit, reach, speed, how far the direction is not

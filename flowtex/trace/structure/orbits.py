@@ -1,9 +1,9 @@
 """Closed orbits: lines that end where they began, to which others come, or which they leave.
 
-A closed orbit in a plane turns around a critical point that is no saddle, so it crosses every ray
-from there. Where the flow returns to a ray one turn later (its Poincare map) tells on which side of
-an orbit it is: it comes nearer from both sides, or moves away. Around a centre it returns to where
-it was, and no orbit is found there.
+A closed orbit in a plane turns around a critical point that is not a saddle, so it crosses every
+ray from there. Where the flow returns to a ray one turn later (its Poincare map) tells on which
+side of an orbit it is: it comes nearer from both sides, or moves away. Around a centre it returns
+to where it was, and no orbit is found there.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def closed_orbits(field: FlowField, *, steps: Sequence[int] | None = None) -> li
 
     Notes
     -----
-    Searched are orbits around the 8 strongest critical points that are no saddles. Orbits that lie
+    Searched are orbits around the 8 strongest critical points that are not saddles. Orbits that lie
     closer together than a thirtieth of the surface may be missed.
 
     Examples
@@ -151,7 +151,7 @@ class _Rays:
         self._along, self._across = plane[:, 0], plane[:, 1]
         near = scipy.spatial.KDTree([point.index[::-1] for point in points])
 
-        # Along a wall lines go on in ever shorter steps.
+        # Along a wall lines continue in ever shorter steps.
         ends = np.subtract(field.shape[::-1], 1.0)
         ends[list(field.periodic[::-1])] = np.inf
         low, high = np.where(np.isinf(ends), -np.inf, WALL_CELLS), ends - WALL_CELLS

@@ -1,8 +1,8 @@
 """Long paths on triangles put together from short ones, as :mod:`flowtex.trace.compose` does it.
 
-A path that has come into a triangle goes on as the paths of its three corners do, by its shares of
-them. That leads to a point in space, beside the surface where it is curved; its triangle is found
-by walking over edges from the one that the path of a corner has come to.
+A path that has come into a triangle continues as the paths of its three corners do, by its shares
+of them. That leads to a point in space, outside the surface where it is curved; its triangle is
+found by walking over edges from the one that the path of a corner has come to.
 
 Where paths of neighbours part, second differences of a slice across edges are large for its length,
 and paths are continued in shorter pieces. Where the paths of only some corners have ended, pieces
@@ -139,7 +139,7 @@ class Composition:
     ) -> tuple[Indices, Floats, Floats]:
         """Where paths (n,) lead by the slices of these numbers, as their corners' paths do.
 
-        Returns triangles to begin the search at, positions (3, n) beside the surface, and the lags
+        Returns triangles to begin the search at, positions (3, n) outside the surface, and the lags
         from here (n,) at which paths end: infinite where no corner's path does, and more than that
         of the slice where only some do.
         """

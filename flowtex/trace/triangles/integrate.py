@@ -62,7 +62,7 @@ class TrianglePaths:
     shares: Floats
     further: Floats  #: Lag since then, (M, N), 0 for one that has not ended.
     ahead: Floats  #: Velocity at the end, (3, N), by which a path goes straight on.
-    reach: Floats  #: Lag at which each path ended, (N,), infinite where it goes on.
+    reach: Floats  #: Lag at which each path ended, (N,), infinite where it continues.
 
     def positions(self, mesh: TriangleMesh, points: Floats, lag: int) -> Floats:
         """Positions in space at one of the lags, (N, 3), by the nodes (N, 3) of the surface."""

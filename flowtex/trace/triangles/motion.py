@@ -262,7 +262,7 @@ def speed_floor(speed: Floats) -> float:
 
 
 def _table(mesh: TriangleMesh, components: Floats, speed: Floats) -> Floats:
-    """How shares change in each triangle, (M, COLUMNS), in times and lengths of its own.
+    """How shares change in each triangle, (M, COLUMNS), in times and its own lengths.
 
     Rates (2) at the first corner, their changes by the second and by the third share (2, 2), metric
     (3), size, pace, and the speed (3) as the rates, with what counts as none.

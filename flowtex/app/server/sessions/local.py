@@ -1,7 +1,7 @@
 """A session in this process: an application on a trame server of its own.
 
 Sessions share nothing that can be changed: each has a trame server, a state, a window, and
-settings of its own; only fields and their traces are shared, which are never written again. trame
+its own settings; only fields and their traces are shared, which are never written again. trame
 starts nothing that listens: its generic end point takes messages from any caller, here the web
 server that all pages share (:mod:`flowtex.app.server.site`). trame itself would keep the server of
 a session that has ended for ever.

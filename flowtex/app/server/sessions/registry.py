@@ -53,7 +53,7 @@ class Session(ABC):
 
     def __init__(self, routes: Handler, token: str = "") -> None:
         self.token = token or new_secret()  #: Known to the page alone.
-        self.routes = routes  #: What answers requests for files, below a token of its own.
+        self.routes = routes  #: What answers requests for files, below its own token.
         self.static: dict[str, str] = {}  #: The folders that all pages want served, by route.
         #: Called when it is lost, with a text that says how.
         self.lost: Callable[[str], None] = _log.error
@@ -152,7 +152,7 @@ def usual_limit() -> int:
 class Sessions:
     """The sessions of one start, at most ``limit`` at one time.
 
-    One that is ``idle``, without a connection, for so many minutes ends. Pages may have the first
+    One that is ``idle``, without a connection, for this many minutes ends. Pages may have the first
     session together, as the cells of a notebook.
     """
 
@@ -195,7 +195,7 @@ class Sessions:
         """Return the session of a page: that of its token, or a new one where there is room.
 
         When another page is connected with the token, such as that of a copied tab, the page gets
-        a session of its own.
+        its own session.
         """
         if self.shared and self._ready is not None:
             return self._ready

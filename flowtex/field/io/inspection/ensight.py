@@ -1,7 +1,7 @@
 """EnSight Gold as text: parts and variables have as many values as they declare.
 
-VTK goes on with what it has where a file ends early. Binary files, parts of polygons and polyhedra,
-and geometries of several times are left to the reader.
+VTK continues with what it has where a file ends early. Binary files, parts of polygons and
+polyhedra, and geometries of several times are left to the reader.
 """
 
 from __future__ import annotations

@@ -87,7 +87,7 @@ class TextScanner:
             blank = _BLANK[part]
             stop = len(part)
             if not blank[-1] and self._stream.tell() < self._end:
-                # The last word may go on in the next chunk.
+                # The last word may continue in the next chunk.
                 blanks = np.flatnonzero(blank)
                 stop = int(blanks[-1]) + 1 if blanks.size else 0
                 if not stop and len(part) <= WORD_LENGTH:

@@ -1,6 +1,6 @@
 """Legacy files of VTK: all arrays that are declared are there.
 
-VTK allocates what a keyword declares, and goes on with what it has where the file ends early.
+VTK allocates what a keyword declares, and continues with what it has where the file ends early.
 """
 
 from __future__ import annotations
