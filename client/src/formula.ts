@@ -18,8 +18,6 @@ const [HALO, BEFORE] = [36, 8];
 const [LEVELS, PLACE, HALF_ONE] = [3, 5, 0x3c00];
 /** Saddles of which there are lines: as many as can be asked for. */
 const MOST_SADDLES = 50;
-/** Share of the cells of a path that is followed in a tile: rounding then asks for no longer lag. */
-const PATH_SHARE = 0.99;
 
 /** What operations do with two numbers or more; as OPERATIONS of Python. */
 const OPERATIONS = new Map<string, (...values: number[]) => number>(
@@ -278,8 +276,7 @@ export class FormulaSource {
     const window = { level, from, to };
     const { middle, part: padded } = grid.padded(window);
     const share = 2 ** -grid.doublings(level);
-    const longest = PATH_SHARE * pyramid.pathCells;
-    const lags = [...slices.lags.filter((lag) => lag < longest), longest];
+    const lags = [...slices.lags.filter((lag) => lag < pyramid.pathCells), pyramid.pathCells];
     const texels = (n: number) => ({ before: BEFORE, size: BEFORE * Math.ceil((n + 2 * BEFORE) / BEFORE) });
     const own: TileHeader = {
       geometry: {
