@@ -1330,8 +1330,8 @@ cellOf=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.length;n+=1){let[
 1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>
 around2||before+1>=path.length)continue;let way=difference(path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],
 path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i}\
- ${j}`;places.set(name,[...places.get(name)??[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,PATH_SHARE=.99,OPERATIONS=new Map(
-Object.entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
+ ${j}`;places.set(name,[...places.get(name)??[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,OPERATIONS=new Map(Object.
+entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
 b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.min(a,b),
 max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
 sign floor ceil hypot".split(" "))OPERATIONS.set(name,Math[name]);function compiled(tree){if(typeof tree=="number")return()=>tree;
@@ -1384,19 +1384,19 @@ missing");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2
 cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map(
 (at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),
 shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),share=2**
--grid2.doublings(level),longest=PATH_SHARE*pyramid.pathCells,lags=[...slices.lags.filter(lag=>lag<longest),longest],texels=n=>({
-before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),
-columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.
-length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,
-first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},
-prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,
-prefix);return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(
-`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(
-key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.
-tileCells)),size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),
-tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),
-block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,(block+1)*size-PLACE2)}
-return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+-grid2.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,
+size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),columns:texels(
+shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.length),extra:[],
+unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(
+n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`til\
+e/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);
+return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}\
+unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),
+...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
+size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.
+tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(
+key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,
+columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
