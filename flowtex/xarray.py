@@ -140,8 +140,8 @@ class FlowtexAccessor:
         """
         if transform is not None and not _is_geodetic(transform):
             msg = (
-                f"transform is {transform!r}; expected ccrs.PlateCarree() or none: the data's "
-                "longitudes and latitudes say where they lie"
+                f"transform is {transform!r}; expected ccrs.PlateCarree() or none: the "
+                "positions follow from the longitudes and latitudes of the data"
             )
             raise flowtex.FieldError(msg)
         options |= {"u": u, "v": v}
@@ -164,7 +164,7 @@ class FlowtexAccessor:
             pairs = zip(panels.axs.flat, panels.name_dicts.flat, strict=True)
             shown = [(one, self._dataset.loc[place]) for one, place in pairs if place is not None]
         else:
-            msg = "ax is given, and row and col make axes of their own; leave ax or them out"
+            msg = "ax is given, but row and col make their own axes; omit ax, or row and col"
             raise flowtex.FieldError(msg)
         images = [flowtex.axes(one, data, **options) for one, data in shown]
         label = images[0].colour_label

@@ -117,7 +117,7 @@ def test_what_is_no_dataset_is_told_in_the_words_of_xarray(tmp_path: Path) -> No
     [
         ({"u": "u"}, "u='u' is given; expected u and v"),
         ({"transform": 3}, r"transform is 3; expected ccrs.PlateCarree\(\) or none"),
-        ({"col": "level", "ax": 1}, "ax is given, and row and col make axes of their own"),
+        ({"col": "level", "ax": 1}, "ax is given, but row and col make their own axes"),
     ],
 )
 def test_words_of_a_plot_that_do_not_fit_are_refused(options: Any, words: str) -> None:

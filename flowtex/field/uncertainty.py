@@ -59,7 +59,7 @@ def with_uncertainty(field: Field, value: Any) -> Field:
     if value not in scalars and spread_name(value) in scalars:
         value = spread_name(value)
     if value not in scalars:
-        msg = f"uncertainty is {value!r}, which is no scalar; {near_names(value, scalars)}"
+        msg = f"uncertainty is {value!r}, which is not a scalar; {near_names(value, scalars)}"
         raise FieldError(msg)
     steps = scalars[value]
     if not isinstance(steps, LazySteps) and (least := np.min(steps, initial=0, where=steps < 0)):

@@ -85,7 +85,7 @@ def test_a_scalar_is_named_and_an_array_becomes_one() -> None:
 @pytest.mark.parametrize(
     ("value", "words"),
     [
-        ("sigm", "no scalar; did you mean 'sigma'"),
+        ("sigm", "not a scalar; did you mean 'sigma'"),
         (np.ones((3, 4)), r"uncertainty is \(3, 4\); expected .* shape \(41, 61\)"),
         (True, "uncertainty is True; expected the name"),
         (-np.ones((41, 61)), "uncertainty is -1 at a node; expected 0 where"),
@@ -144,7 +144,7 @@ def test_a_dataset_may_name_a_variable_and_nothing_else() -> None:
     ds = ensemble(np.zeros((3, 9, 13)))
     with pytest.warns(UserWarning, match="number is 0"):
         assert FlowField.from_xarray(ds, uncertainty="t").uncertainty == "t"
-    with pytest.raises(FieldError, match="'lat', which is no axis beside the surface"):
+    with pytest.raises(FieldError, match="'lat', which is not a further axis of the data"):
         FlowField.from_xarray(ds, uncertainty="lat", isel={"number": 0})
     with pytest.raises(FieldError, match="number is 1, but uncertainty is the spread"):
         FlowField.from_xarray(ds, uncertainty="number", isel={"number": 1})

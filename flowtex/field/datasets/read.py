@@ -192,7 +192,7 @@ def _averaged(
     pair, chosen = known.pair, {**sel, **(isel or {})}
     if dim in horizontal_dims(pair.u) or dim not in {*pair.u.dims} & {*pair.v.dims}:
         names = [str(d) for d in pair.u.dims if d not in horizontal_dims(pair.u)]
-        msg = f"uncertainty is {dim!r}, which is no axis beside the surface; "
+        msg = f"uncertainty is {dim!r}, which is not a further axis of the data; "
         raise FieldError(msg + near_names(dim, names))
     if dim in chosen:
         msg = (
