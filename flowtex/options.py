@@ -262,11 +262,11 @@ class Appearance:
     )
     clim: tuple[float, float] | str | None = _option(
         None,
-        "Values at the ends of the colour map, low and high; by default the range over all "
-        "times, without a tail that is longer than the range of the other 98 % or 96 %. If the map "
-        "diverges, such as coolwarm, and the values have both signs, zero is in the middle. "
-        '``"robust"`` ignores 2 % at either end. Where values lie beyond an end, the legend has a '
-        "tip.",
+        "Values at the ends of the colour map, low and high; by default the range over all times. "
+        "The outermost 2 % of the values at an end are left out if they more than double it; "
+        '``"robust"`` always leaves them out. If values lie beyond an end, the legend is pointed '
+        "there. If the map diverges, such as coolwarm, and the values have both signs, zero is in "
+        "the middle.",
         Form(read=_read_ends, write=lambda ends: ",".join(repr(float(end)) for end in ends)),
     )
     log_scale: bool = _option(
