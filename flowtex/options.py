@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from flowtex._util.arguments import is_number, near_names
 from flowtex._util.colours import DEFAULT_CMAP, colour_table, rgb
+from flowtex._util.notices import notify
 from flowtex._util.written import (
     NUMBER,
     PLAIN,
@@ -436,6 +437,8 @@ class Options:
         values = {**defaults, **self.settings}
         if field is not None and field.projection is not None:
             values.setdefault("fade", True)
+        if field is not None and field.steady and (lines := self.settings.get("lines")):
+            notify(f"lines is {lines!r}, but the flow is steady: its lines are all the same")
         if self.appearance.image is not None:
             noise = values.setdefault("noise", "image")
             if noise != "image":
@@ -460,11 +463,10 @@ class Options:
         for name in values:
             if name not in TABLE:
                 near = near_names(name, known)
-                msg = f"the setting or argument {name!r} does not exist; {near}"
                 if "sel" in known and not near.startswith("did you mean"):
-                    msg += (
-                        f". An axis of a dataset is chosen with sel={{{name!r}: {values[name]!r}}}"
-                    )
+                    axis = f"sel={{{name!r}: {values[name]!r}}}"
+                    near = f"an axis of a dataset is chosen with {axis}. Else {near}"
+                msg = f"the setting or argument {name!r} does not exist; {near}"
                 raise SettingsError(msg)
         return cls(**parts, settings=values)
 

@@ -17,9 +17,10 @@ import numpy as np
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
 from flowtex._util.colours import colour_table, is_diverging
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.dates import seconds_since
+from flowtex.field.dates import expected_times, seconds_since
 from flowtex.field.derived import DERIVED, steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
@@ -288,10 +289,16 @@ class Scene:
 
     @time.setter
     def time(self, value: Any) -> None:
+        if self.field.steady and self.field.start is None:
+            if value != self._time:
+                notify(f"time is {value!r}, but the field is steady: it is the same at all times")
+            return
         moment = seconds_since(self.field.start, value)
         first, last = float(self.field.times[0]), float(self.field.times[-1])
         if not first <= moment <= last:
-            msg = f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
+            msg = (
+                f"time is {value!r}; expected {expected_times(self.field.start, self.field.times)}"
+            )
             raise FieldError(msg)
         self._time = moment
         self._notify("uniform")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,10 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 DAY_S = 86_400.0
+#: Text of a date, as exact as it is known.
+_DATE = re.compile(
+    r"(\d{1,4})(?:-(\d\d?)(?:-(\d\d?)(?:[T ](\d\d)(?::(\d\d)(?::(\d\d)(?:\.(\d+))?)?)?)?)?)?Z?"
+)
 
 
 def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
@@ -70,17 +75,52 @@ def seconds_since(start: Any, date: Any) -> float:
         msg = f"time is {date!r}; expected a number, because the times of the field are not dates"
         raise FieldError(msg)
     try:
-        if isinstance(date, np.datetime64):
-            date = date.astype("datetime64[us]").item()
-        elif isinstance(date, str):
-            whole = np.datetime64(date).astype("datetime64[us]").item()
-            numbers = (*whole.timetuple()[:6], whole.microsecond)
-            calendar = {"calendar": start.calendar} if hasattr(start, "calendar") else {}
-            date = type(start)(*numbers, **calendar)
-        return float((date - start).total_seconds())
+        return span_since(start, date)[0]
     except (TypeError, ValueError, AttributeError) as error:
-        msg = f"time is {date!r}; expected a number, or a date such as {start:%Y-%m-%d %H:%M}"
+        msg = f"time is {date!r}; expected a number, or a date such as {date_text(start, 0, 60)}"
+        if calendar := getattr(start, "calendar", ""):
+            msg += f" of the calendar {calendar}"
         raise FieldError(msg) from error
+
+
+def span_since(start: Any, date: Any) -> tuple[float, float]:
+    """Return when a date begins and ends, in seconds since ``start``, in its calendar.
+
+    The text of a day, month or year ends with it; any other date when it begins.
+    """
+    if isinstance(date, np.datetime64):
+        date = str(date)
+    elif hasattr(date, "isoformat") and not isinstance(date, type(start)):
+        date = date.isoformat()  # as a day of another calendar is written, so it is in this one
+    if not isinstance(date, str):
+        return (float((date - start).total_seconds()),) * 2
+    if (match := _DATE.fullmatch(date.strip())) is None:
+        msg = f"{date!r} is no date"
+        raise ValueError(msg)
+    *parts, fraction = match.groups()
+    given = [int(part) for part in parts if part is not None]
+    microsecond = int(f"{fraction or '':0<6.6}")
+    same = {n: getattr(start, n) for n in ("calendar", "has_year_zero") if hasattr(start, n)}
+
+    def since(year: int, month: int = 1, day: int = 1, *clock: int) -> float:
+        return float((type(start)(year, month, day, *clock, **same) - start).total_seconds())
+
+    begin = since(*given, *[0] * (6 - len(given)), microsecond) if len(given) > 3 else since(*given)
+    if len(given) == 1:
+        return begin, since(given[0] + 1)
+    if len(given) == 2:
+        year, month = given
+        return begin, since(year + month // 12, month % 12 + 1)
+    return begin, begin + (DAY_S if len(given) == 3 else 0)
+
+
+def expected_times(start: Any, times: Any) -> str:
+    """Return the first and the last time of a field as text, as dates where they are such."""
+    first, last = float(times[0]), float(times[-1])
+    if start is None:
+        return f"{first:g} to {last:g}, the times of the field"
+    step = DAY_S if len(times) < 2 else (last - first) / (len(times) - 1)
+    return f"{date_text(start, first, step)} to {date_text(start, last, step)}"
 
 
 def written_date(start: Any) -> list[Any] | None:

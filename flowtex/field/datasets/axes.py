@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.arguments import near_names
-from flowtex._util.array_types import AnyArray, Bools
+from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex.errors import FieldError
+from flowtex.field.dates import as_seconds, span_since
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -292,6 +293,9 @@ def _picks(
                     f"{name} has no coordinate values; select by index, as in isel={{{name!r}: 0}}"
                 )
                 raise FieldError(msg)
+            if kind == TIME and isinstance(wanted, slice):
+                found = _within(wanted, line, name)
+                return [[_alike(line[n], n, other) for n in found] for other in lines], ""
             number = _nearest(wanted, line, name)
             return [_alike(line[number], number, other) for other in lines], ""
     if count == 1:
@@ -362,30 +366,55 @@ def _at_surface(lines: list[Any], coordinate: Any) -> int:
 
 def _nearest(wanted: Any, line: AnyArray, name: str) -> int:
     """Return the number of the value nearest to what is wanted, within the ends of the axis."""
-    listed = ", ".join(map(str, line[:8])) + (", ..." if len(line) > 8 else "")
+    values = _texts(line)
+    listed = ", ".join(values[:8]) + (", ..." if len(line) > 8 else "")
     msg = f"{name} is {wanted!r}; expected one of {listed}"
     try:
-        if line.dtype.kind == "M":
-            at = (line - np.datetime64(wanted)) / np.timedelta64(1, "s")
-        elif line.dtype.kind == "O":
-            dates = [
-                type(d).fromisoformat(wanted) if isinstance(wanted, str) else wanted
-                for d in line[:1]
-            ]
-            at = np.array([(d - dates[0]).total_seconds() for d in line])
-        elif line.dtype.kind == "m":
-            at = line / np.timedelta64(1, "s") - float(wanted)
-        elif line.dtype.kind in "fiu":
-            at = line.astype(float) - float(wanted)
-        else:
-            at = np.where(line == wanted, 0.0, np.inf)
-    except (TypeError, ValueError) as error:
+        at, (begin, end) = _places(line, wanted)
+    except (TypeError, ValueError, AttributeError) as error:
         raise FieldError(msg) from error
+    within = np.flatnonzero((at >= begin) & (at < end))
+    if len(within):  # the first of a day, though it is at noon
+        return int(within[0])
+    at = at - begin
     number = int(np.argmin(np.abs(at)))
     widest = float(np.abs(np.diff(at)).max()) if len(at) > 1 and np.isfinite(at).all() else 0.0
     if not abs(at[number]) <= max(widest / 2, 1e-6 * np.abs(at).max()):
         raise FieldError(msg)
     return number
+
+
+def _within(wanted: slice, line: AnyArray, name: str) -> list[int]:
+    """Return the numbers of the times in a range, its ends included as in xarray."""
+    ends = _texts(line)[0], _texts(line)[-1]
+    try:
+        at, (low, _) = _places(line, ends[0] if wanted.start is None else wanted.start)
+        _, (begin, end) = _places(line, ends[1] if wanted.stop is None else wanted.stop)
+    except (TypeError, ValueError, AttributeError):
+        at, low, begin, end = np.zeros(1), 1.0, 0.0, 0.0
+    if not (
+        found := np.flatnonzero((at >= low) & ((at <= begin) | (at < end)))[:: wanted.step]
+    ).size:
+        msg = f"{name} is {wanted!r}; expected a range within {ends[0]} to {ends[1]}"
+        raise FieldError(msg)
+    return [int(number) for number in found]
+
+
+def _texts(line: AnyArray) -> list[str]:
+    """Return values along an axis as text, dates no longer than they have to be."""
+    texts = np.datetime_as_string(line, unit="auto") if line.dtype.kind == "M" else line
+    return [str(text) for text in texts]
+
+
+def _places(line: AnyArray, wanted: Any) -> tuple[Floats, tuple[float, float]]:
+    """Return numbers along an axis, of dates seconds, and where what is wanted begins and ends."""
+    if line.dtype.kind == "M" or (line.dtype.kind == "O" and hasattr(line[0], "isoformat")):
+        seconds, _, start = as_seconds(line, "")
+        return np.asarray(seconds), span_since(start, wanted)
+    if line.dtype.kind not in "mfiu":
+        return np.where(line == wanted, 0.0, np.inf), (0.0, 0.0)
+    at = line / np.timedelta64(1, "s") if line.dtype.kind == "m" else line.astype(float)
+    return at, (float(wanted),) * 2
 
 
 def _words(value: Any, array: xr.DataArray, dim: str) -> str:
