@@ -40,7 +40,7 @@ def write_page(place: str, url: str, path: str, options: dict[str, Any]) -> None
 
 
 class Visit:
-    """A page that is open, with hands on it."""
+    """A page that is open, with passes on it."""
 
     def __init__(
         self, page: Any, storage: Any, album: Path, tally: Callable[[Any], dict[str, Any]]

@@ -103,7 +103,7 @@ class Log:
 
 
 class Drill:
-    """All that goes on at once, and what is counted of it."""
+    """All that continues at once, and what is counted of it."""
 
     def __init__(self, served: Served, seconds: float, folder: Path, *, full: bool) -> None:
         self.served, self.folder, self.full = served, folder, full

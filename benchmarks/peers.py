@@ -5,7 +5,7 @@ image's own grid, ``vtkStreamTracer`` seeded at random, PyVista's evenly spaced 
 flowtex with its defaults, grey and coloured by speed. For each the time to the first picture, the
 least time of a frame whose camera has moved a little, the mean angle between texture and flow in
 degrees, the coherence of its streaks, and the memory that the process has taken. The last columns
-divide by flowtex's own times. Every case runs in a process of its own, so that memory is its own.
+divide by flowtex's own times. Every case runs in a separate process, so that memory is its own.
 
 ``--size`` and ``--meshes`` choose others; on a graphics card the run says its name.
 
@@ -254,7 +254,7 @@ def measure_surface(case: str, name: str, size: tuple[int, int]) -> dict[str, fl
 
 
 def run(words: list[str], timeout: float) -> dict[str, float] | str:
-    """Measure in a process of its own; in words what kept it from that."""
+    """Measure in a separate process; in words what kept it from that."""
     try:
         done = subprocess.run(
             [sys.executable, __file__, *words],
@@ -291,7 +291,7 @@ def compare_surfaces(names: list[str], size: tuple[int, int], timeout: float) ->
 
 
 def compare(mesh: str, size: tuple[int, int], timeout: float) -> Table:
-    """Measure every case on a mesh, each in a process of its own."""
+    """Measure every case on a mesh, each in a separate process."""
     rows: dict[str, dict[str, float] | str] = {}
     for case in CASES:
         words = ["--one", case, "--meshes", mesh, "--size", *map(str, size)]

@@ -188,7 +188,7 @@ def _plans(result: Mapping[str, Any]) -> str:
 
 
 def depth(nodes: float) -> int:
-    """Return the level of the root of a field of so many nodes."""
+    """Return the level of the root of a field of this many nodes."""
     return max(math.ceil(math.log(nodes / ROOT_NODES, 4)), 0)
 
 

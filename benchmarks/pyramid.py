@@ -1,9 +1,9 @@
 """A field larger than a machine, as a pyramid: ``python benchmarks/pyramid.py``.
 
 An ocean that is made by code is written to object storage, part after part. A Dask scheduler and
-two workers, processes of their own with nothing in common but that storage, build its pyramid
-there. Half-way one worker is killed and another one is started. Measured are time, processor time,
-memory, requests and bytes of all who take part, then pictures and a browser that read the store.
+two workers, their own processes with nothing in common but that storage, build its pyramid there.
+Half-way one worker is killed and another one is started. Measured are time, processor time, memory,
+requests and bytes of all who take part, then pictures and a browser that read the store.
 
 Some tiles are then taken away and made again undisturbed, and have to be the same, bit for bit;
 ``--verify all`` builds a second time and compares all objects. Up to some millions of nodes
@@ -88,7 +88,7 @@ class Watched:
 
 
 def alone() -> ProcessPoolExecutor:
-    """Return a process of its own in which to do something."""
+    """Return its own process in which to do something."""
     return ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
 
 
@@ -272,7 +272,7 @@ def contents(place: str) -> dict[str, int]:
 
 
 def picture(place: str, zoom: float) -> tuple[float, Any]:
-    """Draw a picture from the store, which is opened anew, and return its seconds."""
+    """Draw a picture from the store, which is opened again, and return its seconds."""
     start = time.perf_counter()
     pixels = flowtex.render(place, **_view(zoom))
     return time.perf_counter() - start, pixels

@@ -248,7 +248,7 @@ def use_judge(path: Path) -> None:
 
 
 def main() -> None:
-    """Measure the sections that were asked for and print a table of each."""
+    """Measure the sections that were requested and print a table of each."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("sections", nargs="*", choices=[*SECTIONS, []], default=[])
     parser.add_argument("--json", type=Path, help="file to keep the figures in")

@@ -1,8 +1,8 @@
 """What a page more costs a server: ``python benchmarks/sessions.py --pages 12``.
 
-Pages of ``flowtex demo`` are opened one after the other, each a process of its own where the
-system forks. Printed are the seconds from the first request to the connection, and to the first
-full picture of VTK's, and the memory that each page adds once it is at rest.
+Pages of ``flowtex demo`` are opened one after the other, each its own process where the system
+forks. Printed are the seconds from the first request to the connection, and to the first full
+picture of VTK's, and the memory that each page adds once it is at rest.
 """
 
 from __future__ import annotations

@@ -81,7 +81,7 @@ def fields(columns: list[int]) -> dict[str, Callable[[], FlowField]]:
 
 
 def apart(composed: TraceSlices, exact: TraceSlices, m: int, cell: Any) -> Any:
-    """Distances in cells at a lag, of paths that go on by both."""
+    """Distances in cells at a lag, of paths that continue by both."""
     off = np.linalg.norm(composed.displacement - exact.displacement, axis=-1)[0, m, 0] / cell
     both = np.minimum(composed.reach, exact.reach)[0, 0] > exact.lags[m]
     return off[both]

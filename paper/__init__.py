@@ -2,7 +2,7 @@
 
 Every table and figure of *View-Dependent Multi-resolutional Flow Texture Advection*, by Li and
 Shen, computed by flowtex, beside what the paper reports, and what goes beyond it. Each statement
-of the paper is a check with a number. It is no part of the installed package.
+of the paper is a check with a number. It is not a part of the installed package.
 
     run.py                  the sections in order, ``numbers.json``
     sections/               a module for each experiment

@@ -55,11 +55,11 @@ class Bench:
 
     @property
     def rng(self) -> np.random.Generator:
-        """Random numbers from the seed, the same ones each time it is asked for."""
+        """Random numbers from the seed, the same ones each time it is requested."""
         return np.random.default_rng(self.seed)
 
     def once(self, key: Any, make: Callable[[], T]) -> T:
-        """Return the value of a key, computed when it is first asked for."""
+        """Return the value of a key, computed when it is first requested."""
         if key not in self._cache:
             self._cache[key] = make()
         value: T = self._cache[key]

@@ -69,7 +69,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Plate:
-    """Pictures beside each other, with a caption."""
+    """Pictures side by side, with a caption."""
 
     panels: Sequence[Panel]
     caption: str = ""

@@ -166,7 +166,7 @@ def _block(block: Block, name: str, folder: Path) -> str:
 
 
 def _standalone(svg: str) -> str:
-    """Make a plot a file of its own, with the page's colours for light and dark."""
+    """Make a plot its own file, with the page's colours for light and dark."""
     colours = _template("style.css").template.split("* {", 1)[0].replace(":root", "svg")
     head, body = svg.split(">", 1)
     names = 'xmlns="http://www.w3.org/2000/svg" font-family="system-ui, sans-serif"'

@@ -24,7 +24,7 @@ class Errors:
     slices
         With slices made coarser as a mip level is, at their own entries.
     field
-        With paths integrated anew in the field made coarser, from the same starts.
+        With paths integrated again in the field made coarser, from the same starts.
     between
         With the coarser slices between their entries, linear as a texture is looked up.
     full
@@ -32,7 +32,7 @@ class Errors:
     travelled
         How far the particles went, as the crow flies.
     texels
-        Error of the slices after the last step, in cells of their own.
+        Error of the slices after the last step, in their own cells.
     grid
         Entries (J, I) of the coarser slices.
     """

@@ -86,7 +86,7 @@ class Handler:
 
 
 class TrickyReader(Reader):
-    """A reader of files that does what the level which it is asked for says."""
+    """A reader of files that does what the level which it is requested says."""
 
     def do_plane_of(self, level: float | str) -> Answer:
         """Return the number of this process, change the file, or end badly."""

@@ -1,4 +1,4 @@
-"""Object storage and a Dask cluster as processes of their own, for tests and benchmarks.
+"""Object storage and a Dask cluster as their own processes, for tests and benchmarks.
 
 Run as a program it is the object storage: ``python tests/cluster.py FOLDER``.
 """
@@ -56,7 +56,7 @@ class ObjectStorage:
     Parameters
     ----------
     folder
-        A folder of its own.
+        its own folder.
 
     Attributes
     ----------
@@ -112,12 +112,12 @@ class ObjectStorage:
 
 
 class Cluster:
-    """A scheduler and workers as processes of their own, each in a folder of its own.
+    """A scheduler and workers as their own processes, each in its own folder.
 
     Parameters
     ----------
     folder
-        A folder of its own.
+        its own folder.
     environment
         What the processes find in their environment besides what is in that of this one.
     workers

@@ -33,7 +33,8 @@ pytest_plugins = ["small_pages", "small_tiles"]
 
 # Before anything opens a window, and for every process that a test starts.
 diagnostics.prefer_headless()
-# Workers and the many processes that tests start would each compile the package and the tests anew.
+# Workers and the many processes that tests start would each compile the package and the tests
+# again.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 # Its threads wait for each other by turning round: beside other processes, for several times as
@@ -218,7 +219,7 @@ def browser(chromium: Path) -> Iterator[Browser]:
 
 @pytest.fixture
 def page(browser: Browser) -> Iterator[Page]:
-    """Yield a page of its own context, so that no test sees another's state."""
+    """Yield its own page context, so that no test sees another's state."""
     from pages import opened_page
 
     with opened_page(browser, 1280, 720) as opened:

@@ -1,4 +1,4 @@
-"""A Firefox on a screen of its own, driven by WebDriver BiDi."""
+"""A Firefox on its own screen, driven by WebDriver BiDi."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sessions in processes of their own, of an application that draws nothing."""
+"""Sessions in separate processes, of an application that draws nothing."""
 
 from __future__ import annotations
 

@@ -164,7 +164,7 @@ VIEWS: dict[str, View] = {
 }
 
 
-#: Deeper than VTK comes to: the positions that it hands on are single, half a pixel here.
+#: Deeper than VTK comes to: the positions that it passes on are single, half a pixel here.
 DEEP: dict[str, View] = {
     "zoom 1e5": View(camera=straight(1e5)),
     "triangles, zoom 1e5": View(scattered_gyre, straight(1e5)),

@@ -143,7 +143,7 @@ def schism(mesh: Globe, *, old: bool = False) -> list[xr.Dataset]:
 
 
 def fesom(mesh: Globe) -> list[xr.Dataset]:
-    """FESOM: the mesh beside the components, which are in files of their own."""
+    """FESOM: the mesh beside the components, which are in their own files."""
     u, v = at_faces(mesh)
     levels = {"nz1": ("nz1", np.array([5.0, 100.0]), {"units": "m"})}
     parts = [

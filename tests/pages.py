@@ -1,4 +1,4 @@
-"""Pages of a browser: each in a context of its own, and as patient as all that waits."""
+"""Pages of a browser: each in its own context, and as patient as all that waits."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def new_context(browser: Browser, **options: Any) -> BrowserContext:
 def opened_page(
     browser: Browser, width: int = 300, height: int = 200, **options: Any
 ) -> Iterator[Page]:
-    """Yield a page of its own context, and close it."""
+    """Yield its own page context, and close it."""
     context = new_context(browser, viewport={"width": width, "height": height}, **options)
     try:
         yield context.new_page()

@@ -15,7 +15,7 @@ Answer = int | bytes | None
 
 @dataclass
 class RangeServer:
-    """What is served, where, and what was asked for.
+    """What is served, where, and what was requested.
 
     ``fault`` is called with the path of each request, such as ``"0/traces/c/0/0/1/0/0/0/0"``: a
     status is answered in place of the file, bytes are its contents, and ``None`` leaves it as it
@@ -33,12 +33,12 @@ class RangeServer:
     broken_off: list[str] = field(default_factory=list)
 
     def reset(self, folder: Path) -> None:
-        """Begin anew with a folder, at the same address."""
+        """Begin again with a folder, at the same address."""
         vars(self).update(vars(RangeServer(folder, self.address)))
 
     @property
     def paths(self) -> list[str]:
-        """Return the paths that were asked for."""
+        """Return the paths that were requested."""
         return [path for _, path, _ in self.asked]
 
 

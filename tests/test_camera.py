@@ -39,7 +39,7 @@ def test_a_globe_is_seen_from_above_its_data_with_north_up() -> None:
     assert seen(whole) == pytest.approx((0, 20))
     assert whole.up == (0, 0, 1)
     part = Camera.fit(ocean().surface, ASPECT)
-    assert seen(part) == pytest.approx((6, -20), abs=1.5)  # the middle of what is no land
+    assert seen(part) == pytest.approx((6, -20), abs=1.5)  # the middle of what is not a land
     assert part.axes[1][2] > 0.9
     for lat in (90.0, -90.0):
         pole = projection.positions(np.array(0.0), np.array(lat))

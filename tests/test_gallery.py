@@ -44,7 +44,7 @@ def test_an_example_is_a_short_script_with_a_title_and_a_text(path: Path) -> Non
     assert len(" ".join(text)) > 80
     assert imported(tree) <= ALLOWED
     assert shown(tree)
-    # What only the site knows is no argument of a script that people run.
+    # What only the site knows is not an argument of a script that people run.
     assert not [key for call in shown(tree) for key in call.keywords if key.arg == "steps"]
     assert len(source.splitlines()) - len(text) < LINES
 

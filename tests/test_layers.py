@@ -181,7 +181,7 @@ def level_of(name: str) -> int | None:
 
 
 def is_in(name: str, rooms: tuple[str, ...]) -> bool:
-    """Tell whether a module is one of the rooms, or inside one."""
+    """Return whether a module is one of the rooms, or inside one."""
     return any(name == room or name.startswith(f"{room}.") for room in rooms)
 
 

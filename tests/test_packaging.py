@@ -216,7 +216,7 @@ SHOWN = """async ([source, header, parts]) => {
 
 @pytest.fixture
 def empty_environment(wheel: Path, tmp_path: Path) -> Path:
-    """Install the wheel in an environment of its own, which sees the libraries of this one.
+    """Install the wheel in its own environment, which sees the libraries of this one.
 
     Nothing else of this environment's own is seen: neither its flowtex nor its commands.
     """

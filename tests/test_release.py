@@ -32,7 +32,7 @@ def read_yaml(path: Path) -> dict[Any, Any]:
 
 
 def floors(lines: list[str]) -> dict[str, str]:
-    """Return the oldest version of each library that is asked for, by its small name."""
+    """Return the oldest version of each library that is requested, by its small name."""
     found = [re.match(r"([\w-]+)(?:\[\w+\])? ?>=([\d.]+)", line) for line in lines]
     return {match[1].lower(): match[2] for match in found if match}
 

@@ -56,7 +56,7 @@ SYSTEM = {
 
 
 def is_written(call: ast.Call) -> bool:
-    """Tell whether a call opens something in a mode that writes."""
+    """Return whether a call opens something in a mode that writes."""
     given = [*call.args, *(word.value for word in call.keywords if word.arg == "mode")]
     texts = [a.value for a in given if isinstance(a, ast.Constant) and isinstance(a.value, str)]
     return any(set(text) <= set("rwxabt+") and set(text) & set("wxa+") for text in texts)

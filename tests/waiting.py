@@ -22,7 +22,7 @@ def wait_until(holds: Callable[[], Any], seen: Callable[[], object] = lambda: ""
 
 
 async def until(holds: Callable[..., Any]) -> None:
-    """Do the same in an event loop, which goes on meanwhile."""
+    """Do the same in an event loop, which continues meanwhile."""
     async with asyncio.timeout(PATIENCE_S):
         while not holds():
             await asyncio.sleep(INTERVAL_S)

@@ -89,7 +89,7 @@ def packed(scene: ClientData, header: Mapping[str, Any], steps: tuple[int, ...] 
 
 
 def tile_maker(data: ClientData) -> TileMaker:
-    """Return what makes the tiles of a surface when they are asked for."""
+    """Return what makes the tiles of a surface when they are requested."""
     source = TileSource(data)
     return lambda key, steps: source.parts(TileKey(*key), steps)
 
@@ -123,7 +123,7 @@ class ClientPage:
         self.errors.append(text)
 
     def mount(self, scene: Any, size: tuple[int, int] | None = None, **options: Any) -> int:
-        """Show a scene, or several beside each other; return the number of the first viewer."""
+        """Show a scene, or several side by side; return the number of the first viewer."""
         return int(self.page.evaluate(MOUNT, [scene, options, size]))
 
     def sharp(self, viewer: int = 0) -> None:

@@ -6,7 +6,7 @@ gone half the lag is where another path begins, whose first half is known, so a 
 of shorter ones: S(Td, Ts)(x) = S(Td', Ts)(S(Td, Td')(x)). Where the units of lag differ it may
 take more than two pieces.
 
-Slices do not tell which axes are periodic and how a path goes on beyond its end. Both are
+Slices do not tell which axes are periodic and how a path continues beyond its end. Both are
 guessed: a wrong guess makes a prediction worse and never a result wrong.
 """
 

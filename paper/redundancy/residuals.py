@@ -96,7 +96,7 @@ class BoundedCoding:
         return steps.astype(np.int32).view(np.uint32)
 
     def decode(self, numbers: AnyArray, predicted: Floats) -> Values:
-        """Return the values that so many steps lead to."""
+        """Return the values that this many steps lead to."""
         values = predicted + numbers.view(np.int32) * self.width
         largest = float(np.finfo(self._dtype).max)
         return np.clip(values, -largest, largest).astype(self._dtype)

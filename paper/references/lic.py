@@ -8,9 +8,9 @@ next, straight along the vector of the pixel that it is in (their equations 1 to
 a pixel counts with the kernel's integral over the stretch of the line inside of it, and the sum
 is divided by all the kernel that was used (equations 5 and 6).
 
-Left out: the moving kernels of their animations, and images other than noise with channels of
-their own. A line that comes to an edge where the vectors on both sides point at each other goes
-to and fro there without getting on; the number of pixels that it may visit ends it.
+Left out: the moving kernels of their animations, and images other than noise with their own
+channels. A line that comes to an edge where the vectors on both sides point at each other goes to
+and fro there without getting on; the number of pixels that it may visit ends it.
 """
 
 from __future__ import annotations

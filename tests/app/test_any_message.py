@@ -1,4 +1,4 @@
-"""Whatever a page sends, the application goes on."""
+"""Whatever a page sends, the application continues."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ def picture(app: FlowApp) -> Any:
 
 
 def opened(app: FlowApp) -> bool:
-    """Tell whether nothing is being opened."""
+    """Return whether nothing is being opened."""
     return app.controllers.data._opening is None or app.controllers.data._opening.done()
 
 
@@ -257,7 +257,7 @@ async def test_a_picture_is_decoded_beside_the_event_loop_and_the_latest_counts(
         for name in ("first", "second"):
             app.state.set(image_file={**picture, "name": name})
             app.controllers.appearance.take_image()
-            await until(lambda name=name: name in decoded)  # the loop goes on
+            await until(lambda name=name: name in decoded)  # the loop continues
         gate.set()
         await until(lambda: app.area.settings.noise == "image")
         app.state.set(image_file=picture)
@@ -395,7 +395,7 @@ async def test_the_latest_plane_wins_and_the_slider_stays(monkeypatch: pytest.Mo
         app.state.on("index")(lambda: told.append(app.state.get("index")))
         for index in (4, 5, 6):
             app.state.send(index=index)
-            # The first one has begun before the second one is asked for.
+            # The first one has begun before the second one is requested.
             await until(lambda index=index: told[-1:] == [index] and "k=4" in gates)
         for gate in ("k=4", "k=5", "k=6"):
             gates.setdefault(gate, threading.Event()).set()

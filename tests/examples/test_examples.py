@@ -97,7 +97,7 @@ def test_a_series_has_a_mesh_for_each_instant(
     for mesh in meshes:
         assert set(mesh.point_data) == {"velocity", "vorticity"}
     shown = single()
-    # The double gyre is asked for at its first instant, which equals its last.
+    # The double gyre is requested at its first instant, which equals its last.
     np.testing.assert_allclose(shown["velocity"], meshes[-1]["velocity"], atol=1e-12)
     np.testing.assert_array_equal(shown.points, meshes[0].points)
 

@@ -73,7 +73,7 @@ def test_a_point_off_the_surface_has_no_index() -> None:
     assert locate(plane, (1.0, 0.5, 3.0)) is None
     assert locate(ball, (0.0, 0.0, 0.0)) is None
     assert locate(ball, (0.0, 2.0, 0.0)) is None
-    # As far beside the surface as is asked for.
+    # As far outside the surface as is requested.
     assert locate(plane, (1.0, -0.01)) == pytest.approx((0.0, 6.0), abs=0.1)
     assert locate(plane, (1.0, -0.01), tolerance=1e-3) is None
     assert locate(ball, (0.0, 1.01, 0.0), tolerance=1e-3) is None

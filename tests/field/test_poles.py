@@ -98,7 +98,7 @@ def test_a_pole_that_is_not_exactly_a_point() -> None:
     assert len(poles(rounded)) == 2
 
 
-# --- index space goes on --------------------------------------------------------------------
+# --- index space continues --------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("columns", [36, 37])

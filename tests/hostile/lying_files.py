@@ -125,7 +125,7 @@ def winds(columns: int, rows: int, values: int = 4) -> bytes:
 
 
 def netcdf_header(version: int, length: int) -> bytes:
-    """Return NetCDF classic of one variable of so many bytes, without any of them."""
+    """Return NetCDF classic of one variable of this many bytes, without any of them."""
     number = ">Q" if version == 5 else ">I"
 
     def count(value: int) -> bytes:
@@ -142,7 +142,7 @@ def netcdf_header(version: int, length: int) -> bytes:
 
 
 def grib2(points: int) -> bytes:
-    """Return the head of a message of GRIB 2 whose grid has so many points, and no more of it."""
+    """Return the head of a message of GRIB 2 whose grid has this many points, and no more of it."""
     grid = struct.pack(">IBBIBBH", 72, 3, 0, points, 0, 0, 0) + bytes(58)
     content = struct.pack(">IB", 21, 1) + bytes(16) + grid + b"7777"
     return b"GRIB\0\0\0\x02" + struct.pack(">Q", 16 + len(content)) + content

@@ -215,7 +215,7 @@ def lay(folder: Path, files: Whole, name: str, changed: str, content: bytes) -> 
 
 @pytest.fixture
 def read(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], str]:
-    """Read a file in a child, which goes on to the next one unless it dies.
+    """Read a file in a child, which continues to the next one unless it dies.
 
     Returns a digest of the flow, or the error.
     """

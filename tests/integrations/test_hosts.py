@@ -1,7 +1,7 @@
 """The widget in Notebook 7, Panel, Shiny, Solara and Streamlit: `make integrations`.
 
-Each is started with a file of its own kind, shows a flow, and where it carries messages a drag in
-the browser is heard in Python.
+Each is started with its own file kind, shows a flow, and where it carries messages a drag in the
+browser is heard in Python.
 """
 
 from __future__ import annotations

@@ -57,7 +57,8 @@ def test_lines_are_drawn_unless_they_are_off(plotter: Any, name: str) -> None:
     field = winds(name)
     handle = plotter.flowtex.add(field, scalars=False, color="white", show_scalar_bar=False)
     camera = read_camera(plotter.camera)
-    # Meridian 30 is no coast there, and the coast of the gulf of Guinea no line of the graticule.
+    # Meridian 30 is not a coast there, and the coast of the gulf of Guinea no line of the
+    # graticule.
     for option, place, darker in (("graticule", (30.0, 20.0), 15), ("coastlines", (9.45, 1.1), 60)):
         with_lines = at(shot(plotter), field, camera, *place)
         setattr(handle, option, False)

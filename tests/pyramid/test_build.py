@@ -69,7 +69,7 @@ def series(steps: int = 3) -> FlowField:
 
 
 def late() -> FlowField:
-    """A series whose steps are read when they are asked for."""
+    """A series whose steps are read when they are requested."""
     field = series(2)
     whole = np.asarray(field.velocity)
     lazy = LazySteps(len(whole), lambda step: whole[step])

@@ -26,7 +26,7 @@ ROOT_NODES = 2_500
 
 @pytest.fixture
 def storage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ObjectStorage]:
-    """Object storage as a server of its own, told by the environment."""
+    """Object storage as its own server, told by the environment."""
     pytest.importorskip("moto")
     server = ObjectStorage(tmp_path / "s3")
     for name, value in server.environment.items():
@@ -86,7 +86,7 @@ def test_workers_build_what_threads_build_though_one_is_killed(
     one, other = digests(place), digests(tmp_path / "threads.zarr")
     assert one.keys() == other.keys() and len(one) > 30
     assert [name for name in one if one[name] != other[name]] == []
-    # One of the finest, which are made from the store when they are asked for.
+    # One of the finest, which are made from the store when they are requested.
     tiles = []
     for store in (place, tmp_path / "threads.zarr"):
         tile = shared_pyramid(open_store(store), "arclength").tile(TileKey(0, 1, 2), [0])

@@ -1,4 +1,4 @@
-"""Two builders at one store: one goes on, the other says so."""
+"""Two builders at one store: one continues, the other says so."""
 
 from __future__ import annotations
 

@@ -215,7 +215,7 @@ def test_what_has_no_file_is_known_by_all_of_its_values(tmp_path: Path) -> None:
     for other in (corrected(data), corrected(data, 1), data.assign_coords(x=data.x * 1.01)):
         with pytest.raises(FieldError, match=r"another field.* fresh=True"):
             build(other, store, progress=False)
-    # Nor is it mixed with what is made anew.
+    # Nor is it mixed with what is made again.
     (store / "0/velocity/c/1/0/0/0").unlink()
     with pytest.raises(ChangedError, match="earlier version"):
         build(corrected(data, 1), store, progress=False)

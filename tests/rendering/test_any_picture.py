@@ -67,7 +67,7 @@ def check_client(scene: Scene) -> None:
 
 
 def fitting(values: dict[str, Any], field: FlowField) -> dict[str, Any]:
-    """Leave out the structure of a field without a sign, which has none."""
+    """Leave out the structure of a sign-free field, which has none."""
     return {k: v for k, v in values.items() if not (field.sign_free and k in STRUCTURE)}
 
 

@@ -89,7 +89,7 @@ def view_of(camera: Camera) -> TileView:
 
 
 def seen(camera: Camera) -> tuple[Seeds, Floats]:
-    """Return the seeds that are shown, made anew, and their points, (N, 2)."""
+    """Return the seeds that are shown, made again, and their points, (N, 2)."""
     geometry = SurfaceGeometry.of(gyre())
     shown = ArrowSeeds(geometry).seen(view_of(camera), ARROW_LEAST * SPACING)
     pixel = 2 * camera.parallel_scale / SIZE[1]

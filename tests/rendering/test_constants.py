@@ -44,7 +44,7 @@ def test_every_constant_of_the_shaders_is_used() -> None:
         shader_source(name) for name in shader_names() if name != "common/constants.glsl"
     )
     used = set(re.findall(r"\bFLOWTEX_(\w+)", re.sub(r"//.*", "", text)))
-    # The kernel without a branch of its own.
+    # The kernel without its own branch.
     assert set(GLSL) - used == {"KERNEL_HANN"}
 
 

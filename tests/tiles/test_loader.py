@@ -77,7 +77,7 @@ def test_a_tile_is_there_once_it_is_made() -> None:
     assert tile is not None
     assert tile.prepared == KEYS[0]
     assert (tile.take(1) == 1).all()
-    assert (tile.take(1) == 1).all()  # made again, since it was handed over
+    assert (tile.take(1) == 1).all()  # made again, since it was sent
     assert len(told) == 4
     assert not loader.busy
     loader.close()

@@ -65,7 +65,7 @@ def test_a_rotation_goes_round_in_circles_over_the_poles(
     lags = row * 0.25 * 2.0 ** np.arange(7)
     slices = trace(field, lags=lags, parameter="time", compose=compose)
     assert slices.forward_reach is not None
-    # All paths go on but those of the nodes on the axis, on the equator.
+    # All paths continue but those of the nodes on the axis, on the equator.
     ended = np.isfinite(slices.reach[0]) | np.isfinite(slices.forward_reach[0])
     assert ended.sum() <= 4
     assert np.abs(field.points[ended] @ X).min(initial=1) > 0.99

@@ -13,7 +13,7 @@ import flowtex
 from flowtex._util.array_types import AnyArray
 
 SIZE = (400, 300)
-# Zoom, and a point beside the wall of the post at which the view looks.
+# Zoom, and a point near the wall of the post at which the view looks.
 VIEWS = [(1, (0.0, 0.0)), (8, (0.0, 0.7)), (64, (0.0, 0.58)), (64, (0.58, 0.0))]
 
 

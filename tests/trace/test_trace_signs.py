@@ -1,4 +1,4 @@
-"""Paths of fields without a sign, against exact field lines, and the pictures of them."""
+"""Paths of sign-free fields, against exact field lines, and the pictures of them."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def test_a_value_with_an_owner_lives_as_long_as_the_owner() -> None:
     gc.collect()
     assert number == cache.get("key", Thing, owner=owner).nbytes == 7
     assert cache.get("key", Thing, owner=other).nbytes == 0
-    # Another object, even at the same address, gets a value of its own.
+    # Another object, even at the same address, gets its own value.
     held = cache.get("key", Thing, owner=owner)
     del owner
     gc.collect()

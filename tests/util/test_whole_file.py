@@ -25,7 +25,7 @@ OLD = b"the old file"
 
 
 class Disk(io.FileIO):
-    """A file on a disk that takes so many bytes in all."""
+    """A file on a disk that takes this many bytes in all."""
 
     free = 0
 
@@ -122,7 +122,7 @@ def test_a_movie_that_libraries_cannot_write_leaves_the_old_file_alone(
     save_movie(path)
     size = path.stat().st_size
     path.write_bytes(OLD)
-    # Frames wait in a file of their own before Pillow writes a GIF; both fall below the limits.
+    # Frames wait in their own file before Pillow writes a GIF; both fall below the limits.
     limits = ",".join(map(str, (10, size // 2, size - 1)))
     command = [sys.executable, "-c", LIMITED, str(path), limits, str(Path(__file__).parent)]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)

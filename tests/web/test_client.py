@@ -264,7 +264,7 @@ def test_a_click_tells_the_point(client: ClientPage) -> None:
     i, j = point["index"]
     near = gyre().points[round(j), round(i)]
     assert np.abs(near[:2] - [x, y]).max() < 0.04
-    client.page.mouse.click(left + 2, top + 2)  # beside the surface
+    client.page.mouse.click(left + 2, top + 2)  # outside the surface
     assert len(number(client, "events")) == 1
 
 
@@ -652,7 +652,7 @@ def test_a_widget_takes_traits_and_messages_as_they_come(client: ClientPage) -> 
         assert label.startswith("Pause" if playing else "Play")
     for name, value in (("camera", None), ("time", 0.5), ("clock", 1.5)):
         page.evaluate("(given) => model.set(...given)", [name, value])
-    # What nobody has is asked for, of a view that there is; what comes of others is let go.
+    # Parts that are missing are requested for existing views; parts of others are dropped.
     offer = """(view) => {
       log.length = 0;
       const info = { name: "position", digest: "unknown", shape: [1], dtype: "float32", bytes: 4 };

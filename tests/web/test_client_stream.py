@@ -160,7 +160,7 @@ def shown(browser: Browser) -> Iterator[Shown]:
 
 
 def tiles_of(server: RangeServer, array: str = "flow") -> list[str]:
-    """Tiles that were asked for, each as its level, row and column, in order."""
+    """Tiles that were requested, each as its level, row and column, in order."""
     found = []
     for path in server.paths:
         words = path.split("/")
@@ -339,7 +339,7 @@ def test_a_tile_that_one_step_or_one_scalar_lacks_is_there_for_others(
 def test_a_tile_that_was_away_is_asked_for_again_in_a_view_at_rest(
     shown: Shown, server: RangeServer
 ) -> None:
-    """Though another one came after it was asked for."""
+    """Though another one came after it was requested."""
     page = linked(server, "flat", **NEAR)
     tried: list[str] = []
     is_told = threading.Event()

@@ -48,7 +48,7 @@ def place(s: Any, t: Any) -> Any:
 
 
 def vortices(points: Any) -> Any:
-    """Two of them, beside each other."""
+    """Two of them, side by side."""
     a, b = np.moveaxis(np.pi * points, -1, 0)
     return np.stack([-np.sin(a) * np.cos(b), np.cos(a) * np.sin(b)], axis=-1)
 
@@ -183,9 +183,9 @@ def test_coarse_first_and_finer_where_the_view_goes(client: ClientPage) -> None:
     first = client.tiles.copy()
     assert {key[0] for key in first} == {0}
     assert set(layers(client, viewer)) == {"3/0/0", "0/0/0", "0/0/1"}
-    # Noise goes on from level to level: where a flow is smooth nothing jumps.
+    # Noise continues from level to level: where a flow is smooth nothing jumps.
     assert np.abs(client.pixels(viewer).astype(int) - coarse).mean() < 1
-    # Aside other tiles are asked for, and those that are there are not.
+    # Aside other tiles are requested, and those that are there are not.
     aside = state(straight(10, (1.6, 0.2)))
     client.page.evaluate("([n, camera]) => viewers[n].setCamera(camera)", [viewer, aside])
     client.page.wait_for_function("(n) => viewers[n].tiles.missing.length", arg=viewer)
@@ -251,7 +251,7 @@ def test_tiles_of_the_times_around_that_of_the_view(client: ClientPage, plotter:
     )
     assert root < ROOT
     assert share < SHARE
-    # Of the next moment one step is there already, and only the other is asked for.
+    # Of the next moment one step is there already, and only the other is requested.
     client.page.evaluate("(n) => viewers[n].setTime(0.2)", viewer)
     client.page.wait_for_function("(n) => viewers[n].tiles.missing.length", arg=viewer)
     client.complete(viewer)
@@ -267,7 +267,7 @@ def deep() -> flowtex.FlowField:
 @pytest.mark.browser
 @pytest.mark.parametrize("host", [False, True], ids=["page", "host"])
 def test_other_colours_of_tiles_are_those_of_new_ones(client: ClientPage, host: bool) -> None:
-    """A page has all values and changes colours by itself; a host is asked for others."""
+    """A page has all values and changes colours by itself; a host is requested others."""
     camera = CAMERAS["near"]
     first = {"scalars": "speed", "cmap": "viridis"}
     then = {"scalars": "depth", "cmap": "magma", "clim": (0.1, 0.6)}

@@ -306,7 +306,7 @@ def test_without_targets_of_floats_slices_are_the_same(
     export(waves(), tmp_path / "page.html", samples=9)
     script = HIDDEN.replace("HIDDEN", str(hidden))
     found, other = (texels(browser, tmp_path / "page.html", *more) for more in ((), (script,)))
-    # Graphics cards round to half precision by rules of their own.
+    # Graphics cards round to half precision by their own rules.
     np.testing.assert_allclose(other, found, rtol=2e-3, atol=2e-6)
 
 

@@ -628,7 +628,7 @@ def test_opacity_and_legend(make: Make) -> None:
 
 
 def busy(widget: FlowWidget) -> bool:
-    """Tell whether something is being made or sent."""
+    """Return whether something is being made or sent."""
     return any(
         worker.busy for feed in widget._views.feeds for worker in (feed._builds, feed._answers)
     )

@@ -36,7 +36,7 @@ DURATIONS = (120.0, 45.0, 20.0)
 STEPS, INSTANTS = 40, 30
 #: Nodes outwards, and around without the closing one.
 ROWS, COLUMNS = 65, 160
-#: Radius at which the shipped grid ends; the computed one goes on to ``FULL.outer``.
+#: Radius at which the shipped grid ends; the computed one continues to ``FULL.outer``.
 EDGE = 15.0
 
 

@@ -28,7 +28,7 @@ EXCUSED = {
 SETTLED_MS = 400
 #: Colours are those of a theme at once.
 STILL = "* { transition: none !important; animation: none !important; }"
-#: Lines of the console that are no fault of a page: of drivers, and of the theme's first visit.
+#: Lines of the console that are not faults of a page: of drivers, and of the theme's first visit.
 HARMLESS = ("GL Driver Message", "Automatic fallback to software", "Got invalid theme mode")
 
 
@@ -98,7 +98,7 @@ def look(page: Page, address: str) -> dict[str, list[str]]:
 
 
 def _leaves(url: str, address: str) -> bool:
-    """Tell whether a request goes elsewhere."""
+    """Return whether a request goes elsewhere."""
     return not url.startswith((address[: address.index("/", 8) + 1], "data:", "blob:"))
 
 

@@ -25,7 +25,7 @@ LOADS = {
     ),
 }
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
-#: What is no text: code, names of the reference, mathematics.
+#: What is not a text: code, names of the reference, mathematics.
 NO_WORDS = "pre, code, kbd, samp, script, style, svg, .math, .sig, .headerlink, dl.field-list dt"
 #: Pages that list names alone.
 LISTS = {"genindex.html", "py-modindex.html", "search.html"}
@@ -46,7 +46,7 @@ def anchors(page: Path) -> frozenset[str]:
 
 
 def lacks(page: Path, place: str) -> bool:
-    """Tell whether a page has no place of a name."""
+    """Return whether a page has no place of a name."""
     return bool(place) and page.suffix == ".html" and place not in anchors(page)
 
 
@@ -62,7 +62,7 @@ def references(page: Path) -> Iterator[tuple[Tag, str]]:
 
 
 def loads(tag: Tag) -> bool:
-    """Tell whether a browser fetches what an element names."""
+    """Return whether a browser fetches what an element names."""
     if tag.name == "link":
         return not WORDS_OF_HEAD & set(tag.get_attribute_list("rel"))
     return tag.name not in ("a", "area", "form")

@@ -1,4 +1,4 @@
-"""Two files beside each other: opened aside, followed, told, and linked."""
+"""Two files side by side: opened aside, followed, told, and linked."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class Place:
             yield socket
 
     async def status(self) -> int:
-        """Ask for the page on a connection of its own."""
+        """Ask for the page on its own connection."""
         async with (
             aiohttp.ClientSession() as http,
             http.get(f"http://127.0.0.1:{self.port}/") as answer,

@@ -58,7 +58,7 @@ def test_downloads_go_when_they_are_old_or_too_many(monkeypatch: pytest.MonkeyPa
         tokens.append(added(files))
     now[0] = 11.5
     assert [files.get(t) is not None for t in tokens] == [False, False, True]
-    # What was asked for just now stays for as long again.
+    # What was requested just now stays for as long again.
     now[0] = 21.0
     assert files.get(tokens[2]) is not None and len(files) == 1
     monkeypatch.setattr("flowtex.app.server.files.DOWNLOAD_BYTES", 150)

@@ -1,4 +1,4 @@
-"""A store that is handed on: its own objects, and nothing else."""
+"""A store that is passed on: its own objects, and nothing else."""
 
 from __future__ import annotations
 

@@ -291,7 +291,7 @@ async def test_a_page_cannot_add_to_the_state_and_learns_of_no_traceback(
         with pytest.raises(RuntimeError, match="Exception raised"):
             await link.call("trame.trigger", "broken", [], {})
         assert await link.call("trame.state.get")
-        # What is not packed though it says so is no fault of the program.
+        # What is not packed though it says so is not a fault of the program.
         session, packed = f"{here.bare}flowtex/session", {"Content-Encoding": "gzip"}
         async with here.http.post(session, data=b"abcd", headers=packed) as answer:
             assert answer.status == 400

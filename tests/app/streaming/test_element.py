@@ -92,7 +92,7 @@ def test_a_tile_is_made_when_it_is_asked_for(
         patch.setattr(Pyramid, "textures", None)
         with pytest.raises(web.HTTPNotFound):
             ask("0,0,0.0")
-    # What was wrong was the network, which is there again when it is asked for later.
+    # What was wrong was the network, which is there again when it is requested later.
     assert "tile/0/0/0/scalars/0" in ask("0,0,0.0")
     app.close()
     with pytest.raises(web.HTTPNotFound):

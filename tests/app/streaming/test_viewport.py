@@ -1,4 +1,4 @@
-"""What a view shows, one flow or two beside each other."""
+"""What a view shows, one flow or two side by side."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files of data of the Earth, real ones where they are at hand."""
+"""Files of data of the Earth, real ones where they are available."""
 
 from __future__ import annotations
 

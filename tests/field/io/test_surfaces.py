@@ -61,7 +61,7 @@ def box() -> Any:
 
 
 def bent() -> Any:
-    """The box as a structured grid whose cells are no bricks."""
+    """The box as a structured grid whose cells are not bricks."""
     grid = box().cast_to_structured_grid()
     x, y, z = np.asarray(grid.points, dtype=float).T
     grid.points = np.stack([x + 0.1 * y * z, y + 0.1 * z * x, z + 0.1 * x * y], axis=-1)

@@ -1,4 +1,4 @@
-"""Files that are read in a process of their own: the same fields, and what becomes of bad ends."""
+"""Files that are read in their own process: the same fields, and what becomes of bad ends."""
 
 from __future__ import annotations
 
