@@ -451,7 +451,7 @@ class Scene:
             try:
                 check_structure(self.field, self.settings)
             except SettingsError:
-                setattr(self.settings, name, 0)
+                setattr(self.settings, name, TABLE[name].default)
                 raise
         if name == "noise":
             if value == self._noise:

@@ -317,6 +317,12 @@ class Settings:
         span=(0, 50),
         switch=25,
     )
+    nullclines: bool = _row(
+        default=False,
+        text=(
+            "Mark where the velocity along x is zero (orange), and that along y (pink), on a plane."
+        ),
+    )
     show_level: bool = _row(
         "Colour by the level of detail: one hue per doubling of the grain.", default=False
     )

@@ -32,6 +32,7 @@ const USES: Record<string, (header: Header, rebuild: boolean) => boolean> = {
     rebuild && (slices.steps === 1 || settings.lines !== "pathlines"),
   critical_points: ({ structure }) => Boolean(structure?.parts.includes("critical")),
   separatrices: ({ structure }) => Boolean(structure?.parts.includes("separatrices")),
+  nullclines: ({ structure }) => Boolean(structure?.parts.includes("nullclines")),
   // These have a button in the bar.
   lod: () => false,
   show_level: () => false,

@@ -27,6 +27,10 @@ export interface Separatrix {
 
 /** Cells in which zeros are looked for along the longer side, steps of Newton's method and how far they may lead. */
 const [CELLS, NEWTON_STEPS, FAR_CELLS] = [160, 40, 2];
+/** Cells in which the lines of zeros are straight, along the longer side. */
+const NULLCLINE_CELLS = 256;
+/** Rate in the middle of such a line over the greatest at the corners of its cell, up to which it is zero. */
+const ZERO_RATE = 0.01;
 /**
  * Speed over that at the corners of its cell, at which a zero is one; tolerances for a zero
  * determinant and for equal positions.
@@ -91,6 +95,40 @@ export function fixedPoints(rate: Rate, [xs, ys]: Ends): FixedPoint[] {
     if (!points.some(({ at }) => distance(at, found.at) < SAME_CELLS * Math.hypot(...cell))) points.push(found);
   }
   return points.sort((one, two) => two.steepness - one.steepness);
+}
+
+/** Straight pieces of the lines in a box along which the rate of x is zero, and of those along which that of y is. */
+export function nullclines(rate: Rate, [xs, ys]: Ends): [Pair, Pair][][] {
+  const sides: Pair = [xs[1] - xs[0], ys[1] - ys[0]];
+  const [columns, rows] = sides.map((side) => Math.max(Math.round((NULLCLINE_CELLS * side) / Math.max(...sides)), 8));
+  const nodes = Array.from({ length: (rows + 1) * (columns + 1) }, (_, n) => {
+    const at: Pair = [xs[0] + (sides[0] * (n % (columns + 1))) / columns, ys[0] + (sides[1] * Math.floor(n / (columns + 1))) / rows];
+    return { at, value: rate(...at) };
+  });
+  return [0, 1].map((k) => {
+    const pieces: [Pair, Pair][] = [];
+    for (let n = 0; n < rows * columns; n += 1) {
+      const low = n + Math.floor(n / columns);
+      const [a, b, c, d] = [low, low + 1, low + columns + 1, low + columns + 2].map((node) => nodes[node]);
+      for (const corners of [[a, b, d], [a, d, c]]) {
+        // A side along which it is zero is a piece, and may be the border of the box.
+        const isSide = corners.filter(({ value }) => value[k] !== 0).length === 1;
+        const above = corners.map(({ value }) => (isSide ? value[k] !== 0 : value[k] > 0));
+        const alone = above.findIndex((one, m) => one !== above[(m + 1) % 3] && one !== above[(m + 2) % 3]);
+        if (alone < 0 || !corners.every(({ value }) => Number.isFinite(value[k]))) continue;
+        const one = corners[alone];
+        const [start, end] = [1, 2].map((m): Pair => {
+          const other = corners[(alone + m) % 3];
+          return along(one.at, difference(other.at, one.at), one.value[k] / (one.value[k] - other.value[k]));
+        });
+        // Where the rate jumps, or has a pole, it has no zero.
+        const left = Math.abs(rate(...along(start, difference(end, start), 0.5))[k]);
+        const sizes = corners.map(({ value }) => Math.abs(value[k]));
+        if (left < Math.min(...sizes) || left < ZERO_RATE * Math.max(...sizes)) pieces.push([start, end]);
+      }
+    }
+    return pieces;
+  });
 }
 
 /** The zero near a place, by Newton's method; none where the rates are zero along a line, or jump. */

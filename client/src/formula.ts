@@ -2,7 +2,7 @@
 // the trees, and flowtex/rendering/webgl/formula.py what else comes. As there is no finest level of a
 // formula, the source has tiles of every level, each a grid of nodes in the plane.
 
-import { closedOrbits, fixedPoints, separatrices, type Pair } from "./fixedpoints.ts";
+import { closedOrbits, fixedPoints, nullclines, separatrices, type Pair } from "./fixedpoints.ts";
 import { LINE, type FormulaHeader, type Header, type MarkKind, type NamedPart, type Settings, type TileHeader, type Tree } from "./protocol.ts";
 import { nameOf, type PlaceOf, type TileKey } from "./tilechoice.ts";
 import { subtract, toFrame, type Vector } from "./vectors.ts";
@@ -210,7 +210,7 @@ export class FormulaSource {
     return Promise.resolve(key ? this.tile(key, steps) : this.whole(steps));
   };
 
-  /** Fixed points, or separatrices and closed orbits, at a step; flowtex/rendering/webgl/marks.py says in which form. */
+  /** Fixed points, nullclines, or separatrices and closed orbits, at a step; flowtex/rendering/webgl/marks.py says in which form. */
   private marks(kind: MarkKind, step: number): NamedPart {
     const { grid, header } = this;
     const rate = grid.rate(header.slices.times[step], this.parameters);
@@ -218,7 +218,9 @@ export class FormulaSource {
     const kinds = header.structure?.kinds.map(({ name }) => name) ?? [];
     const row = (at: Pair, number: number) => [...grid.localOf(at), number];
     const rows: number[][] = [];
-    if (kind === "critical") rows.push(...points.map((point) => row(point.at, kinds.indexOf(point.kind))));
+    if (kind === "nullclines") {
+      nullclines(rate, grid.ends).forEach((pieces, component) => rows.push(...pieces.flat().map((at) => row(at, component))));
+    } else if (kind === "critical") rows.push(...points.map((point) => row(point.at, kinds.indexOf(point.kind))));
     else {
       closedOrbits(rate, grid.ends, points).forEach((orbit, n) => {
         rows.push(...orbit.map((at) => row(at, LINE.orbit + (n % 2))));

@@ -56,8 +56,8 @@ export class Legend {
     this.shownKinds = names;
     this.kinds.hidden = !names;
     this.kinds.replaceChildren(
-      ...kinds.map(({ name, color, turns }) => {
-        const mark = dom("i", { class: turns ? "turns" : "" });
+      ...kinds.map(({ name, color, turns, isLine }) => {
+        const mark = dom("i", { class: turns ? "turns" : isLine ? "line" : "" });
         mark.style.background = `rgb(${color.map((c) => Math.round(255 * c)).join(" ")})`;
         return dom("span", {}, [mark, name]);
       }),

@@ -52,6 +52,15 @@ export function shapesOf(points: ArrayLike<number>, lines: ArrayLike<number>, mo
   return shapes;
 }
 
+/** Both ends of the pieces of the nullcline of a component. */
+export function zeroPieces(rows: ArrayLike<number>, component: number): Float32Array {
+  const numbers: number[] = [];
+  for (let n = 0; n < rows.length; n += ROW) {
+    if (rows[n + 3] === component) numbers.push(rows[n], rows[n + 1], rows[n + 2]);
+  }
+  return Float32Array.from(numbers);
+}
+
 /** Both ends of the pieces of lines, and of dots, which begin where they end. */
 function ends(paths: number[][], areDots = false): Float32Array {
   const values = Float32Array.from(paths.flat());
@@ -114,12 +123,14 @@ export class Marks {
     return [part ? Number(settings[MARKS[kind]]) : 0, part];
   }
 
-  /** Names and colours of the kinds of points that are drawn, in the order of a legend. */
+  /** Names and colours of the kinds of points, and of nullclines, that are drawn, in the order of a legend. */
   legend(settings: Settings, moment: Moment): StructureHeader["kinds"] {
     const [most, part] = this.shown(settings, moment, "critical");
     const kinds = new Set<number>();
     for (let n = 0; n < Math.min(most, part?.shape[0] ?? 0); n += 1) kinds.add(Number(part?.data[ROW * n + 3]));
-    return (this.header.structure?.kinds ?? []).filter((_, n) => kinds.has(n));
+    const { kinds: all = [], nullclines = [] } = this.header.structure ?? {};
+    const lines = this.shown(settings, moment, "nullclines")[0] ? nullclines : [];
+    return [...all.filter((_, n) => kinds.has(n)), ...lines.map((line) => ({ ...line, isLine: true }))];
   }
 
   draw({ camera, anchor, width, height, ratio }: EarthView, settings: Settings, moment: Moment): void {
@@ -162,10 +173,10 @@ export class Marks {
 
   /** What is drawn, from below to above; its pieces lie in the buffer. */
   private layers(structure: StructureHeader, settings: Settings, moment: Moment): Layer[] {
-    const [[points, dots], [saddles, lines]] = (["critical", "separatrices"] as const).map((kind) =>
-      this.shown(settings, moment, kind),
+    const [[points, dots], [saddles, lines], [, zeros]] = (["critical", "separatrices", "nullclines"] as const).map(
+      (kind) => this.shown(settings, moment, kind),
     );
-    const key = JSON.stringify([points, dots?.digest, saddles, lines?.digest, nearest(moment)]);
+    const key = JSON.stringify([points, dots?.digest, saddles, lines?.digest, zeros?.digest, nearest(moment)]);
     if (this.drawn?.key === key) return this.drawn.layers;
     const shapes = shapesOf(dots?.data ?? [], lines?.data ?? [], { points, saddles });
     const { line, dot, rim, middle } = structure;
@@ -178,12 +189,15 @@ export class Marks {
       pieces.push(data);
       first += count;
     };
-    put(ends(Object.values(shapes.lines).flat()), rim, line[0], 0);
-    Object.entries(shapes.lines).forEach(([name, paths], n) => put(ends(paths), structure.lines[name], line[1], 1 + n));
+    const nullclines = structure.nullclines.map((_, n) => zeroPieces(zeros?.data ?? [], n));
+    nullclines.forEach((data) => put(data, rim, line[0], 0));
+    nullclines.forEach((data, n) => put(data, structure.nullclines[n].color, line[1], 1));
+    put(ends(Object.values(shapes.lines).flat()), rim, line[0], 1.5);
+    Object.entries(shapes.lines).forEach(([name, paths], n) => put(ends(paths), structure.lines[name], line[1], 2 + n));
     const places = structure.kinds.map((_, n) => shapes.points[n] ?? []);
-    put(ends(places, true), rim, dot[0], 4);
-    structure.kinds.forEach(({ color }, n) => put(ends([places[n]], true), color, dot[1], 5));
-    put(ends(places.filter((_, n) => structure.kinds[n].turns), true), middle, dot[2], 6);
+    put(ends(places, true), rim, dot[0], 5);
+    structure.kinds.forEach(({ color }, n) => put(ends([places[n]], true), color, dot[1], 6));
+    put(ends(places.filter((_, n) => structure.kinds[n].turns), true), middle, dot[2], 7);
     this.send(pieces);
     this.drawn = { key, layers };
     return layers;

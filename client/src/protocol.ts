@@ -162,7 +162,7 @@ export interface BodiesHeader {
 }
 
 /** Kinds of marks, by the names of their parts, and the settings that say how many are drawn of each. */
-export const MARKS = { critical: "critical_points", separatrices: "separatrices" } as const;
+export const MARKS = { critical: "critical_points", separatrices: "separatrices", nullclines: "nullclines" } as const;
 export type MarkKind = keyof typeof MARKS;
 
 /** How the number of a line describes it: as in Python. */
@@ -173,9 +173,11 @@ export interface StructureHeader {
   /** Kinds of parts that can be had. */
   parts: string[];
   /** In the order of a legend; the number in a part is that of its kind here. */
-  kinds: { name: string; color: number[]; turns: boolean }[];
+  kinds: { name: string; color: number[]; turns?: boolean; isLine?: boolean }[];
   /** Colours of lines by what they are. */
   lines: Record<string, number[]>;
+  /** Lines along which a component is zero, by its number. */
+  nullclines: { name: string; color: number[] }[];
   rim: number[];
   middle: number[];
   /** Diameters of the rim of a dot, its colour and its middle, and widths of a line's rim and colour, in pixels. */

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { closedOrbits, fixedPoints, separatrices, type Ends, type Rate } from "../src/fixedpoints.ts";
+import { closedOrbits, fixedPoints, nullclines, separatrices, type Ends, type Rate } from "../src/fixedpoints.ts";
 import { FormulaSource } from "../src/formula.ts";
 import { LINE, type FormulaHeader, type Header } from "../src/protocol.ts";
 
@@ -75,6 +75,17 @@ test("closed orbits are found where no separatrix ends", () => {
   assert.deepEqual(two.map((orbit) => Math.round(1e3 * Math.hypot(...orbit[0]))), [1000, 1500]);
   const none: Rate[] = [(x, y) => [-y, x], (x, y) => [y, -Math.sin(x)], (x, y) => [y, -Math.sin(x) - 0.2 * y], (x, y) => [-Math.sin(2 * x), -Math.cos(y)]];
   for (const rate of none) assert.deepEqual(orbitsOf(rate), []);
+});
+
+test("nullclines are where a rate is zero, and not where it jumps", () => {
+  const box: Ends = [[-2, 2], [-1.9, 2.1]];
+  const lengthOf = (pieces: [number, number][][]) => pieces.reduce((sum, [a, b]) => sum + Math.hypot(a[0] - b[0], a[1] - b[1]), 0);
+  const [circle, line] = nullclines((x, y) => [x * x + y * y - 1, y - x], box);
+  assert.ok(circle.flat().every((at) => Math.abs(Math.hypot(...at) - 1) < 1e-4));
+  assert.ok(Math.abs(lengthOf(circle) - 2 * Math.PI) < 1e-3);
+  assert.ok(Math.abs(lengthOf(line) - 3.9 * Math.SQRT2) < 1e-6);
+  assert.deepEqual(nullclines((x, y) => [1 / (x - 0.013), Math.sign(y - 0.017)], box), [[], []]);
+  assert.deepEqual(nullclines(() => [0, NaN], box), [[], []]);
 });
 
 test("the points and lines of a formula are those of Python", async () => {

@@ -17,6 +17,7 @@ from flowtex.rendering.structure_marks import (
     LINE_COLORS,
     LINE_PX,
     MIDDLE_COLOR,
+    NULLCLINE_COLORS,
     RIM_COLOR,
     RIM_OPACITY,
 )
@@ -52,7 +53,8 @@ class StructureOverlay(Overlay):
     @property
     def _wanted(self) -> tuple[int, ...]:
         scene, settings = self._scene, self._scene.settings
-        return id(scene.field), scene.step, settings.critical_points, settings.separatrices
+        counts = settings.critical_points, settings.separatrices, int(settings.nullclines)
+        return id(scene.field), scene.step, *counts
 
     def show(self, scene: Scene) -> None:
         """Follow the settings and the time of a scene."""
@@ -78,11 +80,21 @@ class StructureOverlay(Overlay):
                 self._found.add_done_callback(lambda _: notify())
             return
         self._shown = self._wanted
+        if settings.nullclines:
+            self._add_nullclines(scene.structure.nullclines(scene.step))
         if settings.separatrices:
             lines = scene.structure.lines(scene.step, settings.separatrices)
             self._add_lines_of(lines, scene.structure.orbits(scene.step))
         if settings.critical_points:
             self._add_points(scene.structure.points(scene.step)[: settings.critical_points])
+
+    def _add_nullclines(self, lines: Sequence[Floats]) -> None:
+        outer, inner = LINE_PX
+        whole = piece_mesh(*np.swapaxes(np.concatenate(lines), 0, 1))
+        self._add_lines(((0.0, whole),), outer, RIM_COLOR, RIM_OPACITY, above=0)
+        for pieces, color in zip(lines, NULLCLINE_COLORS.values(), strict=True):
+            mesh = piece_mesh(*np.swapaxes(pieces, 0, 1))
+            self._add_lines(((0.0, mesh),), inner, color, 1.0, above=1)
 
     def _add_lines_of(self, lines: Separatrices, orbits: Sequence[ClosedOrbit]) -> None:
         by_color: dict[str, list[Floats]] = {name: [] for name in LINE_COLORS}

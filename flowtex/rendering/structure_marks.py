@@ -26,6 +26,8 @@ KIND_MARKS = {
 }
 #: Lines along which the flow leaves saddles and comes to them, and closed orbits on which they end.
 LINE_COLORS = {"leaving": "#ff5a36", "coming": "#3b8bff", "closed orbit": "#35c46a"}
+#: Lines along which the components along x and y are zero.
+NULLCLINE_COLORS = {"u = 0": "#ffa733", "v = 0": "#ff9ad5"}
 #: Around dots and lines, and in the middle of rings.
 RIM_COLOR, RIM_OPACITY, MIDDLE_COLOR = "#101418", 0.85, "#ffffff"
 #: Diameters in pixels of the rim of a dot, of its colour, and of the middle of a ring; widths of

@@ -6,6 +6,7 @@ import threading
 from collections import OrderedDict
 from typing import Any
 
+from flowtex._util.array_types import Floats
 from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
 from flowtex.settings import TABLE, Settings, SettingsError
@@ -16,6 +17,7 @@ from flowtex.trace.structure import (
     CriticalPoints,
     Separatrices,
     critical_points,
+    nullclines,
     orbits_around,
     separatrices_between,
 )
@@ -23,9 +25,9 @@ from flowtex.trace.structure import (
 #: Nodes of a field up to which all of it is searched; of a larger one a coarser form is.
 SEARCHED_NODES = 1_000_000
 #: Settings that say how much of it is drawn: points, and saddles with their lines.
-STRUCTURE = ("critical_points", "separatrices")
+STRUCTURE = ("critical_points", "separatrices", "nullclines")
 #: Points of a step, and saddles whose lines are drawn, at most.
-MOST_POINTS, MOST_SADDLES = (int(TABLE[name].high or 0) for name in STRUCTURE)
+MOST_POINTS, MOST_SADDLES = (int(TABLE[name].high or 0) for name in STRUCTURE[:2])
 #: Length of a line that is drawn, as a share of the surface's extent, at most.
 DRAWN_EXTENTS = 2.0
 #: Points of a line that is drawn, two to a cell, at most.
@@ -81,6 +83,10 @@ class Structure:
                 _trim(self._orbits)
             return self._orbits[step]
 
+    def nullclines(self, step: int) -> tuple[Floats, Floats]:
+        """Return the pieces of the nullclines of a step, as :func:`nullclines` does."""
+        return nullclines(self._field.at_step(step))
+
     def find(self, step: int, points: int, saddles: int) -> None:
         """Have what shows this many points, and the lines of this many saddles, of a step."""
         if points:
@@ -119,8 +125,13 @@ def shared_structure(field: FlowField) -> Structure:
 def check_structure(field: FlowField, settings: Settings) -> None:
     """Raise a SettingsError where a structure is to be drawn that a field does not have."""
     for name in STRUCTURE:
-        if field.sign_free and (value := getattr(settings, name)):
-            msg = f"{name} is {value}; expected 0, because the field is sign-free"
+        if not (value := getattr(settings, name)):
+            continue
+        if field.sign_free:
+            msg = f"{name} is {value}; expected {TABLE[name].default}: the field is sign-free"
+            raise SettingsError(msg)
+        if name == "nullclines" and field.surface.frame is None:
+            msg = "nullclines is True; expected False: the surface is curved and has no x and y"
             raise SettingsError(msg)
 
 

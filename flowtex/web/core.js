@@ -219,23 +219,23 @@ let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*
 v2]=between3(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between3(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
 texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
 toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=6,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],MARKS={critical:"criti\
-cal_points",separatrices:"separatrices"},LINE={saddle:8,orbit:4,leaving:2},TYPES={float32:Float32Array,uint32:Uint32Array,
-float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({low,high,log}){
-if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.max(value,low)/
-low)/span}function legendLimits({low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(high)),told=value=>Math.
-abs(value)<least?0:value;return[told(low),told(high)]}function beyondEnds({low,high,choices,number}){let{least,most}=choices[number]??
-{least:low,most:high},rounding=ZERO_SHARE*(most-least);return[low>least+rounding,high<most-rounding]}function isSignFree(header){
-return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(name.split("/")[1])}function isOfStep(name,step,{
-scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(number)]?.steps??scalars.steps;return kind===
-"scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,row2,column,...rest]=name.split("/");return kind===
-"tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?
-new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape:shape2,digest}=info,
-Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expected ${Object.keys(TYPES).join(", ")}`);
-return{name,shape:shape2,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){let[infos,first]=infosOfFile(
-new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,info.bytes);return start+=
-info.bytes,info.differences===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){let first=4+
-new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(4,first))),
-first]}async function partOfText(info,text){return partOfPlanes(info,new Uint8Array(await unzipped(text).arrayBuffer()))}
+cal_points",separatrices:"separatrices",nullclines:"nullclines"},LINE={saddle:8,orbit:4,leaving:2},TYPES={float32:Float32Array,
+uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({
+low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.
+max(value,low)/low)/span}function legendLimits({low,high,log}){let least=log?0:ZERO_SHARE*Math.max(Math.abs(low),Math.abs(
+high)),told=value=>Math.abs(value)<least?0:value;return[told(low),told(high)]}function beyondEnds({low,high,choices,number}){
+let{least,most}=choices[number]??{least:low,most:high},rounding=ZERO_SHARE*(most-least);return[low>least+rounding,high<most-
+rounding]}function isSignFree(header){return header.variant.includes("FLOWTEX_SIGNFREE")}function stepOf(name){return Number(
+name.split("/")[1])}function isOfStep(name,step,{scalars}){let[kind,own,number="0"]=name.split("/"),steps=scalars.choices[Number(
+number)]?.steps??scalars.steps;return kind==="scalars"&&Number(own)===step&&steps>1}function tilePart(name){let[kind,level,
+row2,column,...rest]=name.split("/");return kind==="tile"?[[level,row2,column].join("/"),rest.join("/")]:null}function decoded(info,bytes){
+let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.byteOffset,bytes.byteLength):new Uint8Array(bytes),
+{name,dtype,shape:shape2,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(`a part has the type "${dtype}"; expect\
+ed ${Object.keys(TYPES).join(", ")}`);return{name,shape:shape2,digest,data:new Type(view.slice().buffer)}}function partsOfFile(file){
+let[infos,first]=infosOfFile(new Uint8Array(file)),start=first;return infos.map(info=>{let bytes=new Uint8Array(file,start,
+info.bytes);return start+=info.bytes,info.differences===void 0?decoded(info,bytes):partOfPlanes(info,bytes)})}function infosOfFile(file){
+let first=4+new DataView(file.buffer,file.byteOffset).getUint32(0,!0);return[JSON.parse(new TextDecoder().decode(file.subarray(
+4,first))),first]}async function partOfText(info,text){return partOfPlanes(info,new Uint8Array(await unzipped(text).arrayBuffer()))}
 function unzipped(text){let letters=atob(text),packed=new Uint8Array(letters.length);for(let n=0;n<packed.length;n+=1)packed[n]=
 letters.charCodeAt(n);return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")))}var UNSIGNED={
 1:Uint8Array,2:Uint16Array,4:Uint32Array};function partOfPlanes(info,planes){let{shape:shape2,differences=[0,0],scale:scale3=null}=info,
@@ -596,35 +596,36 @@ paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),
 noise_correction:({paper},rebuild)=>!!paper&&rebuild,lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,
 settings},rebuild)=>rebuild&&(slices.steps===1||settings.lines!=="pathlines"),critical_points:({structure})=>!!structure?.
-parts.includes("critical"),separatrices:({structure})=>!!structure?.parts.includes("separatrices"),lod:()=>!1,show_level:()=>!1};
-function isUseful({name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}function isInUse({
-needs=[]},settings){let holds=needs.map(([name,sign,value])=>settings[name]===value==(sign==="=="));return!needs.length||
-holds.includes(!0)}var Controls=class{element=dom("div",{class:"settings glass",hidden:"","aria-label":"Settings"});viewer;controls=new Map;rows=null;constructor(viewer){
-this.viewer=viewer}build(header){let rebuild=this.viewer.options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,
-header,rebuild)),kindOf=some=>JSON.stringify(some?.map(row2=>({...row2,default:null})));if(kindOf(rows)===kindOf(this.rows))
-return!1;this.rows=rows,this.controls.clear(),this.element.replaceChildren();for(let row2 of rows){let control=this.control(
-row2),{input,output}=control,name=dom("span",{class:"name"},[row2.label]),attributes={class:"row","data-setting":row2.name},
-line=dom("label",attributes,[name,...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.
-set(row2.name,{...control,row:row2,line}),this.element.append(line)}return!0}get parameters(){return[...this.controls.values()].
-filter(({row:row2})=>row2.name.startsWith("formula.")).map(({line})=>line)}update(){let{settings}=this.viewer;for(let[name,
-{row:row2,line,show}]of this.controls){name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.
-toggle("idle",isIdle),line.title=isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control===
-"checkbox"?this.switch(row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.
-slider(row2)}switch({name}){let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,
-"change",()=>this.viewer.choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.
-map(choice=>dom("option",{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,
-"change",()=>this.viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,
-low,high}){let[min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(
-max),step});return this.viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&
-this.viewer.choose(name,clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,
-fromSlider,min,max,step}=scaleOf2(row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"\
-range",...range}),output=dom("output"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(
-Number(shown))};this.viewer.lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="uniform"?"input":
-"change";return this.viewer.lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,show:shown=>{
-input.value=String(toSlider(Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,
-[least,most]=[low??0,high??1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?
-2**place:place;return whole?Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(
-toSlider),step=whole&&!logarithmic?1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
+parts.includes("critical"),separatrices:({structure})=>!!structure?.parts.includes("separatrices"),nullclines:({structure})=>!!structure?.
+parts.includes("nullclines"),lod:()=>!1,show_level:()=>!1};function isUseful({name,affects},header,rebuild){return USES[name]?.(
+header,rebuild)??(affects==="uniform"||rebuild)}function isInUse({needs=[]},settings){let holds=needs.map(([name,sign,value])=>settings[name]===
+value==(sign==="=="));return!needs.length||holds.includes(!0)}var Controls=class{element=dom("div",{class:"settings glas\
+s",hidden:"","aria-label":"Settings"});viewer;controls=new Map;rows=null;constructor(viewer){this.viewer=viewer}build(header){
+let rebuild=this.viewer.options.rebuild??!1,rows=header.table.filter(each=>isUseful(each,header,rebuild)),kindOf=some=>JSON.
+stringify(some?.map(row2=>({...row2,default:null})));if(kindOf(rows)===kindOf(this.rows))return!1;this.rows=rows,this.controls.
+clear(),this.element.replaceChildren();for(let row2 of rows){let control=this.control(row2),{input,output}=control,name=dom(
+"span",{class:"name"},[row2.label]),attributes={class:"row","data-setting":row2.name},line=dom("label",attributes,[name,
+...output?[output]:[],input]);line.classList.toggle("ranged",output!==void 0),this.controls.set(row2.name,{...control,row:row2,
+line}),this.element.append(line)}return!0}get parameters(){return[...this.controls.values()].filter(({row:row2})=>row2.name.
+startsWith("formula.")).map(({line})=>line)}update(){let{settings}=this.viewer;for(let[name,{row:row2,line,show}]of this.
+controls){name in settings&&show(settings[name]);let isIdle=!isInUse(row2,settings);line.classList.toggle("idle",isIdle),
+line.title=isIdle?`${row2.condition} ${row2.text}`:row2.text}}control(row2){return row2.control==="checkbox"?this.switch(
+row2):row2.control==="choice"?this.menu(row2):row2.control==="number"?this.numberField(row2):this.slider(row2)}switch({name}){
+let input=dom("input",{type:"checkbox",role:"switch"});return this.viewer.lifetime.listen(input,"change",()=>this.viewer.
+choose(name,input.checked)),{input,show:value=>{input.checked=!!value}}}menu({name,choices}){let options=choices.map(choice=>dom(
+"option",{value:choice},[choice])),input=dom("select",{},options);return this.viewer.lifetime.listen(input,"change",()=>this.
+viewer.choose(name,input.value)),{input,show:value=>{input.value=String(value)}}}numberField({name,whole,low,high}){let[
+min,max]=[low??0,high??1],step=whole?"1":"any",input=dom("input",{type:"number",min:String(min),max:String(max),step});return this.
+viewer.lifetime.listen(input,"change",()=>{let{valueAsNumber:value}=input;Number.isFinite(value)&&this.viewer.choose(name,
+clamp(value,min,max))}),{input,show:value=>{input.value=String(value)}}}slider(row2){let{toSlider,fromSlider,min,max,step}=scaleOf2(
+row2),range={min:String(min),max:String(max),step:String(step)},input=dom("input",{type:"range",...range}),output=dom("o\
+utput"),value=()=>fromSlider(Number(input.value)),write=shown=>{output.textContent=numberText(Number(shown))};this.viewer.
+lifetime.listen(input,"input",()=>write(value()));let kind=row2.affects==="uniform"?"input":"change";return this.viewer.
+lifetime.listen(input,kind,()=>this.viewer.choose(row2.name,value())),{input,output,show:shown=>{input.value=String(toSlider(
+Number(shown))),write(shown)}}}};function scaleOf2(row2){let{low,high,whole,logarithmic}=row2,[least,most]=[low??0,high??
+1],toSlider=value=>logarithmic?Math.log2(value):value,fromSlider=place=>{let value=logarithmic?2**place:place;return whole?
+Math.round(value):Number(clamp(value,least,most).toPrecision(3))},[min,max]=[least,most].map(toSlider),step=whole&&!logarithmic?
+1:(max-min)/SLIDER_STOPS;return{toSlider,fromSlider,min,max,step}}var CAMERA_KEYS={ArrowLeft:"left",ArrowRight:"right",ArrowUp:"up",ArrowDown:"down","+":"closer","=":"closer","-":"farthe\
 r",_:"farther",0:"whole",d:"detail",".":"next",",":"previous"},PLAY_KEY=" ",FULLSCREEN_KEY="f",CLOSE_KEY="Escape",DIRECTIONS={
 left:[-1,0],right:[1,0],up:[0,1],down:[0,-1]};function hasModifier(event){return event.ctrlKey||event.metaKey||event.altKey}
 function forwardKeys(root,event){event.target===document.body&&!event.defaultPrevented&&!root.dispatchEvent(new KeyboardEvent(
@@ -638,12 +639,12 @@ header.scalars),ticks=legendTicks(header).map(({value,text})=>{let tick=dom("spa
 0,1);tick.style.left=`${100*share}%`;let isAtEnd=Math.abs(share-.5)>.5-END_SHARE;return tick.style.transform=`translateX\
 (${isAtEnd?-100*share:-50}%)`,tick});this.element.replaceChildren(dom("div",{class:"name"},[unit2?`${label} (${unit2})`:
 label]),ramp,dom("div",{class:"ticks"},ticks))}showKinds(kinds){let names=kinds.map(({name})=>name).join();names!==this.
-shownKinds&&(this.shownKinds=names,this.kinds.hidden=!names,this.kinds.replaceChildren(...kinds.map(({name,color,turns})=>{
-let mark=dom("i",{class:turns?"turns":""});return mark.style.background=`rgb(${color.map(c=>Math.round(255*c)).join(" ")}\
-)`,dom("span",{},[mark,name])})))}point(header,value=NaN){this.mark.hidden=!header||!Number.isFinite(value),!(!header||this.
-mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(header.scalars)(value),0,1)}%`)}};function legendTicks({scalars}){
-let[low,high]=legendLimits(scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.reduce((sum,{
-text})=>sum+text.length,0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
+shownKinds&&(this.shownKinds=names,this.kinds.hidden=!names,this.kinds.replaceChildren(...kinds.map(({name,color,turns,isLine})=>{
+let mark=dom("i",{class:turns?"turns":isLine?"line":""});return mark.style.background=`rgb(${color.map(c=>Math.round(255*
+c)).join(" ")})`,dom("span",{},[mark,name])})))}point(header,value=NaN){this.mark.hidden=!header||!Number.isFinite(value),
+!(!header||this.mark.hidden)&&(this.mark.style.left=`${100*clamp(shareOf(header.scalars)(value),0,1)}%`)}};function legendTicks({
+scalars}){let[low,high]=legendLimits(scalars),ticks=[5,4,3].map(most=>ticksOf(low,high,scalars.log,most)),size=some=>some.
+reduce((sum,{text})=>sum+text.length,0);return ticks.find(some=>size(some)<=MOST_CHARACTERS)??ticks[2]}var HEAD={apart:90,length:14,half:5},POINT_RADIUS=6,FREE_RADIUS=20,textOf2=line=>line.map(place=>place.map(v2=>v2.toFixed(
 1)).join()).join(" ");function arrowHeads(line,apart=HEAD.apart){let heads=[],due=0;for(let n=line.length-1;n>0;n-=1){let[
 [ax,ay],[bx,by]]=[line[n-1],line[n]],size=Math.hypot(bx-ax,by-ay);if(!size)continue;let[ux,uy]=[(bx-ax)/size,(by-ay)/size];
 for(;due<size;due+=apart){let[x,y]=[bx-due*ux,by-due*uy],[left,low]=[x-HEAD.length*ux,y-HEAD.length*uy],[wide,tall]=[-HEAD.
@@ -966,6 +967,7 @@ let shape2=document.createElementNS(SVG3,tag);for(let[name,value]of Object.entri
 .kinds:not([hidden]) + .legend { margin-left: 10px; }
 .kinds span { display: flex; align-items: center; gap: 5px; white-space: nowrap; }
 .kinds i { width: 9px; height: 9px; border-radius: 50%; box-shadow: 0 0 0 1.5px rgb(16 20 24 / 0.85); }
+.kinds .line { width: 14px; height: 3px; border-radius: 1px; }
 .kinds .turns::after { content: ""; display: block; width: 4px; height: 4px; margin: 2.5px; border-radius: 50%; backgrou\
 nd: #fff; }
 .ramp { position: relative; height: 8px; border-radius: 4px; box-shadow: inset 0 0 0 1px var(--edge); }
@@ -1280,57 +1282,68 @@ camera.pan(x,y),viewer.reportCamera()}else if(command==="closer"||command==="far
 camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(command==="whole")viewer.reset();else if(command===
 "next"||command==="previous")viewer.step(command==="next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.
 lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.
-follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[CELLS,NEWTON_STEPS,FAR_CELLS]=[160,40,2],[ZERO_SHARE2,SINGULAR,SAME_CELLS]=[1e-7,1e-7,.001],CENTRE_SHARE=.05,[STEPS2,
-MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[8,.08,2],[MOST_AROUND,RATIO,APART]=[8,1.2,.03],[MOVED,
-HALVINGS]=[.05,24],difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[a[0]+step*way[0],a[1]+step*way[1]],distance=(a,b)=>Math.
-hypot(a[0]-b[0],a[1]-b[1]);function gradient(rate,[x,y],[dx,dy]){let[east,west,north,south]=[rate(x+dx,y),rate(x-dx,y),rate(
-x,y+dy),rate(x,y-dy)];return[0,1].flatMap(k=>[(east[k]-west[k])/(2*dx),(north[k]-south[k])/(2*dy)])}function described(at,[
-a,b,c,d]){let[trace,steepness]=[a+d,Math.abs(a*d-b*c)],square=trace**2/4-(a*d-b*c),root=Math.sqrt(Math.abs(square)),turned=Math.
-abs(trace)/2<=CENTRE_SHARE*root?"centre":trace>0?"spiral source":"spiral sink",kind=a*d-b*c<0?"saddle":square<0?turned:trace>
-0?"source":"sink",way=value=>{let[one,two]=[[b,value-a],[value-d,c]],[x,y]=Math.hypot(...one)>Math.hypot(...two)?one:two;
-return[x/Math.hypot(x,y),y/Math.hypot(x,y)]},ways=kind==="saddle"?{leaving:way(trace/2+root),coming:way(trace/2-root)}:null;
-return{at,kind,steepness,ways}}function fixedPoints(rate,[xs,ys]){let sides=[xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.
-map(side=>Math.max(Math.round(CELLS*side/Math.max(...sides)),8)),cell=[sides[0]/columns,sides[1]/rows],nodes=Array.from(
-{length:(rows+1)*(columns+1)},(_,n)=>rate(xs[0]+cell[0]*(n%(columns+1)),ys[0]+cell[1]*Math.floor(n/(columns+1)))),points=[];
-for(let n=0;n<rows*columns;n+=1){let low=n+Math.floor(n/columns),corners=[low,low+1,low+columns+1,low+columns+2].map(node=>nodes[node]);
-if(![0,1].every(k=>corners.some(v2=>v2[k]>=0)&&corners.some(v2=>v2[k]<=0)))continue;let middle=[xs[0]+cell[0]*(n%columns+
-.5),ys[0]+cell[1]*(Math.floor(n/columns)+.5)],found=zero(rate,middle,cell,Math.max(...corners.map(v2=>Math.hypot(...v2)))),
-isInside=found&&[xs,ys].every(([least,most],k)=>found.at[k]>=least-SAME_CELLS*cell[k]&&found.at[k]<=most+SAME_CELLS*cell[k]);
-!found||!isInside||points.some(({at})=>distance(at,found.at)<SAME_CELLS*Math.hypot(...cell))||points.push(found)}return points.
-sort((one,two)=>two.steepness-one.steepness)}function zero(rate,start,cell,speed){let small=[1e-5*cell[0],1e-5*cell[1]],
-at=start;for(let n=0;n<NEWTON_STEPS;n+=1){let[u,v2]=rate(...at),matrix=gradient(rate,at,small),[a,b,c,d]=matrix,determinant2=a*
-d-b*c;if(!(Math.abs(determinant2)>SINGULAR*(a*a+b*b+c*c+d*d)))return null;let step=[(b*v2-d*u)/determinant2,(c*u-a*v2)/determinant2],
-share=Math.min(1,1/Math.max(Math.abs(step[0]/cell[0]),Math.abs(step[1]/cell[1]),1e-30));if(at=along(at,step,share),!(Math.
-max(...difference(at,start).map((x,k)=>Math.abs(x/cell[k])))<FAR_CELLS))return null;if(Math.hypot(step[0]/cell[0],step[1]/
-cell[1])<1e-10)break}return Math.hypot(...rate(...at))<=ZERO_SHARE2*speed?described(at,gradient(rate,at,small)):null}function separatrices(rate,ends2,points,saddles){
-let step=Math.hypot(...ends2.map(([low,high])=>high-low))/STEPS2;return saddles.flatMap(saddle=>{let{ways}=saddle;return ways?
-[!0,!1].flatMap(leaves=>[1,-1].map(side=>{let way=leaves?ways.leaving:ways.coming,begin=along(saddle.at,way,side*BEGIN*step),
-path=followed(rate,ends2,points,[saddle.at,begin],leaves?step:-step),closed=turnOf(path,step,CLOSED),wound=turnOf(path,step,
-WOUND);return{path:wound?path.slice(0,2*wound[1]-wound[0]+1):path,saddle,leaves,orbit:closed&&path.slice(closed[0],closed[1]+
-1)}})):[]})}function closedOrbits(rate,ends2,points){let diagonal=Math.hypot(...ends2.map(([low,high])=>high-low)),step=diagonal/
-STEPS2,found=[];for(let{at:[x,y]}of points.filter(({ways})=>!ways).slice(0,MOST_AROUND)){let turn=(place,way)=>{let side=Math.
-sign(way*rate(x+place,y)[1]),isBack=path2=>{let[before2,after2]=path2.slice(-2).map(at=>side*(at[1]-y));return path2.length>
-LEAST_TURN&&before2<0&&after2>=0&&path2[path2.length-1][0]>x},path=followed(rate,ends2,points,[[x+place,y]],way*step,isBack);
-if(path.length<2||!isBack(path))return null;let[before,after]=path.slice(-2);return[...path.slice(0,-1),along(before,difference(
-after,before),(y-before[1])/(after[1]-before[1]))]},moved=(place,way)=>(turn(place,way)?.at(-1)?.[0]??NaN)-x-place,last=null;
-for(let place=2*step;x+place<ends2[0][1];place+=Math.min((RATIO-1)*place,APART*diagonal)){let forward=moved(place,1),out=Number.
-isNaN(forward)?-moved(place,-1):forward;if(!(Math.abs(out)<=Math.max(MOVED*place,CLOSED*step))){if(last&&last.out*out<0){
-let way=Math.sign(last.out),[low,high]=[last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+high)/2;moved(middle,
-way)>0?low=middle:high=middle}let orbit=turn(low,way),isNew=orbit&&!found.some(other=>other.some(at=>distance(at,orbit[0])<
-2*step));orbit&&isNew&&distance(orbit[0],orbit[orbit.length-1])<CLOSED*step&&found.push(orbit)}last=Number.isNaN(out)?null:
-{place,out}}}}return found}function followed(rate,ends2,points,path,step,isEnd=()=>!1){let unit2=at=>{let[u,v2]=rate(...at),
-size=Math.hypot(u,v2);return[u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<MOST_STEPS;n+=1){let at=path[path.
-length-1],one=unit2(at),two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/2)),four=unit2(along(at,three,step)),
-next=along(at,[0,1].map(k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(Number.isFinite))return path;let share=Math.
-min(...ends2.map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:NaN;return Number.isNaN(beyond)?1:Math.max(
-(beyond-at[k])/(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),share)),share<1||isEnd(path))return path;
-let end=points.find(point=>distance(point.at,next)<near);if(end&&isAway)return[...path,end.at];isAway||=!points.some(point=>distance(
-point.at,next)<2*near)}return path}function turnOf(path,step,apart){let around2=Math.max(.75,1.25*apart)*step,places=new Map,
-cellOf=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.length;n+=1){let[i,j]=cellOf(path[n]);for(let m=0;m<9;m+=
-1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>
-around2||before+1>=path.length)continue;let way=difference(path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],
-path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i}\
- ${j}`;places.set(name,[...places.get(name)??[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,OPERATIONS=new Map(Object.
+follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[CELLS,NEWTON_STEPS,FAR_CELLS]=[160,40,2],NULLCLINE_CELLS=256,ZERO_RATE=.01,[ZERO_SHARE2,SINGULAR,SAME_CELLS]=[1e-7,1e-7,
+.001],CENTRE_SHARE=.05,[STEPS2,MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[8,.08,2],[MOST_AROUND,
+RATIO,APART]=[8,1.2,.03],[MOVED,HALVINGS]=[.05,24],difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[a[0]+step*
+way[0],a[1]+step*way[1]],distance=(a,b)=>Math.hypot(a[0]-b[0],a[1]-b[1]);function gradient(rate,[x,y],[dx,dy]){let[east,
+west,north,south]=[rate(x+dx,y),rate(x-dx,y),rate(x,y+dy),rate(x,y-dy)];return[0,1].flatMap(k=>[(east[k]-west[k])/(2*dx),
+(north[k]-south[k])/(2*dy)])}function described(at,[a,b,c,d]){let[trace,steepness]=[a+d,Math.abs(a*d-b*c)],square=trace**
+2/4-(a*d-b*c),root=Math.sqrt(Math.abs(square)),turned=Math.abs(trace)/2<=CENTRE_SHARE*root?"centre":trace>0?"spiral sour\
+ce":"spiral sink",kind=a*d-b*c<0?"saddle":square<0?turned:trace>0?"source":"sink",way=value=>{let[one,two]=[[b,value-a],
+[value-d,c]],[x,y]=Math.hypot(...one)>Math.hypot(...two)?one:two;return[x/Math.hypot(x,y),y/Math.hypot(x,y)]},ways=kind===
+"saddle"?{leaving:way(trace/2+root),coming:way(trace/2-root)}:null;return{at,kind,steepness,ways}}function fixedPoints(rate,[
+xs,ys]){let sides=[xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.map(side=>Math.max(Math.round(CELLS*side/Math.max(...sides)),
+8)),cell=[sides[0]/columns,sides[1]/rows],nodes=Array.from({length:(rows+1)*(columns+1)},(_,n)=>rate(xs[0]+cell[0]*(n%(columns+
+1)),ys[0]+cell[1]*Math.floor(n/(columns+1)))),points=[];for(let n=0;n<rows*columns;n+=1){let low=n+Math.floor(n/columns),
+corners=[low,low+1,low+columns+1,low+columns+2].map(node=>nodes[node]);if(![0,1].every(k=>corners.some(v2=>v2[k]>=0)&&corners.
+some(v2=>v2[k]<=0)))continue;let middle=[xs[0]+cell[0]*(n%columns+.5),ys[0]+cell[1]*(Math.floor(n/columns)+.5)],found=zero(
+rate,middle,cell,Math.max(...corners.map(v2=>Math.hypot(...v2)))),isInside=found&&[xs,ys].every(([least,most],k)=>found.
+at[k]>=least-SAME_CELLS*cell[k]&&found.at[k]<=most+SAME_CELLS*cell[k]);!found||!isInside||points.some(({at})=>distance(at,
+found.at)<SAME_CELLS*Math.hypot(...cell))||points.push(found)}return points.sort((one,two)=>two.steepness-one.steepness)}
+function nullclines(rate,[xs,ys]){let sides=[xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.map(side=>Math.max(Math.round(
+NULLCLINE_CELLS*side/Math.max(...sides)),8)),nodes=Array.from({length:(rows+1)*(columns+1)},(_,n)=>{let at=[xs[0]+sides[0]*
+(n%(columns+1))/columns,ys[0]+sides[1]*Math.floor(n/(columns+1))/rows];return{at,value:rate(...at)}});return[0,1].map(k=>{
+let pieces=[];for(let n=0;n<rows*columns;n+=1){let low=n+Math.floor(n/columns),[a,b,c,d]=[low,low+1,low+columns+1,low+columns+
+2].map(node=>nodes[node]);for(let corners of[[a,b,d],[a,d,c]]){let isSide=corners.filter(({value})=>value[k]!==0).length===
+1,above=corners.map(({value})=>isSide?value[k]!==0:value[k]>0),alone=above.findIndex((one2,m)=>one2!==above[(m+1)%3]&&one2!==
+above[(m+2)%3]);if(alone<0||!corners.every(({value})=>Number.isFinite(value[k])))continue;let one=corners[alone],[start,
+end]=[1,2].map(m=>{let other=corners[(alone+m)%3];return along(one.at,difference(other.at,one.at),one.value[k]/(one.value[k]-
+other.value[k]))}),left=Math.abs(rate(...along(start,difference(end,start),.5))[k]),sizes=corners.map(({value})=>Math.abs(
+value[k]));(left<Math.min(...sizes)||left<ZERO_RATE*Math.max(...sizes))&&pieces.push([start,end])}}return pieces})}function zero(rate,start,cell,speed){
+let small=[1e-5*cell[0],1e-5*cell[1]],at=start;for(let n=0;n<NEWTON_STEPS;n+=1){let[u,v2]=rate(...at),matrix=gradient(rate,
+at,small),[a,b,c,d]=matrix,determinant2=a*d-b*c;if(!(Math.abs(determinant2)>SINGULAR*(a*a+b*b+c*c+d*d)))return null;let step=[
+(b*v2-d*u)/determinant2,(c*u-a*v2)/determinant2],share=Math.min(1,1/Math.max(Math.abs(step[0]/cell[0]),Math.abs(step[1]/
+cell[1]),1e-30));if(at=along(at,step,share),!(Math.max(...difference(at,start).map((x,k)=>Math.abs(x/cell[k])))<FAR_CELLS))
+return null;if(Math.hypot(step[0]/cell[0],step[1]/cell[1])<1e-10)break}return Math.hypot(...rate(...at))<=ZERO_SHARE2*speed?
+described(at,gradient(rate,at,small)):null}function separatrices(rate,ends2,points,saddles){let step=Math.hypot(...ends2.
+map(([low,high])=>high-low))/STEPS2;return saddles.flatMap(saddle=>{let{ways}=saddle;return ways?[!0,!1].flatMap(leaves=>[
+1,-1].map(side=>{let way=leaves?ways.leaving:ways.coming,begin=along(saddle.at,way,side*BEGIN*step),path=followed(rate,ends2,
+points,[saddle.at,begin],leaves?step:-step),closed=turnOf(path,step,CLOSED),wound=turnOf(path,step,WOUND);return{path:wound?
+path.slice(0,2*wound[1]-wound[0]+1):path,saddle,leaves,orbit:closed&&path.slice(closed[0],closed[1]+1)}})):[]})}function closedOrbits(rate,ends2,points){
+let diagonal=Math.hypot(...ends2.map(([low,high])=>high-low)),step=diagonal/STEPS2,found=[];for(let{at:[x,y]}of points.filter(
+({ways})=>!ways).slice(0,MOST_AROUND)){let turn=(place,way)=>{let side=Math.sign(way*rate(x+place,y)[1]),isBack=path2=>{
+let[before2,after2]=path2.slice(-2).map(at=>side*(at[1]-y));return path2.length>LEAST_TURN&&before2<0&&after2>=0&&path2[path2.
+length-1][0]>x},path=followed(rate,ends2,points,[[x+place,y]],way*step,isBack);if(path.length<2||!isBack(path))return null;
+let[before,after]=path.slice(-2);return[...path.slice(0,-1),along(before,difference(after,before),(y-before[1])/(after[1]-
+before[1]))]},moved=(place,way)=>(turn(place,way)?.at(-1)?.[0]??NaN)-x-place,last=null;for(let place=2*step;x+place<ends2[0][1];place+=
+Math.min((RATIO-1)*place,APART*diagonal)){let forward=moved(place,1),out=Number.isNaN(forward)?-moved(place,-1):forward;
+if(!(Math.abs(out)<=Math.max(MOVED*place,CLOSED*step))){if(last&&last.out*out<0){let way=Math.sign(last.out),[low,high]=[
+last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+high)/2;moved(middle,way)>0?low=middle:high=middle}let orbit=turn(
+low,way),isNew=orbit&&!found.some(other=>other.some(at=>distance(at,orbit[0])<2*step));orbit&&isNew&&distance(orbit[0],orbit[orbit.
+length-1])<CLOSED*step&&found.push(orbit)}last=Number.isNaN(out)?null:{place,out}}}}return found}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
+let unit2=at=>{let[u,v2]=rate(...at),size=Math.hypot(u,v2);return[u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<
+MOST_STEPS;n+=1){let at=path[path.length-1],one=unit2(at),two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/
+2)),four=unit2(along(at,three,step)),next=along(at,[0,1].map(k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(
+Number.isFinite))return path;let share=Math.min(...ends2.map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:
+NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),
+share)),share<1||isEnd(path))return path;let end=points.find(point=>distance(point.at,next)<near);if(end&&isAway)return[
+...path,end.at];isAway||=!points.some(point=>distance(point.at,next)<2*near)}return path}function turnOf(path,step,apart){
+let around2=Math.max(.75,1.25*apart)*step,places=new Map,cellOf=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.
+length;n+=1){let[i,j]=cellOf(path[n]);for(let m=0;m<9;m+=1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-
+1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>around2||before+1>=path.length)continue;let way=difference(
+path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/
+Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;places.set(name,[...places.get(name)??
+[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,OPERATIONS=new Map(Object.
 entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
 b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.min(a,b),
 max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
@@ -1367,36 +1380,37 @@ slice(PARAMETER.length),Number(value)]));let before=this.state;return this.state
 header.geometry,this.parameters]),before!==this.state}load=(key,steps,_signal,_has,mark)=>mark?Promise.resolve(steps.map(
 step=>this.marks(mark,step))):Promise.resolve(key?this.tile(key,steps):this.whole(steps));marks(kind,step){let{grid:grid2,
 header}=this,rate=grid2.rate(header.slices.times[step],this.parameters),points=fixedPoints(rate,grid2.ends),kinds=header.
-structure?.kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid2.localOf(at),number],rows=[];if(kind==="critical")rows.
-push(...points.map(point=>row2(point.at,kinds.indexOf(point.kind))));else{closedOrbits(rate,grid2.ends,points).forEach((orbit,n)=>{
-rows.push(...orbit.map(at=>row2(at,LINE.orbit+n%2)))});let saddles=points.filter(({ways})=>ways).slice(0,MOST_SADDLES);separatrices(
-rate,grid2.ends,points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.saddle*saddles.indexOf(saddle)+
-LINE.leaving*Number(leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??[]).map(at=>row2(at,number+
-LINE.orbit)))})}return this.named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[rows.length,4]})}whole(steps){
-let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,from:[0,0],to:[shape2[0]-
-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
-return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
-shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
-start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
-w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
-{mesh,pyramid,geometry,slices}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("the levels of the formula are \
-missing");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*
-cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map(
-(at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),
-shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),share=2**
--grid2.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,
-size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),columns:texels(
-shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.length),extra:[],
-unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(
-n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`til\
-e/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);
-return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}\
-unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),
-...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
-size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.
-tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(
-key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,
-columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+structure?.kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid2.localOf(at),number],rows=[];if(kind==="nullclines")
+nullclines(rate,grid2.ends).forEach((pieces,component)=>rows.push(...pieces.flat().map(at=>row2(at,component))));else if(kind===
+"critical")rows.push(...points.map(point=>row2(point.at,kinds.indexOf(point.kind))));else{closedOrbits(rate,grid2.ends,points).
+forEach((orbit,n)=>{rows.push(...orbit.map(at=>row2(at,LINE.orbit+n%2)))});let saddles=points.filter(({ways})=>ways).slice(
+0,MOST_SADDLES);separatrices(rate,grid2.ends,points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.saddle*
+saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??
+[]).map(at=>row2(at,number+LINE.orbit)))})}return this.named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[
+rows.length,4]})}whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts(
+{level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.
+state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(
+window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=
+1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,start+shape2[1]),j*shape2[1])}let values=`scalar\
+s/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flow/${step}`,flow),this.named(`${prefix}${values}`,
+{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,{mesh,pyramid,geometry,slices}=header,{trace}=slices;
+if(!pyramid||!trace)throw new Error("the levels of the formula are missing");let[level,...place]=key,cells=pyramid.tileBlocks*
+mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-
+1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-
+from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,
+to},{middle,part:padded}=grid2.padded(window2),share=2**-grid2.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.
+pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,
+shape:shape2,rows:texels(shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.
+sides*(slices.lags.length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,
+trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,
+unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.
+parts(window2,steps,drawn,shape2,prefix);return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(
+`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),
+this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.
+map(n=>Math.ceil((n-1)/mesh.tileCells)),size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),
+place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[
+Math.floor(block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.
+set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
@@ -1655,10 +1669,11 @@ leaving:[],coming:[],"closed orbit":[]},points:[]};for(let n=0;n<Math.min(points
 n+3];(shapes.points[kind]??=[]).push(...[0,1,2].map(k=>points[ROW*n+k]))}let last=NaN;for(let n=0;n<lines.length/ROW;n+=
 1){let number=lines[ROW*n+3];if(number>=LINE.saddle*most.saddles)continue;let turns=number&LINE.orbit?"closed orbit":number&
 LINE.leaving?"leaving":"coming";number!==last&&shapes.lines[turns].push([]),last=number;let path=shapes.lines[turns];path[path.
-length-1].push(...[0,1,2].map(k=>lines[ROW*n+k]))}return shapes}function ends(paths,areDots=!1){let values=Float32Array.
-from(paths.flat());if(areDots)return atEnds(values,Array.from({length:2*values.length/3},(_,n)=>n>>1),3);let pieces=[],first=0;
-for(let path of paths){let count2=path.length/3;for(let n=first;n<first+count2-1;n+=1)pieces.push(n,n+1);first+=count2}return atEnds(
-values,pieces,3)}var Marks=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(graphics,header,parts){
+length-1].push(...[0,1,2].map(k=>lines[ROW*n+k]))}return shapes}function zeroPieces(rows,component){let numbers=[];for(let n=0;n<
+rows.length;n+=ROW)rows[n+3]===component&&numbers.push(rows[n],rows[n+1],rows[n+2]);return Float32Array.from(numbers)}function ends(paths,areDots=!1){
+let values=Float32Array.from(paths.flat());if(areDots)return atEnds(values,Array.from({length:2*values.length/3},(_,n)=>n>>
+1),3);let pieces=[],first=0;for(let path of paths){let count2=path.length/3;for(let n=first;n<first+count2-1;n+=1)pieces.
+push(n,n+1);first+=count2}return atEnds(values,pieces,3)}var Marks=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}kinds(settings){let there=this.header.structure?.parts??[];return Object.
 keys(MARKS).filter(kind=>there.includes(kind)&&Number(settings[MARKS[kind]])>0)}lacking(settings,moment){let step=nearest(
 moment);return this.kinds(settings).flatMap(kind=>this.parts.has(`${kind}/${step}`)?[]:[[kind,step]])}get program(){let{
@@ -1666,37 +1681,40 @@ lineVertex,lineFragment}=this.header.shaders;return this.graphics.programs.get(l
 LOWTEX_MARK")}isReady(settings){return!this.kinds(settings).length||this.program.ready}shown(settings,moment,kind){let part=this.
 kinds(settings).includes(kind)?this.parts.get(`${kind}/${nearest(moment)}`):void 0;return[part?Number(settings[MARKS[kind]]):
 0,part]}legend(settings,moment){let[most,part]=this.shown(settings,moment,"critical"),kinds=new Set;for(let n=0;n<Math.min(
-most,part?.shape[0]??0);n+=1)kinds.add(Number(part?.data[ROW*n+3]));return(this.header.structure?.kinds??[]).filter((_,n)=>kinds.
-has(n))}draw({camera,anchor,width,height,ratio},settings,moment){let{header,graphics}=this,{structure,geometry}=header,layers=structure&&
-this.layers(structure,settings,moment);if(!structure||!layers?.length)return;let gl=graphics.context,[x,y,z,w]=camera.eye,
-eye=toFrame(geometry.frame,subtract2([x,y,z],scale2(geometry.center,w))),wider=ratio*clamp(Math.sqrt(height/ratio/structure.
-usualHeight),...structure.widthRange),distance2=w?1:camera.distance/Math.hypot(...eye);gl.bindVertexArray(this.array),gl.
-enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),gl.depthFunc(gl.LEQUAL);let program=this.
-program;graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),u_anchor:anchor,u_eye:[...subtract2(eye,
-scale2(anchor,w)),w],u_picture:[width,height],u_horizon:[0,0,0,1]}),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer);for(let{first,
-count:count2,color,width:thickness,above}of layers){let[r,g,b,opacity=1]=color;graphics.programs.use(program,{u_width:thickness*
-wider,u_nearer:NEARER*distance2*(1+ABOVE_SHARE*above)});for(let end of[0,1])gl.vertexAttribPointer(end,3,gl.FLOAT,!1,ENDS_BYTES2,
-ENDS_BYTES2*(first+end/2)),gl.vertexAttrib4f(2+end,r,g,b,opacity);gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count2)}gl.
-bindVertexArray(null),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND)}layers(structure,settings,moment){let[[points,dots],[saddles,
-lines]]=["critical","separatrices"].map(kind=>this.shown(settings,moment,kind)),key=JSON.stringify([points,dots?.digest,
-saddles,lines?.digest,nearest(moment)]);if(this.drawn?.key===key)return this.drawn.layers;let shapes=shapesOf(dots?.data??
-[],lines?.data??[],{points,saddles}),{line,dot:dot3,rim,middle}=structure,layers=[],pieces=[],first=0,put=(data,color,width,above)=>{
-let count2=data.length/6;count2&&layers.push({first,count:count2,color,width,above}),pieces.push(data),first+=count2};put(
-ends(Object.values(shapes.lines).flat()),rim,line[0],0),Object.entries(shapes.lines).forEach(([name,paths],n)=>put(ends(
-paths),structure.lines[name],line[1],1+n));let places=structure.kinds.map((_,n)=>shapes.points[n]??[]);return put(ends(places,
-!0),rim,dot3[0],4),structure.kinds.forEach(({color},n)=>put(ends([places[n]],!0),color,dot3[1],5)),put(ends(places.filter(
-(_,n)=>structure.kinds[n].turns),!0),middle,dot3[2],6),this.send(pieces),this.drawn={key,layers},layers}send(pieces){let{
-graphics}=this,gl=graphics.context;this.array??=graphics.counted(gl.createVertexArray()),this.buffer??=graphics.counted(
-gl.createBuffer()),gl.bindVertexArray(this.array),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer),gl.bufferData(gl.ARRAY_BUFFER,
-Float32Array.from(pieces.flatMap(some=>[...some])),gl.STATIC_DRAW);for(let end of[0,1])gl.enableVertexAttribArray(end),gl.
-vertexAttribDivisor(end,1);gl.bindVertexArray(null)}at({place,position,height},camera,settings,moment){let{geometry,structure}=this.
-header,[most,part]=this.shown(settings,moment,"critical"),pixel=2*camera.height/Math.max(height,1),[kind,least]=["",REACH_PX];
-for(let n=0;n<Math.min(most,part?.shape[0]??0);n+=1){let[a,b,c,number]=[0,1,2,3].map(k=>Number(part?.data[ROW*n+k])),point=add(
-fromFrame(geometry.frame,[a,b,c]),geometry.center),seen=camera.project(point);if(!seen||Math.hypot(...subtract2(point,position))>
-4*REACH_PX*pixel)continue;let away=.5*height*Math.hypot((seen[0]-place[0])*camera.aspect,seen[1]-place[1]);away<least&&([
-kind,least]=[structure?.kinds[number]?.name??"",away])}return kind}dispose(){this.graphics.free("Buffer",this.buffer),this.
-graphics.free("VertexArray",this.array),this.array=this.buffer=this.drawn=null}};function nearest([before,after,between3]){
-return between3<.5?before:after}var PLACE3=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
+most,part?.shape[0]??0);n+=1)kinds.add(Number(part?.data[ROW*n+3]));let{kinds:all=[],nullclines:nullclines2=[]}=this.header.
+structure??{},lines=this.shown(settings,moment,"nullclines")[0]?nullclines2:[];return[...all.filter((_,n)=>kinds.has(n)),
+...lines.map(line=>({...line,isLine:!0}))]}draw({camera,anchor,width,height,ratio},settings,moment){let{header,graphics}=this,
+{structure,geometry}=header,layers=structure&&this.layers(structure,settings,moment);if(!structure||!layers?.length)return;
+let gl=graphics.context,[x,y,z,w]=camera.eye,eye=toFrame(geometry.frame,subtract2([x,y,z],scale2(geometry.center,w))),wider=ratio*
+clamp(Math.sqrt(height/ratio/structure.usualHeight),...structure.widthRange),distance2=w?1:camera.distance/Math.hypot(...eye);
+gl.bindVertexArray(this.array),gl.enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),
+gl.depthFunc(gl.LEQUAL);let program=this.program;graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),
+u_anchor:anchor,u_eye:[...subtract2(eye,scale2(anchor,w)),w],u_picture:[width,height],u_horizon:[0,0,0,1]}),gl.bindBuffer(
+gl.ARRAY_BUFFER,this.buffer);for(let{first,count:count2,color,width:thickness,above}of layers){let[r,g,b,opacity=1]=color;
+graphics.programs.use(program,{u_width:thickness*wider,u_nearer:NEARER*distance2*(1+ABOVE_SHARE*above)});for(let end of[
+0,1])gl.vertexAttribPointer(end,3,gl.FLOAT,!1,ENDS_BYTES2,ENDS_BYTES2*(first+end/2)),gl.vertexAttrib4f(2+end,r,g,b,opacity);
+gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count2)}gl.bindVertexArray(null),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND)}layers(structure,settings,moment){
+let[[points,dots],[saddles,lines],[,zeros2]]=["critical","separatrices","nullclines"].map(kind=>this.shown(settings,moment,
+kind)),key=JSON.stringify([points,dots?.digest,saddles,lines?.digest,zeros2?.digest,nearest(moment)]);if(this.drawn?.key===
+key)return this.drawn.layers;let shapes=shapesOf(dots?.data??[],lines?.data??[],{points,saddles}),{line,dot:dot3,rim,middle}=structure,
+layers=[],pieces=[],first=0,put=(data,color,width,above)=>{let count2=data.length/6;count2&&layers.push({first,count:count2,
+color,width,above}),pieces.push(data),first+=count2},nullclines2=structure.nullclines.map((_,n)=>zeroPieces(zeros2?.data??
+[],n));nullclines2.forEach(data=>put(data,rim,line[0],0)),nullclines2.forEach((data,n)=>put(data,structure.nullclines[n].
+color,line[1],1)),put(ends(Object.values(shapes.lines).flat()),rim,line[0],1.5),Object.entries(shapes.lines).forEach(([name,
+paths],n)=>put(ends(paths),structure.lines[name],line[1],2+n));let places=structure.kinds.map((_,n)=>shapes.points[n]??[]);
+return put(ends(places,!0),rim,dot3[0],5),structure.kinds.forEach(({color},n)=>put(ends([places[n]],!0),color,dot3[1],6)),
+put(ends(places.filter((_,n)=>structure.kinds[n].turns),!0),middle,dot3[2],7),this.send(pieces),this.drawn={key,layers},
+layers}send(pieces){let{graphics}=this,gl=graphics.context;this.array??=graphics.counted(gl.createVertexArray()),this.buffer??=
+graphics.counted(gl.createBuffer()),gl.bindVertexArray(this.array),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer),gl.bufferData(
+gl.ARRAY_BUFFER,Float32Array.from(pieces.flatMap(some=>[...some])),gl.STATIC_DRAW);for(let end of[0,1])gl.enableVertexAttribArray(
+end),gl.vertexAttribDivisor(end,1);gl.bindVertexArray(null)}at({place,position,height},camera,settings,moment){let{geometry,
+structure}=this.header,[most,part]=this.shown(settings,moment,"critical"),pixel=2*camera.height/Math.max(height,1),[kind,
+least]=["",REACH_PX];for(let n=0;n<Math.min(most,part?.shape[0]??0);n+=1){let[a,b,c,number]=[0,1,2,3].map(k=>Number(part?.
+data[ROW*n+k])),point=add(fromFrame(geometry.frame,[a,b,c]),geometry.center),seen=camera.project(point);if(!seen||Math.hypot(
+...subtract2(point,position))>4*REACH_PX*pixel)continue;let away=.5*height*Math.hypot((seen[0]-place[0])*camera.aspect,seen[1]-
+place[1]);away<least&&([kind,least]=[structure?.kinds[number]?.name??"",away])}return kind}dispose(){this.graphics.free(
+"Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.buffer=this.drawn=null}};function nearest([
+before,after,between3]){return between3<.5?before:after}var PLACE3=5;function blocksOf(nodes,size){let count2=Math.max(Math.ceil((nodes-1)/size),1);return Array.from({length:count2},
 (_,n)=>({first:n*size,cells:Math.min(nodes-1-n*size,size)}))}var MeshLevels=class{mesh;limits;rows;columns;constructor(mesh,limits){
 this.mesh=mesh,this.limits=limits,this.rows=blocksOf(mesh.shape[0],limits.tileCells),this.columns=blocksOf(mesh.shape[1],
 limits.tileCells)}get shape(){return[this.rows.length,this.columns.length]}levels({eye,halfHeight,pixels}){let{limits}=this,

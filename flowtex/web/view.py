@@ -74,7 +74,8 @@ class WebView:
         colours, settings = replace(data.colours, others=others), self.scene.settings
         # A client finds the structure of a formula itself.
         is_whole = data.formula is not None
-        kinds = [part for name, part in MARK_PARTS.items() if is_whole or getattr(settings, name)]
+        wanted = [part for name, part in MARK_PARTS.items() if is_whole or getattr(settings, name)]
+        kinds = [kind for kind in wanted if data.marks and kind in data.marks.kinds]
         marks = data.marks and replace(data.marks, kinds=tuple(kinds), carried=True)
         return replace(data.recoloured(colours), marks=marks if kinds else None)
 
@@ -111,7 +112,11 @@ class WebView:
 
 def marks_of(scene: Scene) -> Marks | None:
     """Return the critical points and separatrices of a scene, found when they are requested."""
-    return None if scene.field.sign_free else Marks(scene.structure)
+    if scene.field.sign_free:
+        return None
+    is_flat = scene.field.surface.frame is not None
+    kinds = (kind for kind in MARK_PARTS.values() if is_flat or kind != "nullclines")
+    return Marks(scene.structure, tuple(kinds))
 
 
 def colours_of(

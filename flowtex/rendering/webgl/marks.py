@@ -3,7 +3,7 @@
 ``critical/3`` has a row for each point of step 3, (K, 4): where it is, and the number of its kind.
 ``separatrices/3`` has one for each point of its closed orbits and lines, (N, 4): its position, and
 a number that identifies the line. Both begin with the strongest; ``client/src/marks.ts`` is the
-other side.
+other side. ``nullclines/3`` has two for each straight piece, and the number of the component.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from flowtex.rendering.structure_marks import (
     LINE_COLORS,
     LINE_PX,
     MIDDLE_COLOR,
+    NULLCLINE_COLORS,
     RIM_COLOR,
     RIM_OPACITY,
 )
@@ -29,7 +30,11 @@ from flowtex.textures.geometry import DrawnSurface
 from flowtex.tiles import Structure
 
 #: Kinds of parts, by the settings that ask for them.
-MARK_PARTS = {"critical_points": "critical", "separatrices": "separatrices"}
+MARK_PARTS = {
+    "critical_points": "critical",
+    "separatrices": "separatrices",
+    "nullclines": "nullclines",
+}
 #: The number of a line is this many times that of its saddle, and the sum of what else it tells.
 SADDLE, ORBIT, LEAVING, SIDE = 8, 4, 2, 1
 
@@ -51,6 +56,10 @@ class Marks:
                 for name, mark in KIND_MARKS.items()
             ],
             "lines": {name: list(rgb(color)) for name, color in LINE_COLORS.items()},
+            "nullclines": [
+                {"name": name, "color": list(rgb(color))}
+                for name, color in NULLCLINE_COLORS.items()
+            ],
             "rim": [*rgb(RIM_COLOR), RIM_OPACITY],
             "middle": list(rgb(MIDDLE_COLOR)),
             "dot": list(DOT_PX),
@@ -61,7 +70,8 @@ class Marks:
 
     def parts(self, kind: str, source: int, step: int, geometry: DrawnSurface) -> Parts:
         """Return the part of a kind, of step ``source`` of the field, by the name of a step."""
-        rows = self._points(source) if kind == "critical" else self._lines(source)
+        make = {"critical": self._points, "nullclines": self._nullclines}.get(kind, self._lines)
+        rows = make(source)
         local = (rows[:, :3] - geometry.center) @ geometry.frame.T
         part: Floats32 = np.concatenate([local, rows[:, 3:]], axis=1).astype("<f4")
         return {f"{kind}/{step}": part}
@@ -70,6 +80,13 @@ class Marks:
         numbers = {kind: number for number, kind in enumerate(KIND_MARKS)}
         rows = [[*p.position, numbers[p.kind]] for p in self.structure.points(step)]
         return np.array(rows, dtype=float).reshape(-1, 4)
+
+    def _nullclines(self, step: int) -> Floats:
+        rows = []
+        for component, pieces in enumerate(self.structure.nullclines(step)):
+            points = pieces.reshape(-1, 3)
+            rows.append(np.concatenate([points, np.full((len(points), 1), component)], axis=1))
+        return np.concatenate(rows)
 
     def _lines(self, step: int) -> Floats:
         rows = [np.empty((0, 4))]

@@ -8,6 +8,7 @@ from flowtex.trace.structure.critical_points import (
     CriticalPoints,
     critical_points,
 )
+from flowtex.trace.structure.nullclines import nullclines
 from flowtex.trace.structure.orbits import ClosedOrbit, closed_orbits, orbits_around
 from flowtex.trace.structure.separatrices import (
     Separatrices,
@@ -25,6 +26,7 @@ __all__ = [
     "Separatrix",
     "closed_orbits",
     "critical_points",
+    "nullclines",
     "orbits_around",
     "separatrices",
     "separatrices_between",
