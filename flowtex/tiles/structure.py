@@ -128,7 +128,9 @@ def check_structure(field: FlowField, settings: Settings) -> None:
         if not (value := getattr(settings, name)):
             continue
         if field.sign_free:
-            msg = f"{name} is {value}; expected {TABLE[name].default}: the field is sign-free"
+            msg = (
+                f"{name} is {value}; expected {TABLE[name].default}, because the field is sign-free"
+            )
             raise SettingsError(msg)
         if name == "nullclines" and field.surface.frame is None:
             msg = "nullclines is True; expected False: the surface is curved and has no x and y"

@@ -12,14 +12,15 @@ ROUNDING = 1e-12
 
 
 def nullclines(field: FlowField) -> tuple[Floats, Floats]:
-    """Return where the components of a steady flow on a flat surface are zero.
+    """Return where the components of a steady flow are zero; a curved surface has no such lines.
 
-    The components are those along the axes of the surface, x and y in the plane of these; they are
+    The components are those along the axes of a flat surface, x and y in the plane of these; they are
     linear in the triangles that are drawn. Returns the straight pieces of both lines, (S, 2, 3)
     each, in no order.
     """
     surface = field.surface
-    assert surface.frame is not None
+    if surface.frame is None:
+        return np.empty((0, 2, 3)), np.empty((0, 2, 3))
     corners = surface.corners_of(surface.drawn)
     points = surface.points.reshape(-1, 3)[corners]
     values = (field.velocity[0].reshape(-1, 3) @ surface.frame.T)[corners]
