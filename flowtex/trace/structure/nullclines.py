@@ -14,9 +14,9 @@ ROUNDING = 1e-12
 def nullclines(field: FlowField) -> tuple[Floats, Floats]:
     """Return where the components of a steady flow are zero; a curved surface has no such lines.
 
-    The components are those along the axes of a flat surface, x and y in the plane of these; they are
-    linear in the triangles that are drawn. Returns the straight pieces of both lines, (S, 2, 3)
-    each, in no order.
+    The components are those along the axes of a flat surface, x and y in the plane of these. They
+    are linear in the triangles that are drawn. Returns the straight pieces of both lines,
+    (S, 2, 3) each, in no order.
     """
     surface = field.surface
     if surface.frame is None:
