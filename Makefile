@@ -41,7 +41,7 @@ coverage: $(VENV)/.ready-test ## measure the coverage of flowtex/ and client/src
 	@sh tools/coverage.sh $(BIN) $(PYTEST_ARGS)
 
 fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, files and messages
-	FLOWTEX_FUZZ=$(FUZZ) $(BIN)/pytest -n auto --maxprocesses 4 -m hypothesis $(PYTEST_ARGS)
+	FLOWTEX_FUZZ=$(FUZZ) $(BIN)/pytest -n auto --maxprocesses 4 -m hypothesis -o faulthandler_timeout=0 $(PYTEST_ARGS)
 
 integrations: $(VENV)-integrations/.ready ## show the widget in Notebook 7, Panel, Shiny, Solara and Streamlit, in a separate environment
 	@sh tools/browsers.sh $(VENV)-integrations/bin/python
