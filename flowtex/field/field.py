@@ -33,14 +33,14 @@ from flowtex.field.formula import Formula
 from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
-from flowtex.field.io.arrays import FieldArrays, TriangleArrays
+from flowtex.field.io.arrays import FieldArrays, SectionAxes, TriangleArrays
 from flowtex.field.io.constructors import FieldConstructors
 from flowtex.field.metric import IndexVelocity
 from flowtex.field.steps import LazySteps, Steps, typical_steps
 from flowtex.field.surface import Surface
 from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.field.validation import with_gaps
+from flowtex.field.validation import ALL_AT_REST, with_gaps
 
 #: Where the coarsest level of a larger field keeps how many nodes (J, I) that has.
 WHOLE_SHAPE = "_whole_shape"
@@ -52,10 +52,6 @@ _SHARED = ("surface", "index_velocity")
 NOTABLE_SHARE = 0.05
 #: Share of the flow normal to a surface of triangles from which on a notice says so.
 MOST_LOST = 0.5
-ALL_AT_REST = (
-    "The velocity is zero at every node, so the picture shows only noise; check the selected "
-    "array and its region."
-)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -100,6 +96,8 @@ class FlowField(FieldConstructors):
         The formula, if :func:`flowtex.formula` made the field.
     uncertainty
         Name of the scalar with the uncertainty of the direction; empty for none.
+    section
+        Texts for the axes of a vertical section; ``None`` for other surfaces.
 
     Examples
     --------
@@ -129,6 +127,7 @@ class FlowField(FieldConstructors):
     triangles: Indices | None = None
     formula: Formula | None = None
     uncertainty: str = ""
+    section: SectionAxes | None = None
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:
@@ -144,7 +143,8 @@ class FlowField(FieldConstructors):
         """
         on_triangles = isinstance(arrays, TriangleArrays)
         make: Any = cls.from_triangles if on_triangles else cls.from_arrays
-        field: FlowField = make(**vars(arrays))
+        section = (given := dict(vars(arrays))).pop("section", None)
+        field: FlowField = make(**given).same_flow(section=section)
         late = isinstance(field.velocity, LazySteps)
         if on_triangles and not late and (lost := field.normal_share) > MOST_LOST:
             notify(f"{lost:.0%} of the flow is normal to the surface and is not drawn")

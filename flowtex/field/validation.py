@@ -66,6 +66,12 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
     return array, hidden
 
 
+ALL_AT_REST = (
+    "The velocity is zero at every node, so the picture shows only noise; check the selected "
+    "array and its region."
+)
+
+
 def with_gaps(name: str, values: ArrayLike) -> Floats:
     """Return values as float64, copied if need be, NaN where a masked array hides them."""
     array, _ = as_numbers(name, values)

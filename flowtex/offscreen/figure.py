@@ -17,6 +17,7 @@ from flowtex._util.array_types import Bytes, Floats
 from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
+from flowtex.field.io.arrays import SectionAxes
 from flowtex.offscreen.annotations import time_text
 from flowtex.offscreen.earth_axes import (
     AxesUnit,
@@ -300,12 +301,22 @@ class FlowImage(AxesImage):
         if ax.get_autoscaley_on():
             ax.set_ylim(bottom, top)
         self._tell()
-        if is_geo(ax) or isinstance(self._unit, AxesScales):
+        if (section := self._flow.section) is not None:
+            self._frame_section(section)
+        if is_geo(ax) or isinstance(self._unit, AxesScales) or section is not None:
             return
         across, up = self._unit.scale
         ax.set_aspect(up / across)
         if self._projection is not None:
             label_degrees(ax, self._projection, self._unit)
+
+    def _frame_section(self, section: SectionAxes) -> None:
+        """Stretch the axes of a vertical section, with its top above, and name them."""
+        ax = self.axes
+        ax.set_aspect("auto")
+        if section.downward and not ax.yaxis_inverted():
+            ax.invert_yaxis()
+        ax.set(xlabel=ax.get_xlabel() or section.x, ylabel=ax.get_ylabel() or section.y)
 
     def _tell(self) -> None:
         """Show level and time of data of the Earth in the title, unless it has been set."""

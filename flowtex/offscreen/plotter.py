@@ -14,6 +14,7 @@ from flowtex._util.array_types import Bytes
 from flowtex.camera import CAMERA_LIMITS, Camera, CameraError
 from flowtex.diagnostics import begin_trial, require_opengl
 from flowtex.errors import FieldError
+from flowtex.field.datasets.notices import notify_section
 from flowtex.offscreen.annotations import annotate, difference_text
 from flowtex.options import FieldOptions, Options, ViewOptions
 from flowtex.plotting.component import FlowtexComponent
@@ -58,6 +59,7 @@ class OffscreenPlotter:
         _check_size(size, supersampling)
         # Whoever draws the same numbers once more finds what was traced of them.
         field = share_field(options.field.field(mesh))
+        notify_section(field.section)
         # Asked for as late as this, the trial has run beside the reading of the field.
         require_opengl()
         options = replace(options, field=FieldOptions())

@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
@@ -15,9 +14,8 @@ from flowtex.options import SPEED
 
 #: Relative step of the derivative of a scale, and least step over the range of the axis.
 STEP, LEAST_STEP = 1e-6, 1e-12
-#: Magnitude beyond which a transformed value stands for one that the scale does not have:
-#: matplotlib clips the logarithm of what is not positive to -1000.
-BEYOND = 999.0
+#: Scales that matplotlib clips: the logarithm of what is not positive is -1000.
+CLIPPED, BEYOND = ("log", "logit"), 999.0
 
 
 #: Steps in which y is stretched against x, in powers of two.
@@ -35,7 +33,7 @@ class AxesScales:
         Factor of the scaled y, so that a picture has about as many pixels for a unit of both.
     """
 
-    def __init__(self, ax: Axes, *, framed: bool = True) -> None:
+    def __init__(self, ax: Any, *, framed: bool = True) -> None:
         self.names = ax.get_xscale(), ax.get_yscale()
         self._scales: tuple[Any, Any] = ax.xaxis.get_transform(), ax.yaxis.get_transform()
         self.stretch = 1.0
@@ -54,7 +52,8 @@ class AxesScales:
         """Return scaled positions (..., 2) of values of the axes, NaN where a scale has none."""
         with np.errstate(all="ignore"):
             scaled = _transformed(values, self._scales)
-            return np.where(np.abs(scaled) < BEYOND, scaled, np.nan) * (1.0, self.stretch)
+            beyond = (np.abs(scaled) >= BEYOND) & [name in CLIPPED for name in self.names]
+            return np.where(beyond, np.nan, scaled) * (1.0, self.stretch)
 
     def on_axes(self, positions: Any) -> Floats:
         """Return values (..., 2) of the axes of scaled positions."""
@@ -102,6 +101,7 @@ class AxesScales:
             scalars=known,
             units={SPEED: field.unit_of(SPEED), **field.units},
             formula=None,
+            section=None,
         )
 
 

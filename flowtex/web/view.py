@@ -11,6 +11,7 @@ from flowtex._util.arguments import checked_count
 from flowtex._util.colours import colour_table, rgb
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.datasets.notices import notify_section
 from flowtex.field.derived import steps_of
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
@@ -199,6 +200,7 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
     :meth:`Scene.of`.
     """
     field = share_field(options.field.field(mesh))
+    notify_section(field.section)
     background, changes = options.view.background, options.view.beside
     first = Scene(field, options.make_settings(field), options.appearance)
     common: dict[str, Any] = {"background": background, "steps": steps, "bodies": options.bodies}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from flowtex._util import notices
 
 
@@ -22,3 +24,12 @@ class DatasetNotice(notices.Notice):
 def notify(text: str) -> None:
     """Warn at the line that called the package."""
     notices.notify(text, DatasetNotice)
+
+
+def notify_section(section: Any) -> None:
+    """Warn where a vertical section, as :attr:`FlowField.section` has it, is drawn without axes."""
+    if section is not None:
+        notify(
+            f"this is a vertical section, with {section.x} and {section.y}, drawn without "
+            "stretching an axis; draw it with flowtex.axes or ds.flowtex.plot"
+        )

@@ -90,7 +90,7 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
         raise FieldError(msg)
     pairs = find_pairs(datasets)
     if u is not None and v is not None:
-        one, other = (_named(datasets, name) for name in (u, v))
+        one, other = (variable(datasets, name) for name in (u, v))
         found = next((p for p in pairs if (p.u.name, p.v.name) == (u, v)), None)
         return found or Pair(one, other, _directions(one), "as named")
     if not pairs:
@@ -149,12 +149,9 @@ def _likely(pair: Pair) -> tuple[int, int, bool]:
 
 def to_metres_per_second(array: xr.DataArray) -> float | None:
     """Return how many metres per second a variable's unit is; ``None`` where it has none."""
-    unit = str(array.attrs.get("units", "")).strip()
+    unit, plain = str(array.attrs.get("units", "")).strip(), plain_unit(array)
     if unit in ("", "1", "-", "None", "unknown"):
         return None
-    plain = unit.lower()
-    for pattern, word in WORDS:
-        plain = re.sub(pattern, word, plain)
     if plain not in UNITS:
         msg = (
             f"the unit of {array.name!r} is {unit!r}, which is not a unit of velocity; expected "
@@ -162,6 +159,14 @@ def to_metres_per_second(array: xr.DataArray) -> float | None:
         )
         raise FieldError(msg)
     return UNITS[plain]
+
+
+def plain_unit(array: xr.DataArray) -> str:
+    """Return a variable's unit in small letters and short words, such as ``"m/s"``."""
+    plain = str(array.attrs.get("units", "")).strip().lower()
+    for pattern, word in WORDS:
+        plain = re.sub(pattern, word, plain)
+    return plain
 
 
 def _may_be_component(array: xr.DataArray) -> bool:
@@ -232,7 +237,8 @@ def _directions(u: xr.DataArray) -> str:
     return ""
 
 
-def _named(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
+def variable(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
+    """Return a variable of one of several datasets."""
     for ds in datasets:
         if name in ds.data_vars:
             return ds[name]

@@ -41,9 +41,10 @@ from flowtex.field.datasets.meshes.conventions import find_mesh, with_mesh_axes
 from flowtex.field.datasets.meshes.maps import mesh_on_map
 from flowtex.field.datasets.meshes.mesh import Mesh
 from flowtex.field.datasets.notices import notify
-from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second
+from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second, variable
 from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places
 from flowtex.field.datasets.regions import Regions, Words, numbers_in, region_lines
+from flowtex.field.datasets.vertical import is_vertical, read_section
 from flowtex.field.dates import as_seconds
 from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.steps import LazySteps
@@ -120,6 +121,8 @@ def read_datasets(
     projection = GLOBE if globe else projection
     sel = {**(sel or {}), **selection}
     datasets = as_datasets(data)
+    if u is not None and v is not None and is_vertical(variable(datasets, v)):
+        return read_section(datasets, u, v, name=name, sel=sel, isel=isel or {})
     known, spread = recognise(datasets, u, v, sel=sel, isel=isel), None
     if isinstance(uncertainty, str) and any(uncertainty in ds.dims for ds in datasets):
         known, spread, datasets = _averaged(known, datasets, uncertainty, sel, isel)

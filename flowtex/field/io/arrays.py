@@ -8,11 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike
 
 from flowtex.earth import Projection
+
+
+class SectionAxes(NamedTuple):
+    """Texts for the axes of a vertical section, whose units differ."""
+
+    x: str
+    y: str
+    downward: bool  #: Whether the values of y grow downward.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,6 +46,7 @@ class GridArrays(FieldArrays):
 
     periodic: str | None = None
     sign_free: bool = False
+    section: SectionAxes | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
