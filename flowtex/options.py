@@ -437,7 +437,8 @@ class Options:
         values = {**defaults, **self.settings}
         if field is not None and field.projection is not None:
             values.setdefault("fade", True)
-        if field is not None and field.steady and (lines := self.settings.get("lines")):
+        lines = self.settings.get("lines", "auto")
+        if field is not None and field.steady and lines != "auto":
             notify(f"lines is {lines!r}, but the flow is steady: its lines are all the same")
         if self.appearance.image is not None:
             noise = values.setdefault("noise", "image")

@@ -66,7 +66,7 @@ def check_ply(path: Path) -> None:
         text = TextScanner(stream, path.stat().st_size)
         for name, count, properties in elements:
             if form == "ascii":
-                found = _text_elements(text, count)
+                found = _text_elements(text, count, properties)
             else:
                 found = _binary_elements(text, count, properties, big=form.endswith("big_endian"))
             check_count(found, count, f"element {name}", "of them")
@@ -101,13 +101,25 @@ def _ply_header(stream: BinaryIO) -> tuple[str, list[tuple[str, int, list[list[s
     raise FieldError(msg + "; write or copy it again")
 
 
-def _text_elements(text: TextScanner, count: int) -> int:
+def _text_elements(text: TextScanner, count: int, properties: list[list[str]]) -> int:
+    """Go over the lines of elements, and return how many are whole."""
     for number in range(count):
         while (line := text.line()) is not None and not line.strip():
             pass
-        if line is None:
+        if line is None or _has_too_few(line.split(), properties):
             return number
     return count
+
+
+def _has_too_few(words: list[bytes], properties: list[list[str]]) -> bool:
+    """Return whether a line ends before all properties, and the entries of lists, are there."""
+    needed = 0
+    for kind in properties:
+        if needed >= len(words):
+            return True
+        size = words[needed]
+        needed += 1 + (int(size) if kind[0] == "list" and size.isdigit() else 0)
+    return needed > len(words)
 
 
 def _binary_elements(
