@@ -53,6 +53,9 @@ lessons_notebooks = [
     "lesson_1_flow_textures",
     "lesson_2_level_of_detail",
     "lesson_3_steady_and_unsteady",
+    "lesson_4_which_way",
+    "lesson_5_phase_portraits",
+    "lesson_6_derived_quantities",
 ]
 nb_merge_streams = True
 nb_execution_timeout = 120

@@ -270,11 +270,13 @@ class _Rays:
 
     def _orbit(self, line: Floats, *, stable: bool) -> ClosedOrbit:
         """Make an orbit of a turn, indices (N, 2)."""
-        surface, speed = self._field.surface, self._field.speed[0]
+        surface, nodal = self._field.surface, self._field.velocity[0]
         points = surface.at(np.concatenate([line, line[:1]]))
-        slow = 1 / np.array(
-            [float(surface_point(surface, index[::-1]).interpolate(speed)) for index in line]
-        )
+        velocity = np.array([surface_point(surface, at[::-1]).interpolate(nodal) for at in line])
+        # A component of the velocity is linear in a cell, and the speed is not.
+        way = np.roll(points[:-1], -1, axis=0) - np.roll(points[:-1], 1, axis=0)
+        along = np.abs(np.einsum("nc,nc->n", velocity, way)) / np.linalg.norm(way, axis=1)
+        slow = 1 / along
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
         period = float(np.sum(lengths * 0.5 * (slow + np.roll(slow, -1))))
         ordered = points if stable else points[::-1]
