@@ -98,7 +98,8 @@ def _recognised_table(paths: list[Path]) -> Table:
     from flowtex.field.datasets.axes import axis_values
     from flowtex.field.datasets.files import open_datasets
     from flowtex.field.datasets.pairs import find_pairs
-    from flowtex.field.datasets.read import as_datasets, recognise
+    from flowtex.field.datasets.read import recognise
+    from flowtex.field.datasets.series import as_datasets
     from flowtex.field.io.reader_errors import errors_of_file
 
     table = _pairs()

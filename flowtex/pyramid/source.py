@@ -19,7 +19,7 @@ from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.datasets import is_dataset
-from flowtex.field.datasets.files import dataset_paths
+from flowtex.field.datasets.files import dataset_paths, file_and_group
 from flowtex.field.datasets.pairs import find_pairs
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
@@ -231,7 +231,7 @@ def source_of(given: Any, **options: Any) -> Source:
     else:
         with errors_of(one):
             source = _source_from(read_files(one, regions=True, **options))
-        paths = dataset_paths(one)
+        paths = [file_and_group(path)[0] for path in dataset_paths(one)]
     if isinstance(source, RegionSource):
         source.files, source.choice = paths, repr(sorted(options.items()))
     return source

@@ -6,9 +6,9 @@ from typing import Any
 
 
 def is_dataset(thing: Any) -> bool:
-    """Whether something is a dataset of xarray's, or several of them; xarray is not loaded."""
+    """Whether something is a dataset or a tree of xarray's, or several; xarray is not loaded."""
     several = thing if isinstance(thing, (list, tuple)) else [thing]
     return bool(several) and all(
-        type(one).__name__ == "Dataset" and type(one).__module__.startswith("xarray.")
+        type(one).__name__ in ("Dataset", "DataTree") and type(one).__module__.startswith("xarray.")
         for one in several
     )

@@ -6,7 +6,6 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
-from importlib.util import find_spec
 from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field.datasets.pairs import find_pairs
+from flowtex.field.datasets.series import are_steps, joined, of_tree
 from flowtex.field.datasets.wind_json import read_winds
 from flowtex.field.io.inspection.files import inspect_file
 
@@ -36,14 +36,25 @@ def is_dataset_file(path: Path) -> bool:
     return path.suffix.lower() in SUFFIXES
 
 
+def file_and_group(path: Path) -> tuple[Path, str]:
+    """Return the file of a path such as ``model.nc/ocean``, and the group in it."""
+    files = (one for one in path.parents if one.suffix.lower() in NETCDF and one.is_file())
+    file = next(files, path)
+    return file, "" if file == path else path.relative_to(file).as_posix()
+
+
 def dataset_paths(path: Any) -> list[Path]:
-    """Return the paths of data of the Earth, of one or of several; nothing for anything else."""
+    """Return the paths of data of the Earth, of one or of several; nothing for anything else.
+
+    A path may go on to a group inside a file: ``model.nc/ocean``.
+    """
     several = path if isinstance(path, (list, tuple)) else [path]
     if not all(isinstance(one, (str, os.PathLike)) for one in several):
         msg = f"path is {path!r}; expected the path of a file, or a list of paths"
         raise FieldError(msg)
     paths = [Path(one).expanduser() for one in several]
-    known = paths and all(map(is_dataset_file, paths)) and all(one.exists() for one in paths)
+    files = [file_and_group(one)[0] for one in paths]
+    known = paths and all(map(is_dataset_file, files)) and all(one.exists() for one in files)
     return paths if known else []
 
 
@@ -58,7 +69,7 @@ def common_name(paths: Sequence[Path]) -> str:
 def belong_together(paths: Sequence[Path]) -> bool:
     """Whether several files are to be read together: steps of a series, or parts without a pair."""
     several = [open_files(path) for path in paths]
-    series = all(len(one) == 1 and _alike(one[0], several[0][0]) for one in several)
+    series = all(len(one) == 1 for one in several) and are_steps([ds for (ds, *_) in several])
     return series or not all(find_pairs(one) for one in several)
 
 
@@ -67,9 +78,8 @@ def open_datasets(paths: Sequence[Path]) -> list[xr.Dataset]:
     several = [open_files(path) for path in paths]
     if len(several) == 1:
         return several[0]
-    if all(len(one) == 1 and _alike(one[0], several[0][0]) for one in several):
-        return [_joined([one[0] for one in several], paths)]
-    return [ds for one in several for ds in one]
+    parts = [ds for one in several for ds in one]
+    return [joined(parts)] if len(parts) == len(several) and are_steps(parts) else parts
 
 
 def open_files(path: Path) -> list[xr.Dataset]:
@@ -77,6 +87,7 @@ def open_files(path: Path) -> list[xr.Dataset]:
     xarray = import_extra("xarray", "xarray")
     # Its library has to be loaded before those of other readers, which bring their own PROJ.
     import_extra("pyproj", "xarray")
+    path, group = file_and_group(path)
     suffix = path.suffix.lower()
     inspect_file(path, whole=False)
     with warnings.catch_warnings():
@@ -90,12 +101,21 @@ def open_files(path: Path) -> list[xr.Dataset]:
             import_extra("zarr", "xarray")
             options["engine"] = "zarr"
         try:
-            return [xarray.open_dataset(path, **options)]
+            ds = xarray.open_dataset(path, **options)
         except ValueError as error:
             if "decode time" not in str(error):
                 raise
             # Of times that no calendar has, the numbers are left.
-            return [xarray.open_dataset(path, decode_times=False, **options)]
+            options["decode_times"] = False
+            ds = xarray.open_dataset(path, **options)
+        if not group and any(array.ndim for array in ds.data_vars.values()):
+            return [ds]
+        tree = xarray.open_datatree(path, **options)
+        if group and f"/{group}" not in tree.groups:
+            groups = ", ".join(tree.groups[1:]) or "none: there are no groups"
+            msg = f"the group {group!r} does not exist; expected {groups}"
+            raise FieldError(msg)
+        return [of_tree(tree[group] if group else tree, f"{path.name}{{}}")]
 
 
 def import_cfgrib() -> Any:
@@ -115,56 +135,3 @@ def import_cfgrib() -> Any:
             "library"
         )
         raise ModuleNotFoundError(msg, name="cfgrib") from error
-
-
-def _alike(one: xr.Dataset, other: xr.Dataset) -> bool:
-    """Whether two datasets are steps of one series: the same variables, which hold a velocity."""
-    return set(one.data_vars) == set(other.data_vars) and bool(find_pairs([one]))
-
-
-def _joined(datasets: list[Any], paths: Sequence[Path]) -> Any:
-    """Join steps of a series in the order of their times."""
-    xarray = import_extra("xarray", "xarray")
-    import_extra("cf_xarray", "xarray")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        axes = [ds.cf.guess_coord_axis().cf.axes.get("T", []) for ds in datasets]
-    name = axes[0][0] if axes[0] and axes[0] == axes[-1] else "time"
-    dates = _dates_in_names(paths)
-    if dates is not None and name in datasets[0] and datasets[0][name].dtype.kind in "fiu":
-        # The numbers of the times have no unit.
-        datasets = [
-            ds.assign_coords({name: [d]}) if name in ds.dims else ds
-            for ds, d in zip(datasets, dates, strict=True)
-        ]
-    if find_spec("dask") is not None:
-        # Else all that is joined is read at once.
-        datasets = [ds.chunk() for ds in datasets]
-    try:
-        return xarray.concat(
-            datasets,
-            dim=name,
-            data_vars="minimal",
-            coords="minimal",
-            compat="override",
-            join="exact",
-        ).sortby(name)
-    except (ValueError, KeyError) as error:
-        msg = (
-            f"the files are not steps of one series: {error}. Give only files that belong together"
-        )
-        raise FieldError(msg) from error
-
-
-def _dates_in_names(paths: Sequence[Path]) -> list[Any] | None:
-    """Return the dates in the names of files, as in ``winds_20020101.nc``, all different."""
-    import re
-
-    import numpy as np
-
-    found = [re.search(r"(?<!\d)(\d{4})-?(\d{2})-?(\d{2})(?!\d)", path.stem) for path in paths]
-    try:
-        dates = [np.datetime64("-".join(match.groups())) for match in found if match]
-    except ValueError:
-        return None
-    return dates if len(set(dates)) == len(paths) else None

@@ -6,7 +6,6 @@ Nothing but coordinates and one step is read here; other steps are read when the
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
@@ -16,7 +15,6 @@ import numpy as np
 
 from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Bools, Floats
-from flowtex._util.extras import import_extra
 from flowtex.earth import GLOBE
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import (
@@ -37,13 +35,14 @@ from flowtex.field.datasets.axes import (
 from flowtex.field.datasets.ensembles import mean_and_spread, spread_name
 from flowtex.field.datasets.grids import centred, find_grid, sea_mask, unrepeated
 from flowtex.field.datasets.maps import Nodes, PlaneNodes, on_map
-from flowtex.field.datasets.meshes.conventions import find_mesh, with_mesh_axes
+from flowtex.field.datasets.meshes.conventions import find_mesh
 from flowtex.field.datasets.meshes.maps import mesh_on_map
 from flowtex.field.datasets.meshes.mesh import Mesh
 from flowtex.field.datasets.notices import notify
 from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second, variable
 from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places
 from flowtex.field.datasets.regions import Regions, Words, numbers_in, region_lines
+from flowtex.field.datasets.series import Datasets, as_datasets
 from flowtex.field.datasets.vertical import is_vertical, read_section
 from flowtex.field.dates import as_seconds
 from flowtex.field.io.arrays import GridArrays, TriangleArrays
@@ -443,33 +442,6 @@ def _on_mesh(
         factor=factor,
         mesh=mesh,
     )
-
-
-class Datasets(list[Any]):
-    """Datasets whose axes cf_xarray recognises, with times as dates."""
-
-
-def as_datasets(data: Any) -> Datasets:
-    """Return datasets of xarray's with their axes guessed, which takes long, unless they are."""
-    if isinstance(data, Datasets):
-        return data
-    xarray = import_extra("xarray", "xarray")
-    import_extra("cf_xarray", "xarray")
-    result = []
-    for ds in data if isinstance(data, (list, tuple)) else [data]:
-        if not isinstance(ds, xarray.Dataset):
-            msg = (
-                f"data has type {type(ds).__name__}; expected an xarray Dataset, or a list of them"
-            )
-            raise FieldError(msg)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            try:
-                decoded = xarray.decode_cf(ds, decode_timedelta=False)
-            except (ValueError, OverflowError, TypeError):
-                decoded = ds  # its times are those of no calendar
-            result.append(decoded.cf.guess_coord_axis())
-    return Datasets(with_mesh_axes(result))
 
 
 class _Scalar(NamedTuple):

@@ -14,7 +14,8 @@ from flowtex.field.datasets.files import common_name, dataset_paths, open_datase
 from flowtex.field.datasets.maps import projection_of
 from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.field.datasets.pairs import find_pairs, two_names
-from flowtex.field.datasets.read import as_datasets, recognise
+from flowtex.field.datasets.read import recognise
+from flowtex.field.datasets.series import as_datasets
 from flowtex.field.field import FlowField
 from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.source import FlowSource, Source

@@ -150,8 +150,8 @@ class FieldConstructors:
             (or ``.x``, ``.g``) and ``wing.q``. For an OBJ, PLY or STL the vectors are in a file
             with the same name, ``hull.npy`` for ``hull.stl``: (N, 3) for its points or triangles,
             or (T, N, 3), in the order of the file. Or data of the Earth: NetCDF, a Zarr store,
-            GRIB, or the JSON of wind maps. Several such files, the parts of a model's output or the
-            steps of a series, are given as a list.
+            GRIB, or the JSON of wind maps; ``model.nc/ocean`` is a group of a file. Several such
+            files, the parts of a model's output or the steps of a series, are given as a list.
         vectors
             Name of the velocity, as for :meth:`from_pyvista`. For a PLOT3D solution it is
             ``Velocity``, computed from density and momentum.
@@ -217,7 +217,8 @@ class FieldConstructors:
         ----------
         data
             A Dataset, or a list of several that belong together, such as NEMO's files of U, of V
-            and of coordinates. Only coordinates and one step are read at first; further steps are
+            and of coordinates, or the steps of a series; or a DataTree, of which one group has a
+            velocity. Only coordinates and one step are read at first; further steps are
             read when they are drawn.
         u, v
             Names of the components. By default the only pair that is recognised as the velocity by
@@ -230,7 +231,8 @@ class FieldConstructors:
         name
             Name for captions.
         sel, isel
-            Selections along axes, by value and by index, such as ``sel={"level": 500}``.
+            Selections along axes, by value and by index, such as ``sel={"level": 500}``, or of a
+            range of times, its ends included: ``sel={"time": slice("2001-02", "2001-03")}``.
         uncertainty
             The uncertainty of the direction, where streaks are shorter and fainter: the name of a
             scalar, or an array of the nodes, with the standard deviation of the velocity over its

@@ -271,8 +271,7 @@ def _wrapped(source: Any, label: str) -> Any:
     if (kind := type(source)).__module__.startswith("xarray."):
         msg = (
             f"{label} is a {kind.__name__} of xarray's; expected a Dataset with both components of "
-            "the velocity, as xr.Dataset({'u': u, 'v': v}), or tree['group'].to_dataset() of a "
-            "DataTree"
+            "the velocity, as xr.Dataset({'u': u, 'v': v})"
         )
         raise FieldError(msg)
     msg = (

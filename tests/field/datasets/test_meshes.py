@@ -19,7 +19,8 @@ from flowtex._util.array_types import Floats
 from flowtex.earth import EARTH_RADIUS
 from flowtex.errors import FieldError
 from flowtex.field.datasets.notices import DatasetNotice
-from flowtex.field.datasets.read import as_datasets, recognise
+from flowtex.field.datasets.read import recognise
+from flowtex.field.datasets.series import as_datasets
 from flowtex.field.datasets.source import DatasetSource
 from flowtex.field.steps import LazySteps
 from flowtex.field.triangles.surface import TriangleSurface

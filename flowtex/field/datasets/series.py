@@ -1,0 +1,144 @@
+"""Datasets as they come: units by any name, times as dates, steps of a series, groups of a tree."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Sequence
+from contextlib import suppress
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
+from flowtex.field.datasets.meshes.conventions import with_mesh_axes
+from flowtex.field.datasets.pairs import find_pairs
+
+
+class Datasets(list[Any]):
+    """Datasets whose axes cf_xarray recognises, with times as dates."""
+
+
+def as_datasets(data: Any) -> Datasets:
+    """Return datasets of xarray's with their axes guessed, which takes long, unless they are.
+
+    Steps of a series become one dataset, and a tree the datasets of its group with a velocity.
+    """
+    if isinstance(data, Datasets):
+        return data
+    xarray = import_extra("xarray", "xarray")
+    result = []
+    for ds in data if isinstance(data, (list, tuple)) else [data]:
+        if not isinstance(ds, (xarray.Dataset, xarray.DataTree)):
+            msg = (
+                f"data has type {type(ds).__name__}; expected an xarray Dataset or DataTree, or a "
+                "list of them"
+            )
+            raise FieldError(msg)
+        result.append(_decoded(of_tree(ds) if isinstance(ds, xarray.DataTree) else ds))
+    if len(result) > 1 and are_steps(result) and _times_differ(result):
+        with suppress(FieldError):  # such as domains of other sizes
+            result = [joined(result)]
+    return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]))
+
+
+def of_tree(tree: Any, how: str = "tree[{!r}]") -> Any:
+    """Return the dataset of the one group of a tree that has a velocity, or that of its root."""
+    parts = {node.path: node.to_dataset() for node in tree.subtree}
+    found = [path for path, ds in parts.items() if find_pairs([ds])]
+    if len(found) > 1 and found[0] != tree.path:
+        listed = ", ".join(found)
+        msg = f"the groups {listed} have a velocity; give one, as in {how.format(found[0])}"
+        raise FieldError(msg)
+    return parts[found[0] if found else tree.path]
+
+
+def _decoded(ds: Any) -> Any:
+    """Return a dataset with ``Unit``, ``Units`` and ``unit`` as units, and times as dates."""
+    named = {
+        name: value
+        for name, variable in ds.variables.items()
+        for key, value in variable.attrs.items()
+        if str(key).lower() in ("unit", "units") and "units" not in variable.attrs
+    }
+    if named:
+        ds = ds.copy()
+        for name, unit in named.items():
+            ds[name].attrs["units"] = unit
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            return import_extra("xarray", "xarray").decode_cf(ds, decode_timedelta=False)
+        except (ValueError, OverflowError, TypeError):
+            return ds  # its times are those of no calendar
+
+
+def _with_axes(ds: Any) -> Any:
+    import_extra("cf_xarray", "xarray")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return ds.cf.guess_coord_axis()
+
+
+def _times_differ(datasets: list[Any]) -> bool:
+    """Whether each of several datasets has times that none of the others has."""
+    name = _time_axis(datasets)
+    times = [np.atleast_1d(ds[name].values) if name in ds else np.empty(0) for ds in datasets]
+    every = [str(time) for line in times for time in line]
+    return all(map(len, times)) and len(set(every)) == len(every)
+
+
+def _time_axis(datasets: list[Any]) -> str:
+    """Return the name of the axis of time, ``"time"`` where none is recognised."""
+    axes = [_with_axes(ds).cf.axes.get("T", []) for ds in (datasets[0], datasets[-1])]
+    return str(axes[0][0]) if axes[0] and axes[0] == axes[-1] else "time"
+
+
+def are_steps(datasets: Sequence[Any]) -> bool:
+    """Whether datasets are steps of one series: the same variables, which hold a velocity."""
+    same = {frozenset(ds.data_vars) for ds in datasets}
+    return len(same) == 1 and bool(find_pairs([datasets[0]]))
+
+
+def joined(datasets: Sequence[Any]) -> Any:
+    """Join steps of a series in the order of their times."""
+    xarray = import_extra("xarray", "xarray")
+    datasets = [_decoded(ds) for ds in datasets]
+    name = _time_axis(datasets)
+    dates = _dates_in_names([Path(str(ds.encoding.get("source", ""))) for ds in datasets])
+    if dates is not None and name in datasets[0] and datasets[0][name].dtype.kind in "fiu":
+        # The numbers of the times have no unit.
+        datasets = [
+            ds.assign_coords({name: [d]}) if name in ds.dims else ds
+            for ds, d in zip(datasets, dates, strict=True)
+        ]
+    if find_spec("dask") is not None:
+        # Else all that is joined is read at once.
+        datasets = [ds.chunk() for ds in datasets]
+    try:
+        return xarray.concat(
+            datasets,
+            dim=name,
+            data_vars="minimal",
+            coords="minimal",
+            compat="override",
+            join="exact",
+        ).sortby(name)
+    except (ValueError, KeyError) as error:
+        msg = (
+            f"the files are not steps of one series: {error}. Give only files that belong together"
+        )
+        raise FieldError(msg) from error
+
+
+def _dates_in_names(paths: Sequence[Path]) -> list[Any] | None:
+    """Return the dates in the names of files, as in ``winds_20020101.nc``, all different."""
+    found = [re.search(r"(?<!\d)(\d{4})-?(\d{2})-?(\d{2})(?!\d)", path.stem) for path in paths]
+    try:
+        dates = [np.datetime64("-".join(match.groups())) for match in found if match]
+    except ValueError:
+        return None
+    return dates if len(set(dates)) == len(paths) else None
