@@ -32,6 +32,7 @@ TRIAL_COMMAND = (sys.executable, "-P", str(Path(__file__).resolve()), "--try")
 TRIAL_TIMEOUT_S = 120.0
 REQUIRED = ("numpy", "scipy", "pyvista", "vtk", "h5py")
 OPTIONAL = {"trame": "app", "trame-vuetify": "app", "trame-rca": "app", "anywidget": "notebook"}
+OF_PYVISTA = {"trame-pyvista": "export_html and pages in notebooks", "imageio": "open_gif"}
 #: Words in the names of renderers that draw with the processor.
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render", "gdi generic")
 
@@ -284,16 +285,18 @@ def _packages() -> list[Check]:
     from flowtex._util.extras import install_extra
 
     checks = []
-    for name in (*REQUIRED, *OPTIONAL):
+    for name in (*REQUIRED, *OPTIONAL, *OF_PYVISTA):
         extra = OPTIONAL.get(name)
         try:
             checks.append(Check(name, "ok", importlib.metadata.version(name)))
         except importlib.metadata.PackageNotFoundError:
             remedy = install_extra(extra) if extra else f"python -m pip install {name}"
-            status: Literal["warn", "fail"] = "warn" if extra else "fail"
-            use = (
-                f"not installed; needed only for the extra {extra!r}" if extra else "not installed"
-            )
+            status: Literal["warn", "fail"] = "fail" if name in REQUIRED else "warn"
+            use = "not installed"
+            if extra:
+                use += f"; needed only for the extra {extra!r}"
+            elif name in OF_PYVISTA:
+                use += f"; needed only for PyVista's {OF_PYVISTA[name]}"
             checks.append(Check(name, status, use, remedy))
     return checks
 

@@ -170,7 +170,7 @@ def test_a_display_is_left_alone(name: str, value: str, monkeypatch: pytest.Monk
 def test_the_diagnosis_covers_what_is_needed() -> None:
     checks = {check.name: check for check in diagnostics.diagnose()}
     assert {"Python", "OpenGL", "Display", "Shaders"} <= set(checks)
-    assert {*diagnostics.REQUIRED, *diagnostics.OPTIONAL} <= set(checks)
+    assert {*diagnostics.REQUIRED, *diagnostics.OPTIONAL, *diagnostics.OF_PYVISTA} <= set(checks)
     assert all(check.remedy for check in checks.values() if check.status != "ok")
     assert all(checks[name].status == "ok" for name in ("Python", *diagnostics.REQUIRED))
 

@@ -150,6 +150,11 @@ class FlowHandle(AppearanceAttributes):
         self._structure.load_in_background(notify)
 
     @property
+    def mesh(self) -> Any:
+        """PyVista mesh of the surface; of a large one, which has tiles, see :attr:`meshes`."""
+        return self.meshes[0]
+
+    @property
     def meshes(self) -> list[Any]:
         """PyVista meshes of the last picture; several if the surface is large."""
         return self._surface.meshes

@@ -97,7 +97,7 @@ class Recognised:
 
 
 def read_datasets(
-    data: xr.Dataset | Sequence[xr.Dataset],
+    data: xr.Dataset | xr.DataTree | Sequence[xr.Dataset],
     u: str | None = None,
     v: str | None = None,
     *,
@@ -298,7 +298,7 @@ def _words(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
 
 
 def recognise(
-    data: xr.Dataset | Sequence[xr.Dataset],
+    data: xr.Dataset | xr.DataTree | Sequence[xr.Dataset],
     u: str | None = None,
     v: str | None = None,
     *,

@@ -199,7 +199,7 @@ class FieldConstructors:
     @classmethod
     def from_xarray(
         cls,
-        data: xr.Dataset | Sequence[xr.Dataset],
+        data: xr.Dataset | xr.DataTree | Sequence[xr.Dataset],
         u: str | None = None,
         v: str | None = None,
         *,
