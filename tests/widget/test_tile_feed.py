@@ -118,7 +118,7 @@ def test_tiles_come_with_all_that_draws_them(make: Callable[..., Client]) -> Non
 
 def test_marks_are_made_when_they_are_asked_for(make: Callable[..., Client]) -> None:
     client = make(swirl(2))
-    assert client.header["structure"]["parts"] == ["critical", "separatrices"]
+    assert client.header["structure"]["parts"] == ["critical", "separatrices", "nullclines"]
     assert not any(name.startswith("critical") for name in client.arrays)
     message = {"kind": "load", "key": None, "steps": [1], "view": 0, "mark": "critical"}
     client.views.handle_message({**message, "request": "marks", "mark": "other"})
