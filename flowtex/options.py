@@ -466,7 +466,7 @@ class Options:
                 near = near_names(name, known)
                 if "sel" in known and not near.startswith("did you mean"):
                     axis = f"sel={{{name!r}: {values[name]!r}}}"
-                    near = f"an axis of a dataset is chosen with {axis}. Else {near}"
+                    near = f"{near}; for an axis of a dataset, use {axis}"
                 msg = f"the setting or argument {name!r} does not exist; {near}"
                 raise SettingsError(msg)
         return cls(**parts, settings=values)
