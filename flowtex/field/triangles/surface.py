@@ -104,8 +104,21 @@ class TriangleSurface(Surface):
         return crosses
 
     @cached_property
+    def _plane_normal(self) -> Floats | None:
+        """The normal of all triangles where they lie in one plane and face alike, (3,)."""
+        if self.frame is None or not self.valid.all():
+            return None
+        normal = np.cross(*self.frame)
+        along = self.crosses @ normal
+        if along.min() >= 0:
+            return normal
+        return -normal if along.max() <= 0 else None
+
+    @cached_property
     def normals(self) -> Floats:
         """Unit normals at the nodes, (1, N, 3): means by the angles of the triangles there."""
+        if self._plane_normal is not None:
+            return np.tile(self._plane_normal, (1, self.shape[1], 1))
         total = np.zeros(self.points.shape[1:])
         length = np.linalg.norm(self.crosses, axis=1, keepdims=True)
         unit = np.divide(self.crosses, length, out=np.zeros_like(self.crosses), where=length > 0)
@@ -245,6 +258,9 @@ class TriangleSurface(Surface):
 
     def _sharp_corners(self) -> tuple[Indices, Indices]:
         """Triangles and their corners (K,) that lie at sharp edges."""
+        if self._plane_normal is not None:
+            none = np.empty(0, np.intp)
+            return none, none
         length = np.linalg.norm(self.crosses, axis=1)
         sharp = np.zeros(self.shape[1], dtype=bool)
         for k in range(3):

@@ -430,7 +430,8 @@ def _fraction(mean: Floats, begin: Floats, middle: Floats, end: Floats) -> Float
     for _ in range(NEWTON_ROUNDS):
         length = fraction * (begin + fraction * (one / 2 + fraction * (two / 3)))
         speed = begin + fraction * (one + fraction * two)
-        fraction = np.clip(np.nan_to_num(fraction - (length - mean) / speed), 0.0, 1.0)
+        # What is no number counts as none.
+        fraction = np.fmin(np.fmax(fraction - (length - mean) / speed, 0.0), 1.0)
     return np.asarray(fraction)
 
 
