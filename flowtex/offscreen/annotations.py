@@ -176,14 +176,14 @@ class _Writer:
         yield image
 
     def legends(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield name, colours and values: low, middle and high, and without the middle."""
+        """Yield name, colours and round values, and with every second of these."""
         name, settings, appearance = scene.scalar_name, scene.settings, scene.appearance
         if name is None or settings.show_level or not appearance.visible:
             return
         table, title = scene.legend_colours[:, :3], _printable(scene.title_of(name))
-        values = _value_texts(*scene.legend_limits, log_scale=appearance.log_scale)
-        for numbers in (values, values[::2]):
-            yield self._legend(title, table, numbers, scene.beyond)
+        marks = _value_marks(*scene.legend_limits, log_scale=appearance.log_scale)
+        for some in (marks, marks[::2]):
+            yield self._legend(title, table, some, scene.beyond)
 
     def kinds(self, scene: Scene) -> Iterator[Image.Image]:
         """Yield the kinds of critical points that are marked, each with its dot."""
@@ -209,13 +209,13 @@ class _Writer:
         yield image
 
     def _legend(
-        self, title: str, table: Bytes, numbers: list[str], beyond: tuple[bool, bool]
+        self, title: str, table: Bytes, marks: list[tuple[float, str]], beyond: tuple[bool, bool]
     ) -> Image.Image:
         """Return the legend; the colours end in a tip where values lie beyond them."""
-        widths, space = [self._width(n) for n in numbers], self._px(GAP)
-        # The one in the middle keeps off the longer of the others.
-        needed = 2 * max(widths[0], widths[-1]) + sum(space + w for w in widths[1:-1]) + space
-        width = max(self._width(title), needed, self._px(RAMP_WIDTH))
+        shares, numbers = zip(*marks, strict=True)
+        widest = max(map(self._width, numbers)) + self._px(GAP)
+        apart = min(np.diff(shares), default=1.0)
+        width = max(self._width(title), math.ceil(widest / apart), self._px(RAMP_WIDTH))
         high = self._px(RAMP_HEIGHT)
         image, draw = self._blank(width, 2 * self._line + high)
         self._write(draw, 0, 0, title)
@@ -231,9 +231,11 @@ class _Writer:
             (self._pad, self._pad + self._line),
             shape.resize((width, high), Image.Resampling.BOX),
         )
-        shares = np.linspace(0, 1, len(numbers))
-        for text, share, wide in zip(numbers, shares, widths, strict=True):
-            self._write(draw, round(share * (width - wide)), self._line + high, text)
+        for share, text in marks:
+            place = share * width - self._width(text) / 2
+            self._write(
+                draw, round(min(max(place, 0), width - self._width(text))), self._line + high, text
+            )
         return image
 
     @property
@@ -285,17 +287,23 @@ def _apart(one: Plate, other: Plate, gap: int) -> bool:
     )
 
 
-def _value_texts(low: float, high: float, *, log_scale: bool) -> list[str]:
-    """Return the ends of a range and what is in its middle, with the digits that tell them."""
-    middle = math.sqrt(low) * math.sqrt(high) if log_scale else 0.5 * low + 0.5 * high
-    if abs(middle) < 1e-9 * (high - low):
-        middle = 0.0
-    texts = [str(value) for value in (low, middle, high)]
+def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[float, str]]:
+    """Return round values in a range and their shares of it; its ends if fewer than two are."""
+    from matplotlib.ticker import LogLocator, MaxNLocator
+
+    where = np.log10 if log_scale else np.asarray
+    locator = LogLocator(numticks=4) if log_scale else MaxNLocator(3, steps=[1, 2, 5, 10])
+    values = np.asarray(locator.tick_values(low, high))
+    values = values[(values >= low) & (values <= high)]
+    values = values[:: 1 + len(values) // 5] if len(values) > 1 else np.unique([low, high])
+    texts: list[str] = []
     for digits in DIGITS:
-        texts = [f"{value:.{digits}g}" for value in (low, middle, high)]
-        if len(set(texts)) == 3:
+        texts = [f"{value:.{digits}g}" for value in values]
+        if len(set(texts)) == len(texts):
             break
-    return texts
+    ends = where([low, high])
+    shares = (where(values) - ends[0]) / max(ends[1] - ends[0], float(np.finfo(float).tiny))
+    return list(zip(map(float, shares), texts, strict=True))
 
 
 def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) -> str:
