@@ -69,7 +69,7 @@ case $which in
 all)
     # Tests with a browser mostly wait, so they share the cores with the others.
     # shellcheck disable=SC2086 # a list of files
-    (tests -n auto --maxprocesses 2 -m browser "$@" $with_browser) >"$logs/browser" 2>&1 &
+    (tests -n $(($(workers "$bin") - 1)) -m browser "$@" $with_browser) >"$logs/browser" 2>&1 &
     browser=$!
     aside="$aside $browser"
     tests -n "$(workers "$bin")" -m "not browser" "$@" || failed="$failed, tests"
