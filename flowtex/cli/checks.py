@@ -31,8 +31,10 @@ def check_picture_file(output: Path) -> None:
 
 def check_page_file(output: Path) -> None:
     """Raise an error if the page could not be written, before anything is traced."""
-    if output.suffix.lower() not in (".html", ".htm"):
-        msg = f"{output}: expected a name that ends in .html"
+    from flowtex.web.export import SUFFIXES
+
+    if output.suffix.lower() not in SUFFIXES:
+        msg = f"{output}: expected a name that ends in {', '.join(SUFFIXES)}"
         raise UsageError(msg)
     checked_target(output)
 

@@ -29,6 +29,7 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex._version import __version__
+from flowtex.errors import FieldError
 from flowtex.options import Appearance, FieldOptions, ViewOptions, accepts_options
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
@@ -49,6 +50,8 @@ READER_BYTES = 60_000
 TILE_BYTES = 40_000_000
 #: Endings of the names of modules.
 MODULES = (".mjs", ".js")
+#: Suffixes of pages and modules.
+SUFFIXES = (".html", ".htm", *MODULES)
 #: Size of the preview picture.
 PREVIEW = (480, 300)
 
@@ -146,6 +149,9 @@ def export(
     >>> flowtex.export(series, "wake.html", steps=6, scalars="vorticity")  # doctest: +SKIP
     """
     path = checked_target(path)
+    if path.suffix.lower() not in SUFFIXES:
+        msg = f"path is {str(path)!r}; expected a name that ends in {', '.join(SUFFIXES)}"
+        raise FieldError(msg)
     shown, arguments = browser_options(mesh, **options)
     views = web_views(shown, arguments, steps=steps)
     try:
@@ -175,7 +181,7 @@ def write_page(
     estimated = estimate(scenes, linked=link is not None)
     if announce is not None:
         announce(estimated, scenes[0].steps)
-    pieces = module_pieces if path.suffix in MODULES else page_pieces
+    pieces = module_pieces if path.suffix.lower() in MODULES else page_pieces
     with whole_file(path) as file:
         file.writelines(text.encode() for text in pieces(views, scenes, link=link, **options))
     return Page(path, path.stat().st_size, estimated, scenes[0].steps)

@@ -386,6 +386,8 @@ def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path:
     assert f"{page.stat().st_size / 1e6:.2f} MB" in out
     read = Reader(page.read_text(encoding="utf-8"))
     assert (read.title, read.header()["axes"]) == ("two gyres", "scale")
+    assert run("export", gyre, "-o", tmp_path / "flow.mjs", "--samples", 9)[0] == 0
+    assert "export" in (tmp_path / "flow.mjs").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -85,6 +85,13 @@ def test_a_page_of_the_post_is_small(
     assert export(field, tmp_path / "post.html").nbytes < 1_000_000
 
 
+def test_a_page_has_the_name_of_one(tmp_path: Path) -> None:
+    with pytest.raises(
+        FieldError, match=r"a\.pdf'; expected a name that ends in .html, .htm, .mjs"
+    ):
+        flowtex.export(flowtex.examples.double_gyre(), tmp_path / "a.pdf")
+
+
 def test_fewer_steps_make_a_smaller_page(tmp_path: Path) -> None:
     whole = export(gyre(3), tmp_path / "whole.html")
     some = export(gyre(3), tmp_path / "some.html", steps=2)

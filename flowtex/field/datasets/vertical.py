@@ -74,7 +74,7 @@ def read_section(
     choice = Choice(dict(sel), dict(isel))
     flat = [
         a.drop_vars([c for c in a.coords if {level, along} & set(a[c].dims)])
-        .rename({level: ROWS, along: COLUMNS})
+        .swap_dims({level: ROWS, along: COLUMNS})
         .transpose(..., ROWS, COLUMNS)
         for a in (one, two)
     ]
