@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import re
 import shutil
@@ -15,7 +16,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, ImageOps
 
 import flowtex
 from flowtex.plotting.vtk_camera import look
@@ -402,9 +403,32 @@ def _page_picture(page: Any, name: str) -> None:
         )
 
 
+def nine() -> Picture:
+    """Draw the figures of ``docs/howto/nine.md``, three in a row."""
+    import matplotlib.pyplot as plt
+
+    page = (FOLDER.parent / "howto" / "nine.md").read_text(encoding="utf-8")
+    names: dict[str, Any] = {}
+    whole = Image.new("RGB", (3 * 480, 3 * 360), "white")
+    with TemporaryDirectory() as folder, contextlib.chdir(folder):
+        for n, block in enumerate(re.findall(r"```python\n(.*?)```", page, re.DOTALL)):
+            exec(block, names)  # the lines of the page, as they are
+            if n == 0:
+                continue
+            path = Path("wake.gif")
+            if plt.get_fignums():
+                path = Path("figure.png")
+                plt.savefig(path, dpi=150)
+                plt.close("all")
+            with Image.open(path) as figure:
+                cell = ImageOps.contain(figure.convert("RGB"), (470, 350))
+            whole.paste(cell, ((n - 1) % 3 * 480 + 5, (n - 1) // 3 * 360 + 5))
+    return np.asarray(whole)
+
+
 STILLS = (
     *(wake, globe, cartopy, ocean, zooms, critical, vortices, sphere, torus, level_of_detail),
-    *(grain, levels, correction, kernels, arrows, structure, patterns, half_turns, gyre),
+    *(grain, levels, correction, kernels, arrows, structure, patterns, half_turns, gyre, nine),
 )
 PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}
 
