@@ -96,7 +96,7 @@ def span_since(start: Any, date: Any) -> tuple[float, float]:
         return (float((date - start).total_seconds()),) * 2
     if (match := _DATE.fullmatch(date.strip())) is None:
         msg = f"{date!r} is no date"
-        raise ValueError(msg)
+        raise FieldError(msg)
     *parts, fraction = match.groups()
     given = [int(part) for part in parts if part is not None]
     microsecond = int(f"{fraction or '':0<6.6}")
