@@ -44,7 +44,7 @@ export interface MeshData {
    * radius and size of a cell.
    */
   blocks: Data;
-  /** Cells that are drawn; all of them where there is none. */
+  /** Cells that are drawn; all of them if it is missing. */
   cells?: Data;
 }
 

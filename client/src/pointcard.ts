@@ -25,7 +25,7 @@ const VELOCITY_DIGITS = 3;
 /** Milliseconds for which a click waits until points can be found, and between two looks. */
 const PATIENCE_MS = 5000;
 const RETRY_MS = 40;
-/** Places that are told apart in half the height of a view, and metres of a degree on the Earth. */
+/** Places that are distinct in half the height of a view, and metres of a degree on the Earth. */
 const PLACES_IN_VIEW = 200;
 const DEGREE_M = 111_195;
 /** Radius of the sample of the greatest weight, in pixels. */

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from flowtex.earth.lines import MapLines, coastlines, graticule
 from flowtex.earth.projection import (
+    DEGREE,
     EARTH_RADIUS,
     GLOBE,
     NAMES,
@@ -13,6 +14,7 @@ from flowtex.earth.projection import (
 )
 
 __all__ = [
+    "DEGREE",
     "EARTH_RADIUS",
     "GLOBE",
     "NAMES",

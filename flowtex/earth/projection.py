@@ -19,6 +19,8 @@ from flowtex.errors import FieldError
 
 #: Mean radius of the Earth in metres.
 EARTH_RADIUS = 6_371_000.0
+#: Metres of a degree of latitude.
+DEGREE = math.radians(EARTH_RADIUS)
 #: The name of the sphere among the projections.
 GLOBE = "globe"
 #: Projections by the names that people know, as PROJ has them.
@@ -243,7 +245,7 @@ class Projection:
             north = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
             return east, north
         lat = np.clip(lat, NEAREST_POLE - 90, 90 - NEAREST_POLE)
-        here, metre = self.positions(lon, lat), math.radians(EARTH_RADIUS) * STEP
+        here, metre = self.positions(lon, lat), DEGREE * STEP
         east = _mean(self.positions(lon + STEP, lat) - here, here - self.positions(lon - STEP, lat))
         north = _mean(
             self.positions(lon, lat + STEP) - here, here - self.positions(lon, lat - STEP)

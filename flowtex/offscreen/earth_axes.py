@@ -14,11 +14,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import Formatter, FuncFormatter, Locator, MaxNLocator
 
 from flowtex._util.array_types import Floats
-from flowtex.earth import EARTH_RADIUS, Projection
+from flowtex.earth import DEGREE, EARTH_RADIUS, Projection
 from flowtex.earth.lines import MOST_LINES, STEPS
 
-#: Metres of a map without distortion for a degree.
-DEGREE = math.radians(EARTH_RADIUS)
 #: Leading digits of ticks in degrees.
 DEGREE_STEPS = [1, 1.5, 2, 3, 5, 6, 10]
 #: Degrees between ticks on a border.

@@ -10,6 +10,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.steps import LazySteps
 from flowtex.options import SPEED
 
 #: Relative step of the derivative of a scale, and least step over the range of the axis.
@@ -68,7 +69,7 @@ class AxesScales:
         Raises
         ------
         FieldError
-            When fewer than two nodes along each side have a place on the axes.
+            When no node has a place on the axes.
         """
         points = field.points @ frame.T
         flat = points.reshape(-1, 2)
@@ -90,12 +91,20 @@ class AxesScales:
             known = np.where(valid[..., None], two, blank)
             return np.concatenate([known, np.zeros_like(known[..., :1])], axis=-1)
 
-        field = field.at_steps(range(len(field.times)))
+        def moved(steps: Any) -> Floats:
+            return planar(steps @ frame.T * slope, np.zeros(2))
+
+        velocity: Any = field.velocity
+        if isinstance(velocity, LazySteps):  # those of a long series are read when they are drawn
+            read = velocity
+            velocity = LazySteps(len(read), lambda step: moved(np.asarray(read[step])))
+        else:
+            velocity = moved(velocity)
         known = {SPEED: field.speed, **field.scalars}
         return replace(
             field,
             points=planar(scaled, scaled[valid][0]),
-            velocity=planar(field.velocity @ frame.T * slope, np.zeros(2)),
+            velocity=velocity,
             valid=valid,
             has_position=valid if field.has_position is None else field.has_position & valid,
             scalars=known,

@@ -120,7 +120,7 @@ def _coloured(mesh: Any, mapper: Any, prop: Any) -> Any:
 
 
 def _colours(mesh: Any, mapper: Any) -> Bytes | None:
-    """Return the colours (N, 4) of scalars at points or cells; ``None`` where there are none."""
+    """Return the colours (N, 4) of scalars at points or cells; ``None`` without scalars."""
     if not mapper.GetScalarVisibility():
         return None
     of_cells = reference(0)

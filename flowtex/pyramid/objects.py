@@ -120,21 +120,21 @@ class OthersObjects(Objects):
             yield name
 
     async def _found(self, group: str) -> list[str]:
-        levels = level_names((await self._told(group)).get("attributes", {}))
+        levels = level_names((await self._metadata(group)).get("attributes", {}))
         some = await self._present(group, levels or (*self._names, *KNOWN_NAMES))
         beside = {str(name) for one in some.values() for name in one.get("dimension_names") or ()}
         return list(some | await self._present(group, beside - {*some}))
 
     async def _present(self, group: str, names: Iterable[str]) -> dict[str, dict[str, Any]]:
-        told = await asyncio.gather(*(self._told(f"{group}/{name}") for name in names))
-        return {name: one for name, one in zip(names, told, strict=True) if one}
+        found = await asyncio.gather(*(self._metadata(f"{group}/{name}") for name in names))
+        return {name: one for name, one in zip(names, found, strict=True) if one}
 
-    async def _told(self, path: str) -> dict[str, Any]:
-        """Return the metadata of a group or an array; nothing where there is none."""
+    async def _metadata(self, path: str) -> dict[str, Any]:
+        """Return the metadata of a group or an array; empty if it has none."""
         key = f"{path}/zarr.json".lstrip("/")
         buffer = await self.get(key, default_buffer_prototype())
-        told = {} if buffer is None else json.loads(buffer.to_bytes())
-        return told if isinstance(told, dict) else {}
+        metadata = {} if buffer is None else json.loads(buffer.to_bytes())
+        return metadata if isinstance(metadata, dict) else {}
 
 
 def level_names(attributes: Mapping[str, Any]) -> list[str]:

@@ -200,7 +200,7 @@ def is_store(place: Any) -> bool:
 
 
 def _remote_document(text: str) -> bytes:
-    """Return the metadata of a Zarr group at a URL; empty where there is none."""
+    """Return the metadata of a Zarr group at a URL; empty if the URL has no group."""
     obstore = import_extra("obstore", "store")
     try:
         return bytes(obstore.get(objects_at(text), DOCUMENT).bytes())

@@ -85,7 +85,7 @@ class Threads:
 
         count, left = self.count(need), iter(tasks)
         with ThreadPoolExecutor(count, thread_name_prefix="flowtex-pyramid") as pool:
-            # No more wait in line than keep all busy: who is told of failures may end it.
+            # No more tasks wait than keep all workers busy: the caller may stop after a failure.
             running = {pool.submit(tried, task) for task in islice(left, 2 * count)}
             try:
                 while running:

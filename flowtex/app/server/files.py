@@ -230,7 +230,7 @@ class Downloads:
         return self._routes.give(token, partial(self._content, token))
 
     def get(self, token: str) -> Path | None:
-        """Return the file of a token; ``None`` where there is none, or none any more."""
+        """Return the file of a token; ``None`` if it does not exist or has been removed."""
         self.expire()
         path, _ = self._files.get(token, (None, 0.0))
         if path is None or not path.is_file():
@@ -251,7 +251,7 @@ class Downloads:
             del sizes[token]
 
     def remove(self, token: str) -> None:
-        """Remove a file; where there is none of that token there is nothing to do."""
+        """Remove the file of a token, if it exists."""
         path, _ = self._files.pop(token, (None, 0.0))
         if path is not None:
             shutil.rmtree(path.parent, ignore_errors=True)

@@ -43,7 +43,7 @@ class ServedStore:
     async def get(self, name: str) -> bytes:
         """Return an object.
 
-        Raises a LookupError when there is none, and a ReadFault when it cannot be read.
+        Raises a LookupError when the object does not exist, and a ReadFault when reading fails.
         """
         if name not in self._metadata:
             self._check(name)

@@ -22,7 +22,7 @@ LONGEST_SIDE_PX = 1 << 15
 
 
 class OffscreenWindow:
-    """Draws the actors of a PyVista plotter, only when it is told to."""
+    """Draws the actors of a PyVista plotter, only on request."""
 
     def __init__(self, width: int, height: int) -> None:
         import pyvista as pv

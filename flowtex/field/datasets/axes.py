@@ -26,8 +26,9 @@ LEVELS = re.compile(
 )
 ROWS = re.compile(r"^(y\w*|j\w*|lat\w*|nlat|eta\w*|south_north\w*|rlat)$", re.IGNORECASE)
 COLUMNS = re.compile(r"^(x\w*|i\w*|lon\w*|nlon|xi\w*|west_east\w*|rlon)$", re.IGNORECASE)
-#: Units of pressure, which is greatest at the surface.
-PRESSURES = re.compile(r"^(h?pa|pascals?|mbar|mb|millibars?|bar)$", re.IGNORECASE)
+#: Units of pressure, which is greatest at the surface, in pascals; all in small letters.
+PRESSURES = {**dict.fromkeys(("pa", "pascal", "pascals"), 1.0), "bar": 1e5}
+PRESSURES |= dict.fromkeys(("hpa", "mbar", "mb", "millibar", "millibars"), 100.0)
 #: Lengths of the units of time in seconds.
 SECONDS = {"s": 1.0, "sec": 1.0, "second": 1.0, "min": 60.0, "minute": 60.0, "h": 3600.0}
 SECONDS |= {"hr": 3600.0, "hour": 3600.0, "d": 86400.0, "day": 86400.0}
@@ -352,7 +353,7 @@ def _at_surface(lines: list[Any], coordinate: Any) -> int:
     line = lines[0].astype(float)
     unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
     named = "" if coordinate is None else str(coordinate.attrs.get("long_name", ""))
-    falls = PRESSURES.match(unit) or FROM_THE_TOP.search(named)
+    falls = unit.lower() in PRESSURES or FROM_THE_TOP.search(named)
     height = -line if falls else np.abs(line)
     for number in np.argsort(height, kind="stable"):
         try:

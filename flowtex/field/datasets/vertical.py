@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.earth import EARTH_RADIUS
+from flowtex.earth import DEGREE
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import (
     LEVEL,
+    PRESSURES,
     TIME,
     Choice,
     axis_kind,
@@ -37,10 +38,6 @@ if TYPE_CHECKING:
 #: Names, and words of standard names, of vertical velocities.
 NAMES = re.compile(r"^(w|wo|wa|wap|omega|w_?vel|vvel|vovecrtz|w_velocity)$", re.I)
 WORDS = re.compile(r"upward|downward|vertical|tendency_of_air_pressure")
-#: Metres of a degree of latitude.
-DEGREE = math.radians(EARTH_RADIUS)
-#: Units of pressure in pascals.
-PRESSURES = {"pa": 1.0, "hpa": 100.0, "mbar": 100.0, "millibar": 100.0, "mb": 100.0, "bar": 1e5}
 #: Names of the dimensions of a section, which are those of rows and columns.
 ROWS, COLUMNS = "y_of_section", "x_of_section"
 

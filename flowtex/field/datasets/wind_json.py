@@ -91,7 +91,7 @@ def _component(xarray: Any, header: dict[str, Any], data: Any, name: str) -> Any
             hours = np.timedelta64(round(3600 * float(header.get("forecastTime", 0))), "s")
             coordinates["time"] = start.astype("datetime64[s]") + hours
         except ValueError:
-            pass  # it is told in another form
+            pass  # the date has another form
     unit = str(header.get("parameterUnit", "m/s")).replace("m.s-1", "m/s")
     attributes = {"standard_name": WORDS[name], "units": unit}
     dims = ("latitude", "longitude")

@@ -118,7 +118,7 @@ def _example(dimensions: tuple[int, int, int]) -> str:
 
 
 def spread(values: Floats, visible: Bools, wrap: tuple[bool, bool]) -> Floats:
-    """Return the mean of the visible cells around each node, (J, I, ...); NaN where there are none.
+    """Return the mean of the visible cells around each node, (J, I, ...); NaN without such cells.
 
     Values are one or two layers of cells, (L, J - 1, I - 1, ...), and ``visible`` says which of
     them count, (L, J - 1, I - 1). ``wrap`` says whether the last line of nodes along (j, i) is the

@@ -140,7 +140,7 @@ def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:
     if several := several_parts(mesh, series=series):
         return several_fault(several, "the file")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", Notice)  # it is told when the field is made
+        warnings.simplefilter("ignore", Notice)  # issued when the field is made
         try:
             grid = next(time_steps(mesh)).grid
         except FieldError as error:

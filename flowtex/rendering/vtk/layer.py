@@ -145,8 +145,8 @@ class FlowLayer:
     """Draws a texture set on an actor whose mesh comes from :func:`surface_mesh`.
 
     The actor's mapper draws polygons, and the camera of the renderer decides where precision is
-    needed. Settings are read before each frame. ``layers`` gives the layers of a destination time,
-    where the texture set is not to be asked; levels of the mesh are made where there are none.
+    needed. Settings are read before each frame. ``layers`` returns the layers of a destination time
+    in place of the texture set; levels of the mesh are made unless they are given.
     """
 
     def __init__(

@@ -166,9 +166,10 @@ def _is_blanked(valid: Bools) -> bool:
 def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     """Return the velocity of one time, (J, I, 3 to 5).
 
-    It is the rate along i and j in cells in the length of a cell, the speed along the surface in
-    multiples of the typical one, the whole speed where that is another, and how far the direction
-    is not known, where that is told; all of it rounded to what paths and colours need.
+    The channels are the rate along i and j, in cells per length of a cell; the speed along the
+    surface, in multiples of the typical speed; the whole speed, if it differs; and the uncertainty
+    of the direction, if the field has one. All are rounded to the precision that paths and colours
+    need.
     """
     field = textures.geometry.field.at_step(step)
     flow, valid, typical = field.index_velocity, field.valid, textures.typical_speed

@@ -11,6 +11,8 @@ import xarray as xr
 import flowtex
 from flowtex import FieldError, FlowField
 from flowtex.field.datasets.notices import DatasetNotice
+from flowtex.field.steps import LazySteps
+from flowtex.offscreen.scaled_axes import AxesScales
 
 #: Metres of a degree.
 DEGREE = np.radians(6_371_000.0)
@@ -121,5 +123,9 @@ def test_axes_have_the_top_above_and_names(opengl: Any) -> None:
         assert (ax.get_xlabel(), ax.get_ylabel()) == ("latitude (°)", "level (hPa)")
         assert np.asarray(image.make_image(None)[0]).std() > 10
     plt.close(figure)
+    times = np.array(["2001-01-01", "2001-01-02"], "M8[ns]")
+    series = FlowField.from_xarray(ds.expand_dims(time=times), "v", "w")
+    scales, frame = AxesScales(log, framed=False), series.surface.frame
+    assert frame is not None and isinstance(scales.field(series, frame).velocity, LazySteps)
     with pytest.warns(DatasetNotice, match=r"vertical section, .* draw it with flowtex\.axes"):
         flowtex.render(ds, u="v", v="w", size=(30, 20), samples=3)

@@ -41,7 +41,7 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
     while waiting:
         file = waiting.pop()
         if not file.is_file():
-            continue  # it is told by the reader that wants it
+            continue  # the reader that needs it raises the error
         state = file.stat()
         try:
             members = _members(file, state.st_mtime_ns, state.st_size, whole)
