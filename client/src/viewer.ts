@@ -397,8 +397,8 @@ export class Viewer implements User, View {
       this.frames += 1;
       this.root.dataset.frames = String(this.frames);
       this.panel.clear();
-      this.setSharp(!this.playing);
     }
+    this.setSharp(isComplete && !this.playing);
     if (!this.sharp) this.request();
   }
 

@@ -290,11 +290,15 @@ test("what a person does is told to the server", async (context) => {
 });
 
 test("without WebGL2 the server draws, and a person may choose", async () => {
-  const { view, paint, taken } = await begun("");
+  const { view, paint, take, taken } = await begun("");
   assert.deepEqual(asked[0], ["begin", "server"]);
   assert.ok(view.options.streamed && !view.viewers[0].own.source);
   assert.ok(taken().some(([name, part]) => name === "setPart" && part === "/one.controls"));
   assert.deepEqual(server.called, ["trame.rca.size", ["view", "view", { w: 300, h: 200, p: 1 }]]);
+  server.called = [];
+  take({ scenes: [{ ...one, parts: "/coloured." }] });
+  await rested();
+  assert.deepEqual([server.called, taken().length > 0], [[], true]); // the size is known
   const picture = { width: 300, height: 200, close: () => undefined };
   Object.assign(globalThis, { createImageBitmap: () => Promise.resolve(picture) });
   const frame = { name: "view", meta: { type: "image/jpeg", sharp: true }, content: new Uint8Array(2) };

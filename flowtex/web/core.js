@@ -2016,10 +2016,10 @@ let leader=this.options.follows??this;leader.playing?leader.pause():leader.play(
 performance.now()+duration}get isHeld(){return performance.now()<this.busyUntil}change(cameraOnly=!1){this.painter.restart?.(
 cameraOnly),this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.
 setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.
-dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear(),this.setSharp(
-!this.playing)),this.sharp||this.request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=
-String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.
-graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,
+dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),this.setSharp(
+isComplete&&!this.playing),this.sharp||this.request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.
+sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&
+this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,
 [width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===
 this.canvas.height)return;let{painter,canvas}=this;painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=
 [width,height],this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),

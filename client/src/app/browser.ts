@@ -101,6 +101,8 @@ class TrameView {
   /** Numbers of the scenes whose parts each view has. */
   private loaded: (number | undefined)[] = [];
   private area = "";
+  /** Size of the picture that the server was asked for. */
+  private size = "";
   private early: Partial<Present>[] | null = null;
   /** Pictures that came, and the number of the one that is shown. */
   private came = 0;
@@ -126,6 +128,7 @@ class TrameView {
     this.client ??= (await import(address)) as typeof Client;
     if (this.ended.signal.aborted) return;
     this.area = start.area;
+    this.size = "";
     this.subscription ??= session().subscribe(STREAM, ([frame]) => void this.takeFrame(frame as Frame));
     this.view?.dispose();
     this.view?.remove();
@@ -235,6 +238,10 @@ class TrameView {
     const { width, height } = view.first.canvas;
     const count = view.viewers.length;
     const size = { w: count * width + (count - 1) * GAP_PX, h: height, p: 1 };
+    // A size that comes again has the server draw again.
+    const text = JSON.stringify(size);
+    if (text === this.size) return;
+    this.size = text;
     void session().call("trame.rca.size", [area, "view", size]);
   }
 

@@ -458,8 +458,12 @@ def two_places(opengl: object) -> Iterator[Served]:
 
 
 @pytest.mark.browser
-def test_two_users_at_once_look_from_different_places(browser: Browser, two_places: Served) -> None:
+def test_two_users_at_once_look_from_different_places(
+    browser: Browser, two_places: Served, request: pytest.FixtureRequest
+) -> None:
     users = [new_context(browser, viewport=SIZE) for _ in range(2)]
+    for user in users:
+        request.addfinalizer(user.close)
     one, other = (user.new_page() for user in users)
     for page in (one, other):
         page.goto(two_places.address)
@@ -483,8 +487,6 @@ def test_two_users_at_once_look_from_different_places(browser: Browser, two_plac
     let_in(third)
     # Another tab of the first user, and yet not the first user's camera.
     assert difference(WATCH.settled(third), whole) < 1
-    for user in users:
-        user.close()
 
 
 @pytest.mark.browser

@@ -8,34 +8,35 @@ SOFTWARE=/swiftshader|llvmpipe|softpipe|software|basic render/i,CHOICE="flowtex 
 createElement("canvas").getContext("webgl2");if(!gl)return"server";let name=gl.getExtension("WEBGL_debug_renderer_info")?.
 UNMASKED_RENDERER_WEBGL??gl.RENDERER;return SOFTWARE.test(String(gl.getParameter(name)))?"server":"browser"}function chosen(painter){
 try{return painter&&sessionStorage.setItem(CHOICE,painter),sessionStorage.getItem(CHOICE)}catch{return painter??null}}var TrameView=class{props;emit;element;name=Math.
-random().toString(36).slice(2);ended=new AbortController;client=null;view=null;painter="browser";scenes=[];loaded=[];area="";early=null;came=0;shown=0;subscription=null;watcher=new ResizeObserver(
+random().toString(36).slice(2);ended=new AbortController;client=null;view=null;painter="browser";scenes=[];loaded=[];area="";size="";early=null;came=0;shown=0;subscription=null;watcher=new ResizeObserver(
 ()=>this.resize());constructor(props,emit,element){this.props=props,this.emit=emit,this.element=element;let listener=event=>this.
 view&&forwardKeys(this.view.first.root,event);document.addEventListener("keydown",listener,{signal:this.ended.signal})}async paint(painter){
 this.painter=chosen(painter)??bestPainter();let start=await trame().trigger(this.props.begin,[this.painter]),early=this.
 early=[],address=new URL(start.client,document.baseURI).href;if(this.client??=await import(address),this.ended.signal.aborted)
-return;this.area=start.area,this.subscription??=session().subscribe(STREAM,([frame])=>{this.takeFrame(frame)}),this.view?.
-dispose(),this.view?.remove();let view=this.view=new this.client.FlowtexView;view.options=this.options(),this.connect(view),
-this.element.append(view),this.scenes=[],this.early=null,await Promise.all([start,...early].map(changes=>this.take(changes)))}options(){
-return{rebuild:!0,named:!0,streamed:this.painter==="server",onColours:choice=>this.tell("colours",choice)}}connect(view){
-let wait=this.painter==="server"?DRAWN_MS:MESSAGE_MS;for(let name of["camera","time","clock"]){let send2=throttled(setTimeout,
-wait,value=>this.tell(name,value));view.addEventListener(name,event=>send2(event.detail))}for(let name of["playing","set\
-ting"])view.addEventListener(name,event=>this.tell(name,event.detail))}tell(name,value){this.emit(name,{value,page:this.
-name})}async take(changes){let{view,early}=this;if(early)return void early.push(changes);if(!view||changes.by===this.name)
-return;let{scenes,settings,camera,time,timeBeside,clock,playing}=changes,loading=scenes&&this.show(scenes),{viewers,first}=view,
-isStill=!first.playing;for(let viewer of viewers){for(let[name,value]of Object.entries(settings??{}))viewer.followSetting(
-name,value);camera!==void 0&&viewer.setCamera(camera),time!==void 0&&isStill&&viewer.followTime(time),clock!==void 0&&isStill&&
-viewer.setClock(clock)}typeof timeBeside=="number"&&viewers[1]?.setTime(timeBeside),playing===!0?first.play():playing===
-!1&&first.pause(),await loading}async show(scenes){let{view,scenes:before}=this;if(!view)return;this.scenes=scenes;let loads=scenes.
-map((_,n)=>this.load(n));if(before.length!==scenes.length){this.loaded=[],view.open(scenes.length,n=>({reader:this.reader(
-n),source:this.painter==="browser"?{load:loads[n],hasSteps:!0,hasMarks:!0}:void 0})),this.watcher.disconnect();for(let{stage}of view.
-viewers)this.watcher.observe(stage)}let fill=async(viewer,n)=>{let{generation}=scenes[n].header,isThere=this.loaded[n]===
-generation,name=this.painter==="server"?"controls":isThere?"colours":void 0;viewer.setHeader(scenes[n].header);try{let parts=await loads[n](
-null,[],void 0,void 0,name);if(this.scenes!==scenes)return;for(let part of parts)viewer.setPart(part);this.loaded[n]=generation}catch(error){
-this.scenes===scenes&&viewer.panel.fail("The flow could not be loaded.",String(error))}viewer.change()},filled=view.viewers.
-map(fill);this.resize(),await Promise.all(filled)}load(n){return loadFiles(()=>this.scenes[n]?.parts??"",file=>this.client?.
-partsOfFile(file)??[])}reader(n){return(at,path)=>trame().trigger(this.props.read,[n,{...at,path}])}resize(){let{view,area}=this;
-if(!view?.viewers.length||!area)return;view.first.resize();let{width,height}=view.first.canvas,count=view.viewers.length,
-size={w:count*width+(count-1)*GAP_PX,h:height,p:1};session().call("trame.rca.size",[area,"view",size])}async takeFrame({
+return;this.area=start.area,this.size="",this.subscription??=session().subscribe(STREAM,([frame])=>{this.takeFrame(frame)}),
+this.view?.dispose(),this.view?.remove();let view=this.view=new this.client.FlowtexView;view.options=this.options(),this.
+connect(view),this.element.append(view),this.scenes=[],this.early=null,await Promise.all([start,...early].map(changes=>this.
+take(changes)))}options(){return{rebuild:!0,named:!0,streamed:this.painter==="server",onColours:choice=>this.tell("colou\
+rs",choice)}}connect(view){let wait=this.painter==="server"?DRAWN_MS:MESSAGE_MS;for(let name of["camera","time","clock"]){
+let send2=throttled(setTimeout,wait,value=>this.tell(name,value));view.addEventListener(name,event=>send2(event.detail))}
+for(let name of["playing","setting"])view.addEventListener(name,event=>this.tell(name,event.detail))}tell(name,value){this.
+emit(name,{value,page:this.name})}async take(changes){let{view,early}=this;if(early)return void early.push(changes);if(!view||
+changes.by===this.name)return;let{scenes,settings,camera,time,timeBeside,clock,playing}=changes,loading=scenes&&this.show(
+scenes),{viewers,first}=view,isStill=!first.playing;for(let viewer of viewers){for(let[name,value]of Object.entries(settings??
+{}))viewer.followSetting(name,value);camera!==void 0&&viewer.setCamera(camera),time!==void 0&&isStill&&viewer.followTime(
+time),clock!==void 0&&isStill&&viewer.setClock(clock)}typeof timeBeside=="number"&&viewers[1]?.setTime(timeBeside),playing===
+!0?first.play():playing===!1&&first.pause(),await loading}async show(scenes){let{view,scenes:before}=this;if(!view)return;
+this.scenes=scenes;let loads=scenes.map((_,n)=>this.load(n));if(before.length!==scenes.length){this.loaded=[],view.open(
+scenes.length,n=>({reader:this.reader(n),source:this.painter==="browser"?{load:loads[n],hasSteps:!0,hasMarks:!0}:void 0})),
+this.watcher.disconnect();for(let{stage}of view.viewers)this.watcher.observe(stage)}let fill=async(viewer,n)=>{let{generation}=scenes[n].
+header,isThere=this.loaded[n]===generation,name=this.painter==="server"?"controls":isThere?"colours":void 0;viewer.setHeader(
+scenes[n].header);try{let parts=await loads[n](null,[],void 0,void 0,name);if(this.scenes!==scenes)return;for(let part of parts)
+viewer.setPart(part);this.loaded[n]=generation}catch(error){this.scenes===scenes&&viewer.panel.fail("The flow could not \
+be loaded.",String(error))}viewer.change()},filled=view.viewers.map(fill);this.resize(),await Promise.all(filled)}load(n){
+return loadFiles(()=>this.scenes[n]?.parts??"",file=>this.client?.partsOfFile(file)??[])}reader(n){return(at,path)=>trame().
+trigger(this.props.read,[n,{...at,path}])}resize(){let{view,area}=this;if(!view?.viewers.length||!area)return;view.first.
+resize();let{width,height}=view.first.canvas,count=view.viewers.length,size={w:count*width+(count-1)*GAP_PX,h:height,p:1},
+text=JSON.stringify(size);text!==this.size&&(this.size=text,session().call("trame.rca.size",[area,"view",size]))}async takeFrame({
 name,meta,content}){if(name!==this.area||this.painter!=="server")return;let number=this.came+=1,picture=await createImageBitmap(
 new Blob([content],{type:meta.type}));if(number<this.shown||this.painter!=="server")return;this.shown=number;let{view}=this,
 whole=(view?.viewers.length??1)*(view?.first.canvas.width??1);view?.paint(picture,Math.max(Math.round(GAP_PX*picture.width/
