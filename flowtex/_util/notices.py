@@ -1,4 +1,4 @@
-"""Notices about choices that flowtex made, issued at the caller's line."""
+"""Warnings, and notices about choices that flowtex made, issued at the caller's line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Notice(UserWarning):
     """Something of the data was chosen automatically, or is not drawn."""
 
 
-def notify(text: str, kind: type[Notice] = Notice) -> None:
+def notify(text: str, kind: type[Warning] = Notice) -> None:
     """Warn at the line that called the package, however deep it has come since."""
     level, frame = 2, sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):

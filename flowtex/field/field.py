@@ -6,7 +6,6 @@ package relies on it.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -266,7 +265,7 @@ class FlowField(FieldConstructors):
         )
         flow.__dict__["surface"] = nodes.surface  # the same that the property would make again
         if not nodes.moves:
-            warnings.warn(ALL_AT_REST, stacklevel=2)
+            notify(ALL_AT_REST, UserWarning)
         return flow
 
     @classmethod
@@ -353,7 +352,7 @@ class FlowField(FieldConstructors):
             triangles=arrays.triangles,
         )
         if not isinstance(arrays.velocity, LazySteps) and not flow.velocity.any():
-            warnings.warn(ALL_AT_REST, stacklevel=2)
+            notify(ALL_AT_REST, UserWarning)
         return flow
 
     @property

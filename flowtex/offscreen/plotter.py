@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 
 from flowtex._util.arguments import checked_size
 from flowtex._util.array_types import Bytes
+from flowtex._util.notices import notify
 from flowtex.camera import CAMERA_LIMITS, Camera, CameraError
 from flowtex.diagnostics import begin_trial, require_opengl
 from flowtex.errors import FieldError
@@ -104,7 +104,7 @@ class OffscreenPlotter:
         pixels = np.asarray(shot[..., :3], dtype=np.uint8)
         visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
         if visible and (pixels == self._plotter.background_color.int_rgb).all():
-            warnings.warn(NOTHING_SEEN, stacklevel=3)
+            notify(NOTHING_SEEN, UserWarning)
         picture = averaged(pixels, self._supersampling)
         return self._annotated(picture) if self._annotations else picture
 

@@ -6,13 +6,13 @@ that asks for ``plotter.flowtex``.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 import pyvista as pv
 
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.options import Appearance, FieldOptions, accepts_options
@@ -127,10 +127,10 @@ class FlowtexComponent:
         if not np.allclose(shown.actor.user_matrix, np.eye(4)) or any(shown.actor.position):
             left_out.append("the place of the flow")
         if left_out:
-            warnings.warn(
+            notify(
                 "the browser draws one flow with meshes and labels; it does not show: "
                 f"{', '.join(left_out)}. Another jupyter_backend, such as 'trame', draws them",
-                stacklevel=2,
+                UserWarning,
             )
         return shown.field, self._look_of(shown), bodies
 

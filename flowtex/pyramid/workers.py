@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import os
 import traceback
-import warnings
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import suppress
@@ -14,6 +13,7 @@ from itertools import islice
 from typing import Any
 
 from flowtex._util.extras import import_extra
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.pyramid.places import PyramidError, plain_faults
 
@@ -42,11 +42,11 @@ class Threads:
                 msg = f"memory is {memory!r}; expected a number of bytes, or a text such as '2GB'"
                 raise FieldError(msg) from error
             if self._memory < OWN_BYTES + TILE_BYTES:
-                warnings.warn(
+                notify(
                     f"memory is {_words(self._memory)}, but a task may need {_words(TILE_BYTES)} "
                     f"in addition to {_words(OWN_BYTES)} for all tasks; tasks run one at a time, "
                     "and may exceed the limit",
-                    stacklevel=4,
+                    UserWarning,
                 )
 
     def count(self, need: int) -> int:
@@ -154,11 +154,11 @@ class Cluster(Threads):
         few = {name: (limit, need) for name, (limit, need) in needs.items() if 0 < limit < need}
         if few:
             name, (limit, need) = next(iter(few.items()))
-            warnings.warn(
+            notify(
                 f"{len(few)} of {len(workers)} workers have too little memory: {name} has "
                 f"{_words(limit)}, but its threads may need {_words(need)}; give it more memory, "
                 "or fewer threads",
-                stacklevel=4,
+                UserWarning,
             )
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-import warnings
 from dataclasses import dataclass, replace
 from urllib.parse import urlsplit
 
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl import ClientData
@@ -69,7 +69,7 @@ def linked_data(view: WebView) -> ClientData:
     """
     stored, data = _stored(view), view.page_data()
     if not stored.about.get("complete"):
-        warnings.warn("the store is incomplete; missing tiles are shown coarse", stacklevel=2)
+        notify("the store is incomplete; missing tiles are shown coarse", UserWarning)
     return replace(
         data, pyramid=stored if stored.depth else None, traces=data.textures.store.streamlines
     )

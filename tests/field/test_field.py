@@ -171,15 +171,16 @@ def test_hidden_scalars_are_nan() -> None:
     assert np.argwhere(np.isnan(field.scalars["p"][0])).tolist() == [[1, 1]]
 
 
-def test_velocity_of_zero_everywhere_warns() -> None:
+def test_velocity_of_zero_everywhere_warns_at_the_callers_line() -> None:
     with pytest.warns(
         UserWarning,
         match=(
             "^The velocity is zero at every node, so the picture shows only noise; check the "
             "selected array and its region.$"
         ),
-    ):
+    ) as told:
         FlowField.from_arrays(flat(), 0 * ones(flat()))
+    assert [warning.filename for warning in told] == [__file__]
 
 
 # --- axes that close ------------------------------------------------------------------------

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import logging
 import threading
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import ParseError
 
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 
 #: Held while VTK's output window, its logger and Python's root logger are changed: each exists once
@@ -56,7 +56,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
         msg = f"{file}: cannot be read: {reason}"
         raise FieldError(msg) from cause
     for warning in dict.fromkeys(_first_line(event.alert) for event in catcher.warning_events):
-        warnings.warn(f"{file}: VTK reports: {warning}", stacklevel=4)
+        notify(f"{file}: VTK reports: {warning}", UserWarning)
 
 
 @contextmanager

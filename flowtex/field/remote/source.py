@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import warnings
 import weakref
 from collections import deque
 from collections.abc import Mapping, Sequence
@@ -12,7 +11,7 @@ from typing import Any
 
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex._util.child import Child, ChildError, prepare
-from flowtex._util.notices import Notice
+from flowtex._util.notices import Notice, notify
 from flowtex.errors import FieldError
 from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.field.field import FlowField
@@ -111,7 +110,7 @@ class _OpenFile:
         except (TypeError, KeyError) as error:
             raise FieldError(self.malformed(error)) from error
         for kind, text in told:
-            warnings.warn(str(text), WARNINGS.get(kind, UserWarning), stacklevel=3)
+            notify(str(text), WARNINGS.get(kind, UserWarning))
         return value, arrays
 
     def field(self, chosen: dict[str, Any]) -> FlowField:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -13,6 +12,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.steps import LazySteps, Steps, first_step, map_steps
 from flowtex.field.triangles.topology import edges_of, merged_nodes, needle_edges, repeated
@@ -159,7 +159,7 @@ def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
     ]
     told = ", ".join(f"{count:,} {what}" for count, what in words if count)
     if told:
-        warnings.warn(f"triangles are left out: {told}", stacklevel=4)
+        notify(f"triangles are left out: {told}", UserWarning)
     return corners[good & once], edges_of(flat)[is_point]
 
 

@@ -7,7 +7,6 @@ position; they come and go with the view.
 
 from __future__ import annotations
 
-import warnings
 import weakref
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -17,6 +16,7 @@ import numpy as np
 import pyvista as pv
 
 from flowtex._util.array_types import Floats
+from flowtex._util.notices import notify
 from flowtex.earth import EARTH_RADIUS
 from flowtex.field import FlowField
 from flowtex.rendering.mesh_levels import MeshLevels, Region, join
@@ -260,10 +260,10 @@ class FlowSurface:
         for key in errors.keys() - self._told:
             self._told.add(key)
             error = errors[key]
-            warnings.warn(
+            notify(
                 f"a part of the surface is shown coarse, because tile {tuple(key)} could not be "
                 f"made: {type(error).__name__}: {error}",
-                stacklevel=2,
+                UserWarning,
             )
 
     def _goes_on(self) -> bool:
