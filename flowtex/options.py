@@ -51,6 +51,9 @@ NO_VALUE_COLOR = "darkgray"
 #: Colour of land, unobtrusive on a light and on a dark background.
 LAND_COLOR = "#8f8b82"
 
+#: What stands at the borders of a view in a browser: coordinates, the length of a bar, or nothing.
+AXES = ("ticks", "scale", "none")
+
 #: Arguments for data of the Earth only, and for meshes only.
 OF_EARTH = ("projection", "globe", "level", "sel", "isel")
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free")
@@ -394,9 +397,17 @@ class ViewOptions:
         '``{"lod": False}``; both views move together.',
         Form(read=_read_differences, repeated=True),
     )
+    axes: str | None = _option(
+        None,
+        'Axes of a view in a browser: ``"ticks"`` with coordinates, a ``"scale"`` bar, or '
+        '``"none"``; by default ticks if the surface is flat or a map.',
+    )
 
     def __post_init__(self) -> None:
         """Check values that nothing else checks."""
+        if self.axes is not None and self.axes not in AXES:
+            msg = f"axes is {self.axes!r}; expected {', '.join(map(repr, AXES))}, or None"
+            raise FieldError(msg)
         if self.background is not None:
             rgb(self.background)
         if not (self.beside is None or isinstance(self.beside, Mapping)):

@@ -57,6 +57,7 @@ def test_each_argument_goes_where_it_belongs() -> None:
         ({"cmap": "virdis"}, r"^the colour map 'virdis' does not exist; did you mean 'viridis'"),
         ({"cmap": 3}, r"^the colour map 3 does not exist; expected a name"),
         ({"color": "greyy"}, r"greyy"),
+        ({"axes": "bar"}, r"^axes is 'bar'; expected 'ticks', 'scale', 'none', or None$"),
         ({"opacity": -1, "clim": 3}, r"(?s)^2 things are wrong:.*opacity is -1;.*clim is 3;"),
     ],
 )

@@ -42,8 +42,8 @@ class FlowApp(NotebookPage):
     server
         A trame server; a new one by default.
     **options
-        Arguments and settings of ``plotter.flowtex.add``, and ``zoom``, ``focus`` and ``camera``
-        as for :func:`flowtex.render`.
+        Arguments and settings of ``plotter.flowtex.add``, and ``zoom``, ``focus``, ``camera``
+        and ``axes`` as for :func:`flowtex.show`.
 
     Attributes
     ----------

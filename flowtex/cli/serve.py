@@ -96,7 +96,7 @@ def _page(field: FlowField, title: str | None, options: dict[str, object], store
     views = web_views(field, arguments)
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        return page_text(views, store=store, camera=camera, title=title)
+        return page_text(views, store=store, camera=camera, title=title, axes=arguments.view.axes)
     finally:
         for view in views:
             view.close()

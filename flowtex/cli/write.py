@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -145,10 +145,6 @@ def export(
         str | None,
         Parameter(help="Address from which browsers read the pyramid, https://… or ./…"),
     ] = None,
-    axes: Annotated[
-        Literal["ticks", "scale", "none"] | None,
-        Parameter(group=PICTURE, help="Axes at the borders; ticks on flat surfaces by default."),
-    ] = None,
     flow: Annotated[FieldFlags | None, FLAT] = None,
     look: Annotated[LookFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
@@ -171,7 +167,7 @@ def export(
         say(f"{describe(field)}{some}: about {size / 1e6:.1f} MB")
 
     with writing(output):
-        own: dict[str, Any] = {"steps": steps, "title": title, "store": store, "axes": axes}
+        own: dict[str, Any] = {"steps": steps, "title": title, "store": store}
         page = write_page(field, output, announce=announce, **own, **options)
     seconds = time.perf_counter() - start
     say((str(output), "bold"), "  ", (f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s", "dim"))

@@ -153,7 +153,16 @@ def add_scenes(
     *,
     labels: bool = True,
 ) -> list[FlowHandle]:
-    """Add a flow to one view, or to two that share a camera; labels say how they differ."""
+    """Add a flow to one view, or to two that share a camera; labels say how they differ.
+
+    Raises a FieldError when the view has axes, which only browsers draw.
+    """
+    if options.view.axes is not None:
+        msg = (
+            f"axes is {options.view.axes!r}, but only browsers draw axes; omit it, or draw a "
+            "figure with flowtex.axes"
+        )
+        raise FieldError(msg)
     component, changes = FlowtexComponent(plotter), options.view.beside
     scenes = [Scene.from_options(mesh, options)]
     if changes is not None:

@@ -38,7 +38,7 @@ from flowtex.web import preview
 from flowtex.web.assets import asset, client_script
 from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
 from flowtex.web.source import TileSource
-from flowtex.web.view import WebView, browser_options, checked_axes, web_views
+from flowtex.web.view import WebView, browser_options, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75
@@ -93,7 +93,6 @@ def export(
     steps: int | None = None,
     title: str | None = None,
     store: str | None = None,
-    axes: str | None = None,
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
@@ -124,9 +123,6 @@ def export(
         Address at which browsers find the store ``mesh``, such as
         ``"https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"``, or relative to the page,
         ``"./flow.zarr"``. Everybody who opens the page must have permission to read it.
-    axes
-        Axes of the picture: ``"ticks"`` with coordinates, a ``"scale"`` bar, or ``"none"``; by
-        default ticks if the surface is flat or a map.
     announce
         Called with the estimated size in bytes and the number of steps before the work begins.
     {options}
@@ -156,7 +152,7 @@ def export(
     views = web_views(shown, arguments, steps=steps)
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        look = {"camera": camera, "title": title, "axes": checked_axes(axes)}
+        look = {"camera": camera, "title": title, "axes": arguments.view.axes}
         return write_page(views, path, store=store, announce=announce, **look)
     finally:
         for view in views:
@@ -267,7 +263,7 @@ def page_pieces(
 ) -> Iterator[str]:
     """Give the text of a page piece by piece; each array is packed when it is reached.
 
-    ``axes`` is that of :func:`export`. Camera, time and clock are those of
+    ``axes`` is that of :class:`~flowtex.options.ViewOptions`. Camera, time and clock are those of
     :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page has drawn;
     made here if missing. ``link`` says where the rest is; ``scenes`` are then of
     :func:`linked_data`.

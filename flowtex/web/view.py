@@ -9,7 +9,6 @@ from typing import Any
 
 from flowtex._util.arguments import checked_count
 from flowtex._util.colours import colour_table, rgb
-from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.datasets.notices import notify_section
 from flowtex.field.derived import steps_of
@@ -20,9 +19,6 @@ from flowtex.rendering.webgl.marks import MARK_PARTS, Marks
 from flowtex.scene import Scene, share_field
 from flowtex.settings import TABLE
 from flowtex.tiles import Pyramid
-
-#: What may stand at the borders of a picture: coordinates, the length of a bar, or nothing.
-AXES = ("ticks", "scale", "none")
 
 
 class WebView:
@@ -169,14 +165,6 @@ def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
             }
         )
     return tuple(choices)
-
-
-def checked_axes(axes: Any) -> str | None:
-    """Return what stands at the borders of a picture, or ``None`` for what suits the surface."""
-    if axes is not None and axes not in AXES:
-        msg = f"axes is {axes!r}; expected {', '.join(map(repr, AXES))}, or None"
-        raise FieldError(msg)
-    return None if axes is None else str(axes)
 
 
 def browser_options(mesh: Any, **options: Any) -> tuple[Any, Options]:

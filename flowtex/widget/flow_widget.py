@@ -31,7 +31,7 @@ from flowtex.settings import TABLE
 from flowtex.textures.images import load_image
 from flowtex.web.assets import client_module
 from flowtex.web.export import PREVIEW, page_text, write_page
-from flowtex.web.view import browser_options, checked_axes, web_views
+from flowtex.web.view import browser_options, web_views
 from flowtex.widget.display import Displayed
 from flowtex.widget.panel import make_panel
 from flowtex.widget.traits import CameraTrait, SettingTraits, SizeTrait, TraitValueError
@@ -139,7 +139,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         *,
         size: tuple[int, int] = (0, 400),
         bar: bool = True,
-        axes: str | None = None,
         **options: Any,
     ) -> None:
         """Make a widget from a mesh or a field.
@@ -150,7 +149,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, path
             of a file, or a plotter with a flow texture, whose widget also shows its other meshes
             and its labels.
-        size, bar, axes
+        size, bar
             As the attributes of these names.
         {options}
 
@@ -178,7 +177,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             time=self.scene.time,
             size=size,
             bar=bar,
-            axes=axes,
+            axes=arguments.view.axes,
             **dict(self.settings),
         )
         for number, header in enumerate(self._views.headers):
@@ -270,7 +269,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     @traitlets.validate("axes")
     def _check_axes(self, proposal: Any) -> str | None:
         try:
-            return checked_axes(proposal["value"])
+            return ViewOptions(axes=proposal["value"]).axes
         except FieldError as error:
             raise TraitValueError(str(error)) from error
 

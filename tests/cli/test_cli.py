@@ -415,6 +415,7 @@ def test_range_and_background_are_flags(run: Run, gyre: Path, tmp_path: Path) ->
         assert picture.getpixel((0, 0)) == (0, 0, 0)
     assert "--clim is '1'; expected two numbers" in run(*words, "--clim", "1")[2]
     assert "the colour 'blurple'" in run(*words, "--background", "blurple")[2]
+    assert "axes is 'scale', but only browsers draw axes" in run(*words, "--axes", "scale")[2]
 
 
 def test_every_option_is_a_flag_with_its_sentence(run: Run) -> None:

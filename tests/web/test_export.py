@@ -272,11 +272,6 @@ def test_a_page_has_its_own_ground_in_light_and_dark(page: Page, tmp_path: Path)
     assert pixels(page)[0, 0].tolist() == [0, 0, 128]
 
 
-def test_axes_that_there_are_not_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(FieldError, match=r"^axes is 'bar'; expected 'ticks', 'scale', 'none'"):
-        export(gyre(), tmp_path / "page.html", axes="bar")
-
-
 @pytest.mark.browser
 def test_nothing_leaves_a_small_page(
     offline: tuple[Page, list[str], list[str]], tmp_path: Path

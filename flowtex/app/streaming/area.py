@@ -28,7 +28,7 @@ from flowtex.app.streaming.points import PointReader
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
-from flowtex.options import AppearanceAttributes, FieldOptions
+from flowtex.options import AppearanceAttributes, FieldOptions, ViewOptions
 from flowtex.scene import Change, Scene
 from flowtex.settings import Settings
 
@@ -45,8 +45,8 @@ class FlowArea(AppearanceAttributes):
     state
         The state of the page; new names by default.
     **options
-        Arguments and settings of ``plotter.flowtex.add``, and ``zoom`` and ``focus`` as for
-        :func:`flowtex.render`.
+        Arguments and settings of ``plotter.flowtex.add``, and ``zoom``, ``focus`` and ``axes`` as
+        for :func:`flowtex.show`.
 
     Attributes
     ----------
@@ -86,10 +86,11 @@ class FlowArea(AppearanceAttributes):
         self.state = state or PageState(server)
         names = FieldOptions.__dataclass_fields__
         self._reading = FieldOptions(**{k: options.pop(k, None) for k in names})
+        axes = ViewOptions(axes=options.pop("axes", None)).axes
         self.viewport = Viewport(self._reading.field(flow), **options)
         self.stream = FrameStream(self.state.key("view"), self.viewport)
         self.player = Player(self.viewport, self.stream)
-        self.element = Element(self.state, self.viewport, self.stream, self.player)
+        self.element = Element(self.state, self.viewport, self.stream, self.player, axes)
         self.points = PointReader(self.viewport)
         self.appearance_changed = Signal()
         self._tasks: list[asyncio.Task[None]] = []

@@ -153,7 +153,12 @@ class Element:
     """What a page shows of a viewport, and what is done there."""
 
     def __init__(
-        self, state: PageState, viewport: Viewport, stream: FrameStream, player: Player
+        self,
+        state: PageState,
+        viewport: Viewport,
+        stream: FrameStream,
+        player: Player,
+        axes: str | None = None,
     ) -> None:
         self.painter = ""  #: Who draws, ``"server"`` or ``"browser"``; empty before a page says.
         #: What the panes are called, where that is not the name of their field.
@@ -164,7 +169,7 @@ class Element:
         self.parameter_asked = Signal()
         self.ref = state.key("element")
         self._server, self._viewport, self._stream = state.server, viewport, stream
-        self._player = player
+        self._player, self._axes = player, axes
         self._routes = Routes.of(state.server)
         self._client = self._routes.give(
             "client.js", lambda: (client_module().encode(), "text/javascript", None)
@@ -259,7 +264,7 @@ class Element:
         result = []
         for n, (scene, pane) in enumerate(zip(self._scenes, panes, strict=True)):
             scene.update(pane, viewport.background)
-            own = {"camera": present["camera"], "differs": list(settings)}
+            own = {"camera": present["camera"], "axes": self._axes, "differs": list(settings)}
             if n:
                 own |= {"own": settings, "timeShift": viewport.time_shift}
             if n < len(self.names):
