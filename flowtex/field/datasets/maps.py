@@ -164,12 +164,20 @@ def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
     center = (0.0 if around else middle, 0.0 if around else (low + high) / 2)
     if name is None:
         polar = not around or not places.is_line
-        polar = polar and abs(low + high) / 2 > POLAR
+        polar = polar and (abs(low + high) / 2 > POLAR or (low * high > 0 and _has_pole(places)))
         name = FLAT if not polar else "north" if low + high > 0 else "south"
     projection = Projection(name, center, max((high - low) / 2, 1.0))
     if (origin := projection.origin) is not None:
         projection = replace(projection, center=(origin, center[1]))
     return projection, around
+
+
+def _has_pole(places: Places) -> bool:
+    """Whether the edge of a grid goes around a pole."""
+    lon = places.a
+    edge = np.concatenate([lon[0], lon[1:, -1], lon[-1, -2::-1], lon[-2::-1, 0]])
+    steps = np.diff(edge[np.isfinite(edge)])
+    return bool(abs(((steps + 180.0) % 360.0 - 180.0).sum()) > 180.0)
 
 
 def shown_positions(projection: Projection, lon: Floats, lat: Floats) -> Floats:

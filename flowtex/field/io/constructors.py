@@ -225,7 +225,7 @@ class FieldConstructors:
             CF standard names, long names or names.
         projection
             A flat map, or ``"globe"``; see :class:`flowtex.earth.Projection`. By default plate
-            carree around the middle of the data, or a polar projection near a pole.
+            carree around the middle of the data, or a polar projection near and around a pole.
         globe
             Whether to draw on a sphere; the same as ``projection="globe"``.
         name

@@ -18,6 +18,9 @@ MAPPINGS: dict[str, dict[str, Any]] = {
     "lambert": pyproj.CRS.from_user_input(
         f"+proj=lcc +lat_1=30 +lat_2=60 +lat_0=45 +lon_0=-100 +R={EARTH_RADIUS}"
     ).to_cf(),
+    "polar": pyproj.CRS.from_user_input(
+        f"+proj=stere +lat_0=90 +lat_ts=70 +lon_0=-45 +R={EARTH_RADIUS}"
+    ).to_cf(),
     "rotated": {
         "grid_mapping_name": "rotated_latitude_longitude",
         "grid_north_pole_latitude": 39.25,
@@ -29,9 +32,9 @@ MAPPINGS: dict[str, dict[str, Any]] = {
 def on_mapping(name: str, *, geographic: bool = False, scale: float = 1.0) -> xr.Dataset:
     """The rotation on lines of x and y of a grid mapping."""
     mapping = MAPPINGS[name]
-    flat = name == "lambert"
-    x = np.linspace(-2e6, 2e6, 60) if flat else np.linspace(-20, 20, 60)
-    y = np.linspace(-1.5e6, 1.5e6, 40) if flat else np.linspace(-15, 15, 40)
+    flat = name != "rotated"
+    width, height = {"lambert": (2e6, 1.5e6), "polar": (4e6, 4e6), "rotated": (20, 15)}[name]
+    x, y = np.linspace(-width, width, 60), np.linspace(-height, height, 40)
     step = 10.0 if flat else 1e-4
     change = pyproj.Transformer.from_crs(pyproj.CRS.from_cf(mapping), SPHERE, always_xy=True)
     a, b = np.meshgrid(x, y)
@@ -69,6 +72,13 @@ def test_components_lead_to_greater_x_and_y(name: str, axis: str) -> None:
     """However the rows and columns are numbered."""
     ds = on_mapping(name)
     assert error(ds.isel({axis: slice(None, None, -1)}) if axis else ds) < 1e-3 * RATE
+
+
+def test_a_grid_around_a_pole_is_drawn_around_it() -> None:
+    around, beside = (on_mapping("polar").isel(y=slice(first, None)) for first in (0, 24))
+    for ds, name in ((around, "north"), (beside, "platecarree")):
+        projection = FlowField.from_xarray(ds).projection
+        assert projection is not None and projection.family == name
 
 
 @pytest.mark.parametrize("name", MAPPINGS)
