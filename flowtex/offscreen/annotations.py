@@ -7,6 +7,7 @@ legend last. Text grows with the picture, so that small and large ones look alik
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -39,6 +40,10 @@ PADDING, GAP, RAMP_WIDTH, RAMP_HEIGHT, LINE = 0.4, 0.6, 9.0, 0.65, 0.1
 OPACITY, LIGHT_FROM = 0.8, 0.5
 #: Digits of the ends of a legend: as many as tell them apart.
 DIGITS = range(3, 9)
+#: Number from which on the text of one has a power of ten.
+LARGE = 1e6
+#: Share of the range by which a number may lie beyond an end: less than a pixel.
+BEYOND = 0.004
 #: A unit of time with more letters than this is left out where room is scarce, which it is where
 #: the time would have more than this share of the picture's width.
 UNIT_LENGTH, TIME_WIDTH = 8, 0.4
@@ -217,8 +222,12 @@ class _Writer:
         apart = min(np.diff(shares), default=1.0)
         width = max(self._width(title), math.ceil(widest / apart), self._px(RAMP_WIDTH))
         high = self._px(RAMP_HEIGHT)
-        image, draw = self._blank(width, 2 * self._line + high)
-        self._write(draw, 0, 0, title)
+        # Numbers stand in the middle below their colours, and may reach beyond the first and last.
+        places = [share * width - self._width(text) / 2 for share, text in marks]
+        ends = [x + self._width(text) for x, text in zip(places, numbers, strict=True)]
+        start, end = math.ceil(max(-min(places), 0)), math.ceil(max(*ends, width))
+        image, draw = self._blank(start + end, 2 * self._line + high)
+        self._write(draw, start, 0, title)
         stops = np.linspace(0, len(table) - 1, width).round().astype(int)
         ramp = np.broadcast_to(table[stops], (high, width, 3))
         shape = Image.new("L", (SMOOTH * width, SMOOTH * high))
@@ -228,14 +237,11 @@ class _Writer:
         ImageDraw.Draw(shape).polygon(corners, fill=255)
         image.paste(
             Image.fromarray(np.ascontiguousarray(ramp)),
-            (self._pad, self._pad + self._line),
+            (self._pad + start, self._pad + self._line),
             shape.resize((width, high), Image.Resampling.BOX),
         )
-        for share, text in marks:
-            place = share * width - self._width(text) / 2
-            self._write(
-                draw, round(min(max(place, 0), width - self._width(text))), self._line + high, text
-            )
+        for place, text in zip(places, numbers, strict=True):
+            self._write(draw, round(start + place), self._line + high, text)
         return image
 
     @property
@@ -287,6 +293,14 @@ def _apart(one: Plate, other: Plate, gap: int) -> bool:
     )
 
 
+def _number_text(value: float, digits: int) -> str:
+    """Write a number as the browser's legends do: 1000, and 1e6."""
+    text = f"{value:.{digits}g}"
+    if "e+" in text and abs(value) < LARGE:
+        return f"{float(text):.0f}"
+    return re.sub(r"e(-?)\+?0?", r"e\1", text)
+
+
 def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[float, str]]:
     """Return round values in a range and their shares of it; its ends if fewer than two are."""
     from matplotlib.ticker import LogLocator, MaxNLocator
@@ -294,11 +308,12 @@ def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[floa
     where = np.log10 if log_scale else np.asarray
     locator = LogLocator(numticks=4) if log_scale else MaxNLocator(3, steps=[1, 2, 5, 10])
     values = np.asarray(locator.tick_values(low, high))
-    values = values[(values >= low) & (values <= high)]
+    slack = 0.0 if log_scale else BEYOND * (high - low)
+    values = values[(values >= low - slack) & (values <= high + slack)]
     values = values[:: 1 + len(values) // 5] if len(values) > 1 else np.unique([low, high])
     texts: list[str] = []
     for digits in DIGITS:
-        texts = [f"{value:.{digits}g}" for value in values]
+        texts = [_number_text(value, digits) for value in values]
         if len(set(texts)) == len(texts):
             break
     ends = where([low, high])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -116,7 +116,7 @@ def test_whatever_the_size_and_the_words_are(size: tuple[int, int], name: str, u
 def test_what_has_no_room_is_left_out_the_title_first() -> None:
     scene = Scene(patch(name="a name that is as long as this"))
     assert list(written(scene, (640, 400))) == ["legend", "time", "scale bar", "title"]
-    assert list(written(scene, (220, 180))) == ["legend", "time", "scale bar"]
+    assert list(written(scene, (250, 180))) == ["legend", "time", "scale bar"]
     assert list(written(scene, (40, 30))) == []
 
 
@@ -185,10 +185,39 @@ def test_a_legend_has_name_unit_and_round_values(texts: list[str]) -> None:
     assert texts[:3] == ["pressure (Pa)", "101326", "101328"]
     texts.clear()
     written(Scene.of(patch(), scalars="pressure", clim=(1, 10_000), log_scale=True))
-    assert texts[1:4] == ["1", "100", "1e+04"]
+    assert texts[1:4] == ["1", "100", "10000"]
     texts.clear()
     written(Scene.of(patch(), scalars="pressure", clim=(-0.1, 0.1)))
     assert texts[1:4] == ["-0.1", "0", "0.1"]
+
+
+@pytest.mark.parametrize(
+    ("limits", "log_scale", "numbers"),
+    [
+        ((1e-3, 1e3), True, ["0.001", "0.1", "10", "1000"]),
+        ((1e3, 1e7), False, ["0", "5e6", "1e7"]),
+        ((-2e-5, 3e-5), False, ["-2e-5", "0", "2e-5"]),
+    ],
+)
+def test_numbers_of_a_legend_stand_apart_below_their_colours(
+    monkeypatch: pytest.MonkeyPatch,
+    limits: tuple[float, float],
+    log_scale: bool,
+    numbers: list[str],
+) -> None:
+    places: dict[str, tuple[float, float]] = {}
+
+    def write(self: Any, draw: Any, x: int, y: int, text: str) -> None:
+        places[text] = (x, x + self._width(text))
+
+    monkeypatch.setattr(_Writer, "_write", write)
+    written(Scene.of(patch(), scalars="pressure", clim=limits, log_scale=log_scale))
+    found = [places[text] for text in numbers]
+    assert all(one[1] < other[0] for one, other in pairwise(found))
+    middles = np.array([sum(ends) / 2 for ends in found])
+    values = np.array([float(text) for text in numbers])
+    along = np.log10(values) if log_scale else values
+    assert np.abs(np.polyval(np.polyfit(along, middles, 1), along) - middles).max() < 1
 
 
 def test_a_legend_has_the_colours_of_the_picture() -> None:
