@@ -100,3 +100,22 @@ def test_each_step_has_its_orbits() -> None:
     found = flowtex.closed_orbits(field)
     assert [(orbit.time, orbit.stable) for orbit in found] == [(0.0, False), (2.0, True)]
     assert flowtex.closed_orbits(field, steps=[1]) == []
+
+
+@pytest.mark.parametrize("nodes", [17, 25, 49])
+def test_a_flow_without_divergence_has_none_on_a_coarse_grid(nodes: int) -> None:
+    random = np.random.default_rng(3)
+    x, y = np.meshgrid(*2 * [np.linspace(0, 2 * np.pi, nodes)])
+    velocity = np.zeros((nodes, nodes, 2))
+    for _ in range(6):  # a stream function of waves
+        a, b = random.integers(-3, 4, 2)
+        wave = random.normal() * np.cos(a * x + b * y + random.uniform(0, 6.28))
+        velocity += np.stack([b * wave, -a * wave], axis=-1)
+    field = FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)
+    assert flowtex.closed_orbits(field) == []
+    assert not any(line.closed for line in flowtex.separatrices(field))
+
+
+def test_a_weak_orbit_on_a_coarse_grid_is_one() -> None:
+    (orbit,) = flowtex.closed_orbits(turning("0.05 * (1 - x**2 - y**2)", 33))
+    assert np.linalg.norm(orbit.points, axis=1) == pytest.approx(1, abs=2e-2)

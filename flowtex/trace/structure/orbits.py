@@ -3,7 +3,7 @@
 A closed orbit in a plane turns around a critical point that is not a saddle, so it crosses every
 ray from there. Where the flow returns to a ray one turn later (its Poincare map) tells on which
 side of an orbit it is: it comes nearer from both sides, or moves away. Around a centre it returns
-to where it was, and no orbit is found there.
+to where it was but for errors of interpolation, which :mod:`isolation` tells from an orbit.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.locate import locator, surface_point
 from flowtex.trace.structure.critical_points import CriticalPoints, critical_points
+from flowtex.trace.structure.isolation import Isolation
 from flowtex.trace.trace import paths
 
 #: Distance between the points of a line in cells, points that are followed at once, and the length
@@ -92,7 +93,9 @@ def closed_orbits(field: FlowField, *, steps: Sequence[int] | None = None) -> li
     Notes
     -----
     Searched are orbits around the 8 strongest critical points that are not saddles. Orbits that lie
-    closer together than a thirtieth of the surface may be missed.
+    closer together than a thirtieth of the surface may be missed. In a flow without divergence all
+    streamlines close, and none is such an orbit: an orbit's lines come or leave by more than what
+    interpolation between nodes may do.
 
     Examples
     --------
@@ -142,6 +145,7 @@ class _Rays:
 
     def __init__(self, field: FlowField, points: CriticalPoints, around: CriticalPoints) -> None:
         self._field, surface = field, field.surface
+        self._isolation = Isolation(field)
         self._middle = np.array([point.position for point in around])
         nodes = [surface.node_near(point.index) for point in around]
         self._cell = np.array([float(surface.cell_size[node]) for node in nodes])
@@ -204,7 +208,8 @@ class _Rays:
         end = self._returns(index, ray[kept], forward=forward, lines=lines)
         # Where lines jump from one side to the other there is no orbit.
         closed = np.abs(end - places) < CLOSED_CELLS * self._cell[ray[kept]]
-        return [self._orbit(lines[n], stable=forward) for n in np.flatnonzero(closed)]
+        turns = [lines[n] for n in np.flatnonzero(closed)]
+        return [self._orbit(turn, stable=forward) for turn in turns if self._isolation.holds(turn)]
 
     def _put(
         self, places: Floats, number: Indices, ray: Indices | None = None

@@ -22,6 +22,7 @@ from flowtex.trace.structure.critical_points import (
     CriticalPoints,
     critical_points,
 )
+from flowtex.trace.structure.isolation import Isolation
 from flowtex.trace.trace import paths
 
 #: Distance from the saddle at which a line begins, and between its points, in cells.
@@ -235,13 +236,14 @@ def _lines(
     lags = spacing * np.arange(1.0, min(int(length / spacing), most) + 1)
     positions, reach = _followed(field, points, begin, lags, forward=forward)
     ends = scipy.spatial.KDTree([point.position for point in points])
-    result = []
+    isolation, result = Isolation(field), []
     for n, first in enumerate(begin):
         saddle, cell = saddles[n % len(saddles)], cells[n % len(saddles)]
         shown = positions[: int(np.searchsorted(lags, reach[n])), n]
         if not len(shown):  # it points out of the surface
             continue
-        line = field.surface.at(np.concatenate([first[None], shown]))
+        index = np.concatenate([first[None], shown])
+        line = field.surface.at(index)
         distance, which = (np.asarray(a) for a in ends.query(line))
         away = np.flatnonzero(distance > 2 * END_CELLS * cell)
         arrived = np.flatnonzero(distance < END_CELLS * cell)
@@ -249,7 +251,7 @@ def _lines(
         end = int(arrived[0]) if len(arrived) else len(line)
         turned = _turned(line[:end], spacing, CLOSED_CELLS * cell)
         turn = None
-        if turned is not None:
+        if turned is not None and isolation.holds(index[slice(*turned)]):
             turn, last = turned[0] + 1, turned[1] + 1
             line = line[:last]
         elif len(arrived):
