@@ -952,6 +952,19 @@ let shape2=document.createElementNS(SVG3,tag);for(let[name,value]of Object.entri
 .readout:empty { display: none; }
 .head:not(:has(.title:not([hidden]), .parameters:not(:empty), .readout:not(:empty))) { display: none; }
 .readout b { color: var(--ink); font-weight: 500; }
+/* Sliders keep their room beside the legend. Several wrap, and have a line of their own where the view is
+   narrow; the readout takes what is left there, as the picture would move if it took more. */
+.top:has(.row) .legend { flex-shrink: 9; }
+:host(.flowtex-framed) .top:has(.row + .row) {
+  flex-wrap: wrap; justify-content: flex-end; row-gap: 2px; height: auto; min-height: 46px; padding-top: 0;
+}
+:host(.flowtex-framed) .top:has(.row + .row) :is(.kinds, .legend) { margin-left: 0; }
+:host(.flowtex-framed) .head:has(.row + .row) { flex: 1 1 auto; flex-flow: row wrap; gap: 0 10px; }
+:host(.flowtex-framed) .parameters:has(.row + .row) { flex-wrap: wrap; gap: 0 12px; }
+:host(.flowtex-framed) .parameters:has(.row + .row) + .readout {
+  flex: 1 1 0; contain: inline-size; margin-left: -10px; padding: 0;
+}
+:host(.flowtex-framed) .parameters:has(.row + .row) + .readout > :first-child { margin-left: 10px; }
 .legend {
   flex: none; margin-left: auto; min-width: 150px; max-width: 60%; padding: 5px 10px 6px; font-size: 11px;
   pointer-events: none;
@@ -1126,6 +1139,9 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   margin: 0; max-width: 100%; white-space: pre-wrap; color: var(--quiet);
   font: 11px/1.4 ui-monospace, Menlo, Consolas, monospace; text-align: left;
 }
+@container (max-width: 640px) { :host(.flowtex-framed) .head:has(.row + .row) { flex-basis: 100%; margin-top: 5px; } }
+@container (max-width: 900px) { :host(.flowtex-framed) .head:has(.row + .row + .row) { flex-basis: 100%; margin-top: 5px\
+; } }
 @container (max-width: 460px) {
   .bar { flex-wrap: wrap; justify-content: center; }
   .track { order: -1; flex: 1 1 100%; width: auto; }

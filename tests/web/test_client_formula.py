@@ -85,3 +85,33 @@ def test_the_formula_draws_what_a_fine_grid_of_it_does_and_follows_its_slider(
         with acted(page):
             slider.fill("0.8")
         assert rms(picture(page), pictures[0.8]) < 2 < rms(*pictures.values())
+
+
+def test_no_slider_is_hidden_by_a_legend(browser: Browser, tmp_path: Path) -> None:
+    field = flowtex.formula("y", "c - a*sin(x) - b*y", **ENDS, a=(1, 0, 2), c=(0.3, -1, 1))
+    look: dict[str, Any] = {"samples": 3, "critical_points": True, "nullclines": True}
+    path = flowtex.export(field, tmp_path / "page.html", **look).path
+    found = """() => {
+      const { shadowRoot } = document.querySelector(".flowtex");
+      const isFound = (slider) => {
+        const { left, top, width, height } = slider.getBoundingClientRect();
+        return shadowRoot.elementFromPoint(left + width / 2, top + height / 2) === slider;
+      };
+      return [...shadowRoot.querySelectorAll(".parameters input")].map(isFound);
+    }"""
+    stage = """() => {
+      const { shadowRoot } = document.querySelector(".flowtex");
+      return JSON.stringify(shadowRoot.querySelector(".stage").getBoundingClientRect());
+    }"""
+    with opened_page(browser, 360, 400) as page:
+        opened(page, path)
+        for width in (360, 560, 800, 1200):
+            page.set_viewport_size({"width": width, "height": 400})
+            assert page.evaluate(found) == [True, True, True], width
+            # What is said of the point under the pointer moves nothing.
+            page.mouse.move(1, 1)
+            page.locator(".readout:empty").wait_for(state="attached")
+            before = page.evaluate(stage)
+            page.mouse.move(width / 2, 240)
+            page.locator(".readout b").first.wait_for(state="attached")
+            assert page.evaluate(stage) == before
