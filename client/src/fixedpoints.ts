@@ -29,8 +29,8 @@ export interface Separatrix {
 const [CELLS, NEWTON_STEPS, FAR_CELLS] = [160, 40, 2];
 /** Cells in which the lines of zeros are straight, along the longer side. */
 const NULLCLINE_CELLS = 256;
-/** Rate in the middle of such a line over the greatest at the corners of its cell, up to which it is zero. */
-const ZERO_RATE = 0.01;
+/** Halvings of a side that such a line crosses, and what they leave of a rate that goes to zero there at most. */
+const [NULLCLINE_HALVINGS, LEFT] = [12, 0.25];
 /**
  * Speed over that at the corners of its cell, at which a zero is one; tolerances for a zero
  * determinant and for equal positions.
@@ -117,18 +117,31 @@ export function nullclines(rate: Rate, [xs, ys]: Ends): [Pair, Pair][][] {
         const alone = above.findIndex((one, m) => one !== above[(m + 1) % 3] && one !== above[(m + 2) % 3]);
         if (alone < 0 || !corners.every(({ value }) => Number.isFinite(value[k]))) continue;
         const one = corners[alone];
-        const [start, end] = [1, 2].map((m): Pair => {
-          const other = corners[(alone + m) % 3];
-          return along(one.at, difference(other.at, one.at), one.value[k] / (one.value[k] - other.value[k]));
-        });
-        // Where the rate jumps, or has a pole, it has no zero.
-        const left = Math.abs(rate(...along(start, difference(end, start), 0.5))[k]);
-        const sizes = corners.map(({ value }) => Math.abs(value[k]));
-        if (left < Math.min(...sizes) || left < ZERO_RATE * Math.max(...sizes)) pieces.push([start, end]);
+        const others = [1, 2].map((m) => corners[(alone + m) % 3]);
+        if (!others.every((other) => vanishes((at) => rate(...at)[k], one.at, other.at))) continue;
+        const [start, end] = others.map((other): Pair =>
+          along(one.at, difference(other.at, one.at), one.value[k] / (one.value[k] - other.value[k])),
+        );
+        pieces.push([start, end]);
       }
     }
     return pieces;
   });
+}
+
+/**
+ * Whether a rate goes to zero between two places, and neither jumps nor has a pole there. It has different signs at
+ * the places, or is zero at the second one.
+ */
+function vanishes(rate: (at: Pair) => number, one: Pair, two: Pair): boolean {
+  const size = () => Math.max(Math.abs(rate(one)), Math.abs(rate(two)));
+  const [first, isAbove] = [size(), rate(one) > 0];
+  for (let n = 0; n < NULLCLINE_HALVINGS; n += 1) {
+    const middle = along(one, difference(two, one), 0.5);
+    if (rate(middle) > 0 === isAbove) one = middle;
+    else two = middle;
+  }
+  return size() < LEFT * first;
 }
 
 /** The zero near a place, by Newton's method; none where the rates are zero along a line, or jump. */

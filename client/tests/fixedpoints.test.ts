@@ -85,6 +85,7 @@ test("nullclines are where a rate is zero, and not where it jumps", () => {
   assert.ok(Math.abs(lengthOf(circle) - 2 * Math.PI) < 1e-3);
   assert.ok(Math.abs(lengthOf(line) - 3.9 * Math.SQRT2) < 1e-6);
   assert.deepEqual(nullclines((x, y) => [1 / (x - 0.013), Math.sign(y - 0.017)], box), [[], []]);
+  assert.deepEqual(nullclines((x, y) => [1 / (x - y + 0.001), Math.abs(x) / x], box), [[], []]);
   assert.deepEqual(nullclines(() => [0, NaN], box), [[], []]);
 });
 

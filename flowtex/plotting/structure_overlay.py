@@ -90,11 +90,14 @@ class StructureOverlay(Overlay):
 
     def _add_nullclines(self, lines: Sequence[Floats]) -> None:
         outer, inner = LINE_PX
-        whole = piece_mesh(*np.swapaxes(np.concatenate(lines), 0, 1))
-        self._add_lines(((0.0, whole),), outer, RIM_COLOR, RIM_OPACITY, above=0)
-        for pieces, color in zip(lines, NULLCLINE_COLORS.values(), strict=True):
-            mesh = piece_mesh(*np.swapaxes(pieces, 0, 1))
-            self._add_lines(((0.0, mesh),), inner, color, 1.0, above=1)
+        drawn = [(inner, color, 1.0, 1) for color in NULLCLINE_COLORS.values()]
+        looks = ((outer, RIM_COLOR, RIM_OPACITY, 0), *drawn)
+        for pieces, (width, color, opacity, above) in zip(
+            (np.concatenate(lines), *lines), looks, strict=True
+        ):
+            if len(pieces):
+                mesh = piece_mesh(*np.swapaxes(pieces, 0, 1))
+                self._add_lines(((0.0, mesh),), width, color, opacity, above=above)
 
     def _add_lines_of(self, lines: Separatrices, orbits: Sequence[ClosedOrbit]) -> None:
         by_color: dict[str, list[Floats]] = {name: [] for name in LINE_COLORS}

@@ -1298,12 +1298,12 @@ camera.pan(x,y),viewer.reportCamera()}else if(command==="closer"||command==="far
 camera.zoomBy(command==="closer"?notch:1/notch),viewer.reportCamera()}else if(command==="whole")viewer.reset();else if(command===
 "next"||command==="previous")viewer.step(command==="next"?1:-1);else if(command==="detail")viewer.choose("lod",!viewer.settings.
 lod);else if(key===PLAY_KEY)viewer.togglePlaying();else if(key===FULLSCREEN_KEY)panel.fullscreen();else if(key==="h")(options.
-follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[CELLS,NEWTON_STEPS,FAR_CELLS]=[160,40,2],NULLCLINE_CELLS=256,ZERO_RATE=.01,[ZERO_SHARE2,SINGULAR,SAME_CELLS]=[1e-7,1e-7,
-.001],CENTRE_SHARE=.05,[STEPS2,MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[8,.08,2],[MOST_AROUND,
-RATIO,APART]=[8,1.2,.03],[MOVED,HALVINGS]=[.05,24],difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[a[0]+step*
-way[0],a[1]+step*way[1]],distance=(a,b)=>Math.hypot(a[0]-b[0],a[1]-b[1]);function gradient(rate,[x,y],[dx,dy]){let[east,
-west,north,south]=[rate(x+dx,y),rate(x-dx,y),rate(x,y+dy),rate(x,y-dy)];return[0,1].flatMap(k=>[(east[k]-west[k])/(2*dx),
-(north[k]-south[k])/(2*dy)])}function described(at,[a,b,c,d]){let[trace,steepness]=[a+d,Math.abs(a*d-b*c)],square=trace**
+follows?.panel??panel).toggle();else if(key===CLOSE_KEY)panel.fold(),viewer.card.close(),this.hold(!1);else return!1;return!0}};var[CELLS,NEWTON_STEPS,FAR_CELLS]=[160,40,2],NULLCLINE_CELLS=256,[NULLCLINE_HALVINGS,LEFT]=[12,.25],[ZERO_SHARE2,SINGULAR,
+SAME_CELLS]=[1e-7,1e-7,.001],CENTRE_SHARE=.05,[STEPS2,MOST_STEPS,BEGIN,END]=[800,2400,.02,1.5],[LEAST_TURN,CLOSED,WOUND]=[
+8,.08,2],[MOST_AROUND,RATIO,APART]=[8,1.2,.03],[MOVED,HALVINGS]=[.05,24],difference=(a,b)=>[a[0]-b[0],a[1]-b[1]],along=(a,way,step)=>[
+a[0]+step*way[0],a[1]+step*way[1]],distance=(a,b)=>Math.hypot(a[0]-b[0],a[1]-b[1]);function gradient(rate,[x,y],[dx,dy]){
+let[east,west,north,south]=[rate(x+dx,y),rate(x-dx,y),rate(x,y+dy),rate(x,y-dy)];return[0,1].flatMap(k=>[(east[k]-west[k])/
+(2*dx),(north[k]-south[k])/(2*dy)])}function described(at,[a,b,c,d]){let[trace,steepness]=[a+d,Math.abs(a*d-b*c)],square=trace**
 2/4-(a*d-b*c),root=Math.sqrt(Math.abs(square)),turned=Math.abs(trace)/2<=CENTRE_SHARE*root?"centre":trace>0?"spiral sour\
 ce":"spiral sink",kind=a*d-b*c<0?"saddle":square<0?turned:trace>0?"source":"sink",way=value=>{let[one,two]=[[b,value-a],
 [value-d,c]],[x,y]=Math.hypot(...one)>Math.hypot(...two)?one:two;return[x/Math.hypot(x,y),y/Math.hypot(x,y)]},ways=kind===
@@ -1322,20 +1322,22 @@ NULLCLINE_CELLS*side/Math.max(...sides)),8)),nodes=Array.from({length:(rows+1)*(
 let pieces=[];for(let n=0;n<rows*columns;n+=1){let low=n+Math.floor(n/columns),[a,b,c,d]=[low,low+1,low+columns+1,low+columns+
 2].map(node=>nodes[node]);for(let corners of[[a,b,d],[a,d,c]]){let isSide=corners.filter(({value})=>value[k]!==0).length===
 1,above=corners.map(({value})=>isSide?value[k]!==0:value[k]>0),alone=above.findIndex((one2,m)=>one2!==above[(m+1)%3]&&one2!==
-above[(m+2)%3]);if(alone<0||!corners.every(({value})=>Number.isFinite(value[k])))continue;let one=corners[alone],[start,
-end]=[1,2].map(m=>{let other=corners[(alone+m)%3];return along(one.at,difference(other.at,one.at),one.value[k]/(one.value[k]-
-other.value[k]))}),left=Math.abs(rate(...along(start,difference(end,start),.5))[k]),sizes=corners.map(({value})=>Math.abs(
-value[k]));(left<Math.min(...sizes)||left<ZERO_RATE*Math.max(...sizes))&&pieces.push([start,end])}}return pieces})}function zero(rate,start,cell,speed){
-let small=[1e-5*cell[0],1e-5*cell[1]],at=start;for(let n=0;n<NEWTON_STEPS;n+=1){let[u,v2]=rate(...at),matrix=gradient(rate,
-at,small),[a,b,c,d]=matrix,determinant2=a*d-b*c;if(!(Math.abs(determinant2)>SINGULAR*(a*a+b*b+c*c+d*d)))return null;let step=[
-(b*v2-d*u)/determinant2,(c*u-a*v2)/determinant2],share=Math.min(1,1/Math.max(Math.abs(step[0]/cell[0]),Math.abs(step[1]/
-cell[1]),1e-30));if(at=along(at,step,share),!(Math.max(...difference(at,start).map((x,k)=>Math.abs(x/cell[k])))<FAR_CELLS))
-return null;if(Math.hypot(step[0]/cell[0],step[1]/cell[1])<1e-10)break}return Math.hypot(...rate(...at))<=ZERO_SHARE2*speed?
-described(at,gradient(rate,at,small)):null}function separatrices(rate,ends2,points,saddles){let step=Math.hypot(...ends2.
-map(([low,high])=>high-low))/STEPS2;return saddles.flatMap(saddle=>{let{ways}=saddle;return ways?[!0,!1].flatMap(leaves=>[
-1,-1].map(side=>{let way=leaves?ways.leaving:ways.coming,begin=along(saddle.at,way,side*BEGIN*step),path=followed(rate,ends2,
-points,[saddle.at,begin],leaves?step:-step),closed=turnOf(path,step,CLOSED),wound=turnOf(path,step,WOUND);return{path:wound?
-path.slice(0,2*wound[1]-wound[0]+1):path,saddle,leaves,orbit:closed&&path.slice(closed[0],closed[1]+1)}})):[]})}function closedOrbits(rate,ends2,points){
+above[(m+2)%3]);if(alone<0||!corners.every(({value})=>Number.isFinite(value[k])))continue;let one=corners[alone],others=[
+1,2].map(m=>corners[(alone+m)%3]);if(!others.every(other=>vanishes(at=>rate(...at)[k],one.at,other.at)))continue;let[start,
+end]=others.map(other=>along(one.at,difference(other.at,one.at),one.value[k]/(one.value[k]-other.value[k])));pieces.push(
+[start,end])}}return pieces})}function vanishes(rate,one,two){let size=()=>Math.max(Math.abs(rate(one)),Math.abs(rate(two))),
+[first,isAbove]=[size(),rate(one)>0];for(let n=0;n<NULLCLINE_HALVINGS;n+=1){let middle=along(one,difference(two,one),.5);
+rate(middle)>0===isAbove?one=middle:two=middle}return size()<LEFT*first}function zero(rate,start,cell,speed){let small=[
+1e-5*cell[0],1e-5*cell[1]],at=start;for(let n=0;n<NEWTON_STEPS;n+=1){let[u,v2]=rate(...at),matrix=gradient(rate,at,small),
+[a,b,c,d]=matrix,determinant2=a*d-b*c;if(!(Math.abs(determinant2)>SINGULAR*(a*a+b*b+c*c+d*d)))return null;let step=[(b*v2-
+d*u)/determinant2,(c*u-a*v2)/determinant2],share=Math.min(1,1/Math.max(Math.abs(step[0]/cell[0]),Math.abs(step[1]/cell[1]),
+1e-30));if(at=along(at,step,share),!(Math.max(...difference(at,start).map((x,k)=>Math.abs(x/cell[k])))<FAR_CELLS))return null;
+if(Math.hypot(step[0]/cell[0],step[1]/cell[1])<1e-10)break}return Math.hypot(...rate(...at))<=ZERO_SHARE2*speed?described(
+at,gradient(rate,at,small)):null}function separatrices(rate,ends2,points,saddles){let step=Math.hypot(...ends2.map(([low,
+high])=>high-low))/STEPS2;return saddles.flatMap(saddle=>{let{ways}=saddle;return ways?[!0,!1].flatMap(leaves=>[1,-1].map(
+side=>{let way=leaves?ways.leaving:ways.coming,begin=along(saddle.at,way,side*BEGIN*step),path=followed(rate,ends2,points,
+[saddle.at,begin],leaves?step:-step),closed=turnOf(path,step,CLOSED),wound=turnOf(path,step,WOUND);return{path:wound?path.
+slice(0,2*wound[1]-wound[0]+1):path,saddle,leaves,orbit:closed&&path.slice(closed[0],closed[1]+1)}})):[]})}function closedOrbits(rate,ends2,points){
 let diagonal=Math.hypot(...ends2.map(([low,high])=>high-low)),step=diagonal/STEPS2,found=[];for(let{at:[x,y]}of points.filter(
 ({ways})=>!ways).slice(0,MOST_AROUND)){let turn=(place,way)=>{let side=Math.sign(way*rate(x+place,y)[1]),isBack=path2=>{
 let[before2,after2]=path2.slice(-2).map(at=>side*(at[1]-y));return path2.length>LEAST_TURN&&before2<0&&after2>=0&&path2[path2.

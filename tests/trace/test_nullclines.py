@@ -50,6 +50,26 @@ def test_walls_are_whole_lines_and_rest_is_none() -> None:
     assert len(nullclines(still)[1]) == 0
 
 
+@pytest.mark.parametrize("rate", ["1/x", "1/(x - y + 0.01)", "abs(x)/x", "tan(3*x)/sin(3*x)"])
+def test_poles_and_jumps_of_a_formula_are_none(rate: str) -> None:
+    one, two = nullclines(flowtex.formula(rate, "y - x", x=(-1, 1.1), y=(-1, 1.07)))
+    assert len(one) == 0
+    assert lengths(two) == pytest.approx(np.sqrt(2) * 2.07, rel=1e-6)
+
+
+def test_a_flow_without_nullclines_is_drawn() -> None:
+    field = flowtex.formula("1/x", "1", x=(-1, 1.1), resolution=17)
+    assert flowtex.render(field, size=(60, 40), nullclines=True).shape == (40, 60, 3)
+
+
+def test_a_formula_has_its_lines_at_its_time() -> None:
+    field = flowtex.formula("x - t", "1/y", x=(-2, 2), times=(0, 1))
+    for step, time in enumerate(field.times):
+        one, two = nullclines(field.at_step(step))
+        assert one[..., 0] == pytest.approx(time, abs=1e-9)
+        assert len(one) and not len(two)
+
+
 def test_curved_surfaces_have_none() -> None:
     settings = Settings(nullclines=True)
     with pytest.raises(SettingsError, match="nullclines is True; expected False: the surface"):

@@ -2,35 +2,74 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Bools, Floats
 from flowtex.field import FlowField
+from flowtex.field.formula import Formula
 
-#: A component is zero up to this share of its greatest value.
-ROUNDING = 1e-12
+#: A component is zero up to this share of what it is below at most nodes: beside a pole it is huge.
+ROUNDING, USUAL_SHARE = 1e-12, 0.9
+#: Halvings of a side of a triangle that a line crosses, and what they leave of a value that goes
+#: to zero there, at most; at a pole and at a jump more is left.
+HALVINGS, LEFT = 12, 0.25
 
 
 def nullclines(field: FlowField) -> tuple[Floats, Floats]:
     """Return where the components of a steady flow are zero; a curved surface has no such lines.
 
     The components are those along the axes of a flat surface, x and y in the plane of these. They
-    are linear in the triangles that are drawn. Returns the straight pieces of both lines,
-    (S, 2, 3) each, in no order.
+    are linear in the triangles that are drawn; those of a formula are not, which tells a zero from
+    a pole. Returns the straight pieces of both lines, (S, 2, 3) each, in no order.
     """
-    surface = field.surface
+    surface, formula = field.surface, field.formula
     if surface.frame is None:
         return np.empty((0, 2, 3)), np.empty((0, 2, 3))
     corners = surface.corners_of(surface.drawn)
     points = surface.points.reshape(-1, 3)[corners]
     values = (field.velocity[0].reshape(-1, 3) @ surface.frame.T)[corners]
-    one, two = (_zero_pieces(points, values[..., k]) for k in range(2))
-    return one, two
+    lines = []
+    for k in range(2):
+        pieces, sides = _zero_pieces(points, values[..., k])
+        if formula is not None and not formula.surface:
+            rate = partial(_rate, formula, float(field.times[0]), k)
+            pieces = pieces[_vanishes(rate, sides[:, 0]) & _vanishes(rate, sides[:, 1])]
+        lines.append(pieces)
+    return lines[0], lines[1]
 
 
-def _zero_pieces(points: Floats, values: Floats) -> Floats:
-    """Return the pieces in triangles (M, 3, 3) along which values (M, 3) are zero, (S, 2, 3)."""
-    least = ROUNDING * np.abs(values).max(initial=0.0)
+def _rate(formula: Formula, time: float, component: int, points: Floats) -> Floats:
+    x, y, _ = points.T
+    return formula.velocity(x, y, time)[:, component]
+
+
+def _vanishes(rate: Callable[[Floats], Floats], sides: Floats) -> Bools:
+    """Return whether a rate goes to zero between both ends of sides (S, 2, 3), and does not jump.
+
+    It has different signs at the ends, or is zero at the second one.
+    """
+    ends = [sides[:, 0], sides[:, 1]]
+    found = [rate(end) for end in ends]
+    first = np.maximum(*np.abs(found))
+    for _ in range(HALVINGS):
+        middle = 0.5 * (ends[0] + ends[1])
+        value = rate(middle)
+        is_one = (value > 0) == (found[0] > 0)
+        for n, moves in enumerate((is_one, ~is_one)):
+            ends[n] = np.where(moves[:, None], middle, ends[n])
+            found[n] = np.where(moves, value, found[n])
+    return np.asarray(np.maximum(*np.abs(found)) < LEFT * first)
+
+
+def _zero_pieces(points: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """Return the pieces in triangles (M, 3, 3) along which values (M, 3) are zero, (S, 2, 3).
+
+    Also returns the two sides of the triangle on which a piece ends, (S, 2, 2, 3).
+    """
+    least = ROUNDING * np.quantile(np.abs(values), USUAL_SHARE) if len(values) else 0.0
     differs = np.abs(values) > least
     # A side along which it is zero is a piece, and may be a wall, with a triangle on one side only.
     is_side = differs.sum(axis=1) == 1
@@ -41,10 +80,11 @@ def _zero_pieces(points: Floats, values: Floats) -> Floats:
     # The corner that differs from the other two, and both sides of the triangle that meet there.
     alone = np.argmax(above[some] == (count[some] == 1)[:, None], axis=1)
     row = np.arange(len(some))
-    ends = []
+    ends, sides = [], []
     for k in (1, 2):
         other = (alone + k) % 3
         share = values[row, alone] / (values[row, alone] - values[row, other])
-        start = points[row, alone]
-        ends.append(start + share[:, None] * (points[row, other] - start))
-    return np.stack(ends, axis=1)
+        start, end = points[row, alone], points[row, other]
+        ends.append(start + share[:, None] * (end - start))
+        sides.append(np.stack([start, end], axis=1))
+    return np.stack(ends, axis=1), np.stack(sides, axis=1)
