@@ -3,15 +3,21 @@
 import { pointInPlane, type Camera } from "./camera.ts";
 import { withUnit } from "./dom.ts";
 import { lonLatOf } from "./lonlat.ts";
-import type { AxesKind, Header, Part } from "./protocol.ts";
+import type { AxesKind, Earth, Header, Part } from "./protocol.ts";
 import { degreeTicks, ticksOf, type Tick } from "./ticks.ts";
-import { clamp, length, subtract } from "./vectors.ts";
+import { clamp, length, subtract, type Vector } from "./vectors.ts";
 
 const SVG = "http://www.w3.org/2000/svg";
 /** Parts of a border; values between their ends are interpolated linearly. */
 const PARTS = 48;
 /** Least share of the distance along a border that its coordinate accounts for; an oblique view has less. */
 const LEAST_SHARE = 0.999;
+/** Degrees by which the latitudes of one row may differ where parallels are straight. */
+const SAME_LATITUDE = 0.1;
+/** Share of a map's height that is kept from its poles, and half a turn with what rounding adds. */
+const [POLE_SHARE, HALF_TURN] = [1 / 64, 180.1];
+/** Share of a border's degrees by which they may go back, as along an outline. */
+const MOST_BACK = 0.02;
 /** Pixels of a letter and between labels at the lower border, and between labels at the left one. */
 const [LETTER_PX, GAP_PX, ROW_PX] = [6.5, 14, 34];
 const TICK_PX = 4;
@@ -182,14 +188,9 @@ function borderOf(host: AxesHost, from: [number, number], to: [number, number]):
   const { earth, lengthUnit } = header;
   if (earth?.map) {
     const along = from[1] === to[1] ? 0 : 1;
-    const [low, high] = [earth.map.slice(0, 2), earth.map.slice(2)];
-    const degrees = places.map((place) => {
-      if (place[along] < low[along] || place[along] > high[along]) return NaN;
-      // Beside the map its nearest side is read.
-      const inside = place.map((c, n) => (n < 2 ? clamp(c, low[n], high[n]) : c));
-      return lonLatOf(earth, inside, parts.get("lonlat"))?.[along] ?? NaN;
-    });
-    return { letters: along ? "NS" : "EW", values: unwrapped(degrees) };
+    const degrees = degreesAlong({ ...earth, map: earth.map }, places, along, parts.get("lonlat"));
+    const values = unwrapped(degrees);
+    return goesOneWay(values) ? { letters: along ? "NS" : "EW", values } : null;
   }
   const way = subtract(places[PARTS], places[0]);
   const axis = way.map(Math.abs).indexOf(Math.max(...way.map(Math.abs)));
@@ -202,6 +203,34 @@ function borderOf(host: AxesHost, from: [number, number], to: [number, number]):
   if (Math.abs(border[across ?? 0]) > 1 - LEAST_SHARE) return null;
   const name = withUnit(COORDINATES[axis], lengthUnit && `(${lengthUnit})`);
   return { name, values: places.map((place) => place[axis]) };
+}
+
+/** Longitudes, or latitudes, at places of a border; NaN beside the map. */
+export function degreesAlong(earth: Earth & { map: number[] }, places: Vector[], along: number, lonlat?: Part): number[] {
+  const [low, high] = [earth.map.slice(0, 2), earth.map.slice(2)];
+  const [width, height] = low.map((c, n) => high[n] - c);
+  const read = (x: number, y: number) => lonLatOf(earth, [x, y, 0], lonlat) ?? [NaN, NaN];
+  const middle = low[0] + width / 2;
+  const [one, other] = [middle, low[0] + width / 4].map((x) => read(x, low[1] + height / 4)[1]);
+  const isStraight = Math.abs(one - other) < SAME_LATITUDE;
+  return places.map(([x, y]) => {
+    if (along ? y < low[1] || y > high[1] : x < low[0] || x > high[0]) return NaN;
+    if (!isStraight) return read(clamp(x, low[0], high[0]), clamp(y, low[1], high[1]))[along];
+    if (along) return read(middle, y)[1];
+    // Along a straight parallel meridians are even; a pole may be a line, along which none is known.
+    const row = clamp(y, low[1] + POLE_SHARE * height, high[1] - POLE_SHARE * height);
+    const [from, to] = [0, 1 / 64].map((share) => read(middle + share * width, row)[0]);
+    const away = (64 * (((to - from + 540) % 360) - 180) * (x - middle)) / width;
+    return Math.abs(away) < HALF_TURN ? from + away : NaN;
+  });
+}
+
+/** Whether values only rise or only fall, so that each is met once. */
+function goesOneWay(values: number[]): boolean {
+  const finite = values.filter(Number.isFinite);
+  const steps = finite.slice(1).map((value, n) => value - finite[n]);
+  const [rise, fall] = [1, -1].map((sign) => steps.reduce((sum, step) => sum + Math.max(sign * step, 0), 0));
+  return Math.min(rise, fall) < MOST_BACK * Math.max(rise, fall);
 }
 
 /** Angles without the jumps of a turn. */
