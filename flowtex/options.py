@@ -50,7 +50,6 @@ PLAIN_COLOR = "#a0a0a0"
 NO_VALUE_COLOR = "darkgray"
 #: Colour of land, unobtrusive on a light and on a dark background.
 LAND_COLOR = "#8f8b82"
-
 #: What stands at the borders of a view in a browser: coordinates, the length of a bar, or nothing.
 AXES = ("ticks", "scale", "none")
 
@@ -277,14 +276,12 @@ class Appearance:
         default=False, text="Whether colours follow the logarithm, for values above 0.", form=SWITCH
     )
     color: Any = _option(
-        PLAIN_COLOR, ("Colour of a plain surface, in any form that PyVista accepts.")
+        PLAIN_COLOR, "Colour of a plain surface, in any form that PyVista accepts."
     )
     opacity: float = _option(1.0, "Opacity: 1 is opaque, 0 invisible.", NUMBER)
     visible: bool = _option(default=True, text="Whether the surface is drawn.", form=SWITCH)
     lighting: bool | None = _option(
-        None,
-        "Whether the surface is lit; by default only curved ones are.",
-        SWITCH,
+        None, "Whether the surface is lit; by default only curved ones are.", SWITCH
     )
     show_scalar_bar: bool | None = _option(
         None,
@@ -573,11 +570,9 @@ class AppearanceAttributes:
         is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
         if self._is_made and not is_known:
             own = [n for n in dir(type(self)) if not n.startswith("_")]
-            msg = f"{type(self).__name__} has no attribute {name!r}"
-            if name in TABLE:
-                msg += f"; it is a setting: use settings.{name}"
-            else:
-                msg += f"; {near_names(name, own)}"
+            of_settings = f"it is a setting: use settings.{name}"
+            hint = of_settings if name in TABLE else near_names(name, own)
+            msg = f"{type(self).__name__} has no attribute {name!r}; {hint}"
             raise AttributeError(msg)
         super().__setattr__(name, value)
 
@@ -599,11 +594,6 @@ def _described(text: str, options: list[Any]) -> str:
             described["**settings"] = SETTINGS_TEXT
         for name, words in described.items():
             lines.append(f"{indent}{name}")
-            lines += textwrap.wrap(
-                words,
-                width=100,
-                initial_indent=indent + "    ",
-                subsequent_indent=indent + "    ",
-                break_on_hyphens=False,
-            )
+            filled = textwrap.fill(words, 96 - len(indent), break_on_hyphens=False)
+            lines.append(textwrap.indent(filled, indent + "    "))
     return "\n".join(lines)
