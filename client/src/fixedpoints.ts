@@ -25,6 +25,12 @@ export interface Separatrix {
   orbit: Pair[] | null;
 }
 
+export interface ClosedOrbit {
+  path: Pair[];
+  /** Whether the lines beside it come to it; they leave it otherwise. */
+  isStable: boolean;
+}
+
 /** Cells in which zeros are looked for along the longer side, steps of Newton's method and how far they may lead. */
 const [CELLS, NEWTON_STEPS, FAR_CELLS] = [160, 40, 2];
 /** Cells in which the lines of zeros are straight, along the longer side. */
@@ -193,10 +199,10 @@ export function separatrices(rate: Rate, ends: Ends, points: FixedPoint[], saddl
  * Closed orbits to which lines come, or which they leave: where lines return to a ray from a point that is no
  * saddle. flowtex/trace/structure/orbits.py finds them on grids.
  */
-export function closedOrbits(rate: Rate, ends: Ends, points: FixedPoint[]): Pair[][] {
+export function closedOrbits(rate: Rate, ends: Ends, points: FixedPoint[]): ClosedOrbit[] {
   const diagonal = Math.hypot(...ends.map(([low, high]) => high - low));
   const step = diagonal / STEPS;
-  const found: Pair[][] = [];
+  const found: ClosedOrbit[] = [];
   for (const { at: [x, y] } of points.filter(({ ways }) => !ways).slice(0, MOST_AROUND)) {
     /** The turn from a place of the ray on, forward or back; its last point is on the ray. */
     const turn = (place: number, way: number): Pair[] | null => {
@@ -224,9 +230,9 @@ export function closedOrbits(rate: Rate, ends: Ends, points: FixedPoint[]): Pair
           if (moved(middle, way) > 0) low = middle;
           else high = middle;
         }
-        const orbit = turn(low, way);
-        const isNew = orbit && !found.some((other) => other.some((at) => distance(at, orbit[0]) < 2 * step));
-        if (orbit && isNew && distance(orbit[0], orbit[orbit.length - 1]) < CLOSED * step) found.push(orbit);
+        const path = turn(low, way);
+        const isNew = path && !found.some((other) => other.path.some((at) => distance(at, path[0]) < 2 * step));
+        if (path && isNew && distance(path[0], path[path.length - 1]) < CLOSED * step) found.push({ path, isStable: way > 0 });
       }
       last = Number.isNaN(out) ? null : { place, out };
     }

@@ -222,8 +222,9 @@ export class FormulaSource {
       nullclines(rate, grid.ends).forEach((pieces, component) => rows.push(...pieces.flat().map((at) => row(at, component))));
     } else if (kind === "critical") rows.push(...points.map((point) => row(point.at, kinds.indexOf(point.kind))));
     else {
-      closedOrbits(rate, grid.ends, points).forEach((orbit, n) => {
-        rows.push(...orbit.map((at) => row(at, LINE.orbit + (n % 2))));
+      closedOrbits(rate, grid.ends, points).forEach(({ path, isStable }, n) => {
+        const number = LINE.orbit + LINE.leaving * Number(isStable) + (n % 2);
+        rows.push(...path.map((at) => row(at, number)));
       });
       const saddles = points.filter(({ ways }) => ways).slice(0, MOST_SADDLES);
       separatrices(rate, grid.ends, points, saddles).forEach(({ path, orbit, saddle, leaves }, n) => {

@@ -28,13 +28,13 @@ interface Layer {
 
 /** Lines by what they are, and points by their kinds: places in the surface's frame, three numbers each. */
 interface Shapes {
-  lines: Record<"leaving" | "coming" | "closed orbit", number[][]>;
+  lines: Record<"from saddle" | "to saddle" | "stable orbit" | "unstable orbit", number[][]>;
   points: number[][];
 }
 
 /** What the settings leave of the parts. */
 export function shapesOf(points: ArrayLike<number>, lines: ArrayLike<number>, most: { points: number; saddles: number }): Shapes {
-  const shapes: Shapes = { lines: { leaving: [], coming: [], "closed orbit": [] }, points: [] };
+  const shapes: Shapes = { lines: { "from saddle": [], "to saddle": [], "stable orbit": [], "unstable orbit": [] }, points: [] };
   for (let n = 0; n < Math.min(points.length / ROW, most.points); n += 1) {
     const kind = points[ROW * n + 3];
     (shapes.points[kind] ??= []).push(...[0, 1, 2].map((k) => points[ROW * n + k]));
@@ -43,10 +43,10 @@ export function shapesOf(points: ArrayLike<number>, lines: ArrayLike<number>, mo
   for (let n = 0; n < lines.length / ROW; n += 1) {
     const number = lines[ROW * n + 3];
     if (number >= LINE.saddle * most.saddles) continue;
-    const turns = number & LINE.orbit ? "closed orbit" : number & LINE.leaving ? "leaving" : "coming";
-    if (number !== last) shapes.lines[turns].push([]);
+    const names = number & LINE.orbit ? (["stable orbit", "unstable orbit"] as const) : (["from saddle", "to saddle"] as const);
+    const path = shapes.lines[names[number & LINE.leaving ? 0 : 1]];
+    if (number !== last) path.push([]);
     last = number;
-    const path = shapes.lines[turns];
     path[path.length - 1].push(...[0, 1, 2].map((k) => lines[ROW * n + k]));
   }
   return shapes;
@@ -123,14 +123,18 @@ export class Marks {
     return [part ? Number(settings[MARKS[kind]]) : 0, part];
   }
 
-  /** Names and colours of the kinds of points, and of nullclines, that are drawn, in the order of a legend. */
+  /** Names and colours of the kinds of points, and of lines, that are drawn, in the order of a legend. */
   legend(settings: Settings, moment: Moment): StructureHeader["kinds"] {
     const [most, part] = this.shown(settings, moment, "critical");
     const kinds = new Set<number>();
     for (let n = 0; n < Math.min(most, part?.shape[0] ?? 0); n += 1) kinds.add(Number(part?.data[ROW * n + 3]));
-    const { kinds: all = [], nullclines = [] } = this.header.structure ?? {};
-    const lines = this.shown(settings, moment, "nullclines")[0] ? nullclines : [];
-    return [...all.filter((_, n) => kinds.has(n)), ...lines.map((line) => ({ ...line, isLine: true }))];
+    const { kinds: all = [], lines = {}, nullclines = [] } = this.header.structure ?? {};
+    const [saddles, paths] = this.shown(settings, moment, "separatrices");
+    const drawn = Object.entries(shapesOf([], paths?.data ?? [], { points: 0, saddles }).lines)
+      .filter(([, some]) => some.length)
+      .map(([name]) => ({ name, color: lines[name] }));
+    if (this.shown(settings, moment, "nullclines")[0]) drawn.push(...nullclines);
+    return [...all.filter((_, n) => kinds.has(n)), ...drawn.map((line) => ({ ...line, isLine: true }))];
   }
 
   draw({ camera, anchor, width, height, ratio }: EarthView, settings: Settings, moment: Moment): void {
@@ -195,9 +199,9 @@ export class Marks {
     put(ends(Object.values(shapes.lines).flat()), rim, line[0], 1.5);
     Object.entries(shapes.lines).forEach(([name, paths], n) => put(ends(paths), structure.lines[name], line[1], 2 + n));
     const places = structure.kinds.map((_, n) => shapes.points[n] ?? []);
-    put(ends(places, true), rim, dot[0], 5);
-    structure.kinds.forEach(({ color }, n) => put(ends([places[n]], true), color, dot[1], 6));
-    put(ends(places.filter((_, n) => structure.kinds[n].turns), true), middle, dot[2], 7);
+    put(ends(places, true), rim, dot[0], 6);
+    structure.kinds.forEach(({ color }, n) => put(ends([places[n]], true), color, dot[1], 7));
+    put(ends(places.filter((_, n) => structure.kinds[n].turns), true), middle, dot[2], 8);
     this.send(pieces);
     this.drawn = { key, layers };
     return layers;

@@ -61,7 +61,8 @@ test("closed orbits are found where no separatrix ends", () => {
   for (const sign of [1, -1]) {
     const [orbit, ...others] = orbitsOf((x, y) => [sign * y, sign * ((1 - x * x) * y - x)]);
     assert.equal(others.length, 0);
-    assert.ok(Math.abs(Math.max(...orbit.map(([x]) => x)) - 2.0086) < 1e-3);
+    assert.equal(orbit.isStable, sign > 0);
+    assert.ok(Math.abs(Math.max(...orbit.path.map(([x]) => x)) - 2.0086) < 1e-3);
   }
   const turning = (growth: (r: number) => number): Rate => (x, y) => {
     const k = growth(x * x + y * y);
@@ -69,10 +70,10 @@ test("closed orbits are found where no separatrix ends", () => {
   };
   for (const k of [1, 0.05]) {
     const [orbit] = orbitsOf(turning((r) => k * (1 - r)));
-    assert.ok(orbit.every((at) => Math.abs(Math.hypot(...at) - 1) < 1e-4));
+    assert.ok(orbit.path.every((at) => Math.abs(Math.hypot(...at) - 1) < 1e-4));
   }
   const two = orbitsOf(turning((r) => (1 - r) * (r - 2.25)));
-  assert.deepEqual(two.map((orbit) => Math.round(1e3 * Math.hypot(...orbit[0]))), [1000, 1500]);
+  assert.deepEqual(two.map(({ path, isStable }) => [Math.round(1e3 * Math.hypot(...path[0])), isStable]), [[1000, false], [1500, true]]);
   const none: Rate[] = [(x, y) => [-y, x], (x, y) => [y, -Math.sin(x)], (x, y) => [y, -Math.sin(x) - 0.2 * y], (x, y) => [-Math.sin(2 * x), -Math.cos(y)]];
   for (const rate of none) assert.deepEqual(orbitsOf(rate), []);
 });

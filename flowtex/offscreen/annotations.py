@@ -23,7 +23,15 @@ from flowtex._util.colours import rgb
 from flowtex.camera import Camera
 from flowtex.field import FlowField
 from flowtex.field.dates import date_text
-from flowtex.rendering.structure_marks import DOT_PX, KIND_MARKS, MIDDLE_COLOR, RIM_COLOR
+from flowtex.rendering.structure_marks import (
+    DOT_PX,
+    KIND_MARKS,
+    LINE_COLORS,
+    LINE_PX,
+    MIDDLE_COLOR,
+    NULLCLINE_COLORS,
+    RIM_COLOR,
+)
 from flowtex.scene import Scene
 
 #: Height of the text: a share of the picture's height, or of a width that goes with it.
@@ -50,8 +58,9 @@ UNIT_LENGTH, TIME_WIDTH = 8, 0.4
 #: Decimals of a time, and times, beyond which it is written with an exponent.
 MOST_DECIMALS, LONGEST_TIME = 6, 1e9
 METRES_PER_KM = 1000
-#: Diameter of a dot in a legend, in lines, and how much larger it is drawn to be smooth.
-DOT_SHARE, SMOOTH = 0.6, 4
+#: Diameter of a dot in a legend and height of a line there, in lines of text, and how much larger
+#: they are drawn to be smooth.
+DOT_SHARE, LINE_SHARE, SMOOTH = 0.6, 0.3, 4
 
 
 @dataclass(frozen=True)
@@ -102,14 +111,14 @@ def plates(
         ("time", True, False, writer.times(scene)),
         ("scale bar", False, True, writer.scale_bars(scene, camera)),
         ("title", False, False, writer.texts(title)),
-        ("critical points", False, True, writer.kinds(scene) if legend else iter(())),
+        ("structure", False, True, writer.structure(scene) if legend else iter(())),
     )
     gap, placed = writer.gap, list[Plate]()
     for name, right, low, images in parts:
         for image in images:
             left = width - gap - image.width if right else gap
             top = height - gap - image.height if low else gap
-            if name == "critical points":  # above the scale bar
+            if name == "structure":  # above the scale bar
                 bars = [plate.top for plate in placed if plate.name == "scale bar"]
                 top = min(bars, default=height) - gap - image.height
             plate = Plate(name, left, top, image)
@@ -190,27 +199,40 @@ class _Writer:
         for some in (marks, marks[::2]):
             yield self._legend(title, table, some, scene.beyond)
 
-    def kinds(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield the kinds of critical points that are marked, each with its dot."""
-        count = scene.settings.critical_points
-        points = scene.structure.points(scene.step)[:count] if count else ()
-        names = [name for name in KIND_MARKS if any(point.kind == name for point in points)]
-        if not names:
+    def structure(self, scene: Scene) -> Iterator[Image.Image]:
+        """Yield what is marked of the structure: critical points with dots, and lines."""
+        structure, settings, step = scene.structure, scene.settings, scene.step
+        count, saddles = settings.critical_points, settings.separatrices
+        points = structure.points(step)[:count] if count else ()
+        rows: dict[str, Any] = {
+            kind: mark
+            for kind, mark in KIND_MARKS.items()
+            if any(point.kind == kind for point in points)
+        }
+        paths = structure.paths(step, saddles) if saddles else {}
+        rows |= {name: color for name, color in LINE_COLORS.items() if paths.get(name)}
+        rows |= NULLCLINE_COLORS if settings.nullclines else {}
+        if not rows:
             return
-        width = max(map(self._width, names)) + self._line
-        image, draw = self._blank(width, len(names) * self._line)
-        middle = SMOOTH * self._line / 2
-        sizes = [DOT_SHARE * middle * diameter / DOT_PX[0] for diameter in DOT_PX]
-        for n, name in enumerate(names):
+        width = max(map(self._width, rows)) + self._line
+        image, draw = self._blank(width, len(rows) * self._line)
+        side = SMOOTH * self._line
+        for n, (name, look) in enumerate(rows.items()):
             self._write(draw, self._line, n * self._line, name)
-            mark = KIND_MARKS[name]
-            colors = [RIM_COLOR, mark.color, MIDDLE_COLOR][: 3 if mark.turns else 2]
-            dot = Image.new("RGBA", (SMOOTH * self._line,) * 2)
-            for size, color in zip(sizes, colors, strict=False):
-                ends = (middle - size, middle - size, middle + size, middle + size)
-                ImageDraw.Draw(dot).ellipse(ends, color)
+            mark = Image.new("RGBA", (side, side))
+            if isinstance(look, str):
+                for thick, color in zip(LINE_PX, (RIM_COLOR, look), strict=True):
+                    high = LINE_SHARE * side * thick / LINE_PX[0] / 2
+                    box = (side / 5 - high, side / 2 - high, side * 0.7 + high, side / 2 + high)
+                    ImageDraw.Draw(mark).rectangle(box, color)
+            else:
+                colors = [RIM_COLOR, look.color, MIDDLE_COLOR][: 3 if look.turns else 2]
+                for diameter, color in zip(DOT_PX, colors, strict=False):
+                    size = DOT_SHARE * diameter / DOT_PX[0] * side / 2
+                    low, high = side / 2 - size, side / 2 + size
+                    ImageDraw.Draw(mark).ellipse((low, low, high, high), color)
             place = (self._pad - self._line // 8, self._pad + n * self._line)
-            image.alpha_composite(dot.resize((self._line,) * 2, Image.Resampling.BOX), place)
+            image.alpha_composite(mark.resize((self._line,) * 2, Image.Resampling.BOX), place)
         yield image
 
     def _legend(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
@@ -23,7 +23,7 @@ from flowtex.rendering.structure_marks import (
 )
 from flowtex.rendering.vtk import FlowSurface
 from flowtex.scene import Scene
-from flowtex.trace.structure import ClosedOrbit, CriticalPoints, Separatrices
+from flowtex.trace.structure import CriticalPoints
 
 #: Structures are found one after the other, beside what else goes on.
 _pool = ThreadPoolExecutor(1, thread_name_prefix="flowtex-structure")
@@ -83,8 +83,7 @@ class StructureOverlay(Overlay):
         if settings.nullclines:
             self._add_nullclines(scene.structure.nullclines(scene.step))
         if settings.separatrices:
-            lines = scene.structure.lines(scene.step, settings.separatrices)
-            self._add_lines_of(lines, scene.structure.orbits(scene.step))
+            self._add_paths(scene.structure.paths(scene.step, settings.separatrices))
         if settings.critical_points:
             self._add_points(scene.structure.points(scene.step)[: settings.critical_points])
 
@@ -99,28 +98,22 @@ class StructureOverlay(Overlay):
                 mesh = piece_mesh(*np.swapaxes(pieces, 0, 1))
                 self._add_lines(((0.0, mesh),), width, color, opacity, above=above)
 
-    def _add_lines_of(self, lines: Separatrices, orbits: Sequence[ClosedOrbit]) -> None:
-        by_color: dict[str, list[Floats]] = {name: [] for name in LINE_COLORS}
-        by_color["closed orbit"] += [orbit.points for orbit in orbits]
-        for line in lines:
-            by_color["leaving" if line.forward else "coming"].append(line.unwound)
-            if line.orbit is not None:
-                by_color["closed orbit"].append(line.orbit)
+    def _add_paths(self, by_name: Mapping[str, Sequence[Floats]]) -> None:
         outer, inner = LINE_PX
-        every = [path for paths in by_color.values() for path in paths]
+        every = [path for paths in by_name.values() for path in paths]
         self._add_pieces(every, outer, RIM_COLOR, RIM_OPACITY, above=0)
-        for above, (name, paths) in enumerate(by_color.items(), 1):
-            self._add_pieces(paths, inner, LINE_COLORS[name], above=above)
+        for above, (name, color) in enumerate(LINE_COLORS.items(), 1):
+            self._add_pieces(by_name[name], inner, color, above=above)
 
     def _add_points(self, points: CriticalPoints) -> None:
         outer, inner, middle = DOT_PX
         every = [point.position[None] for point in points]
-        self._add_pieces(every, outer, RIM_COLOR, RIM_OPACITY, above=4)
+        self._add_pieces(every, outer, RIM_COLOR, RIM_OPACITY, above=5)
         for kind, mark in KIND_MARKS.items():
             dots = [point.position[None] for point in points.of_kind(kind)]
-            self._add_pieces(dots, inner, mark.color, above=5)
+            self._add_pieces(dots, inner, mark.color, above=6)
             if mark.turns:
-                self._add_pieces(dots, middle, MIDDLE_COLOR, above=6)
+                self._add_pieces(dots, middle, MIDDLE_COLOR, above=7)
 
     def _add_pieces(
         self, paths: Sequence[Floats], width: float, color: str, opacity: float = 1.0, *, above: int

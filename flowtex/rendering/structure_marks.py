@@ -24,8 +24,14 @@ KIND_MARKS = {
     "spiral sink": KindMark("#3b8bff", turns=True),
     "sink": KindMark("#3b8bff"),
 }
-#: Lines along which the flow leaves saddles and comes to them, and closed orbits on which they end.
-LINE_COLORS = {"leaving": "#ff5a36", "coming": "#3b8bff", "closed orbit": "#35c46a"}
+#: Lines along which the flow leaves saddles and comes to them, and closed orbits to which lines
+#: come or which they leave, in the order of legends.
+LINE_COLORS = {
+    "from saddle": "#ff5a36",
+    "to saddle": "#3b8bff",
+    "stable orbit": "#35c46a",
+    "unstable orbit": "#ffffff",
+}
 #: Lines along which the components along x and y are zero.
 NULLCLINE_COLORS = {"u = 0": "#ffa733", "v = 0": "#ff9ad5"}
 #: Around dots and lines, and in the middle of rings.

@@ -83,6 +83,19 @@ class Structure:
                 _trim(self._orbits)
             return self._orbits[step]
 
+    def paths(self, step: int, saddles: int) -> dict[str, list[Floats]]:
+        """Return lines of this many saddles, and closed orbits, (N, 3) each, by what they are."""
+        found: dict[str, list[Floats]] = {
+            name: [] for name in ("from saddle", "to saddle", "stable orbit", "unstable orbit")
+        }
+        for orbit in self.orbits(step):
+            found["stable orbit" if orbit.stable else "unstable orbit"].append(orbit.points)
+        for line in self.lines(step, saddles):
+            found["from saddle" if line.forward else "to saddle"].append(line.unwound)
+            if line.orbit is not None:
+                found["stable orbit" if line.forward else "unstable orbit"].append(line.orbit)
+        return found
+
     def nullclines(self, step: int) -> tuple[Floats, Floats]:
         """Return the pieces of the nullclines of a step, as :func:`nullclines` does."""
         return nullclines(self._field.at_step(step))

@@ -985,6 +985,7 @@ let shape2=document.createElementNS(SVG3,tag);for(let[name,value]of Object.entri
   flex: none; display: grid; grid-template-columns: auto auto; gap: 1px 12px; padding: 5px 10px 6px; font-size: 11px;
   margin-left: auto; pointer-events: none;
 }
+.kinds:has(:nth-child(5)) { grid-template-columns: auto auto auto; }
 .kinds:not([hidden]) + .legend { margin-left: 10px; }
 .kinds span { display: flex; align-items: center; gap: 5px; white-space: nowrap; }
 .kinds i { width: 9px; height: 9px; border-radius: 50%; box-shadow: 0 0 0 1.5px rgb(16 20 24 / 0.85); }
@@ -1354,22 +1355,22 @@ let[before,after]=path.slice(-2);return[...path.slice(0,-1),along(before,differe
 before[1]))]},moved=(place,way)=>(turn(place,way)?.at(-1)?.[0]??NaN)-x-place,last=null;for(let place=2*step;x+place<ends2[0][1];place+=
 Math.min((RATIO-1)*place,APART*diagonal)){let forward=moved(place,1),out=Number.isNaN(forward)?-moved(place,-1):forward;
 if(!(Math.abs(out)<=Math.max(MOVED*place,CLOSED*step))){if(last&&last.out*out<0){let way=Math.sign(last.out),[low,high]=[
-last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+high)/2;moved(middle,way)>0?low=middle:high=middle}let orbit=turn(
-low,way),isNew=orbit&&!found.some(other=>other.some(at=>distance(at,orbit[0])<2*step));orbit&&isNew&&distance(orbit[0],orbit[orbit.
-length-1])<CLOSED*step&&found.push(orbit)}last=Number.isNaN(out)?null:{place,out}}}}return found}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
-let unit2=at=>{let[u,v2]=rate(...at),size=Math.hypot(u,v2);return[u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<
-MOST_STEPS;n+=1){let at=path[path.length-1],one=unit2(at),two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/
-2)),four=unit2(along(at,three,step)),next=along(at,[0,1].map(k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(
-Number.isFinite))return path;let share=Math.min(...ends2.map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:
-NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),
-share)),share<1||isEnd(path))return path;let end=points.find(point=>distance(point.at,next)<near);if(end&&isAway)return[
-...path,end.at];isAway||=!points.some(point=>distance(point.at,next)<2*near)}return path}function turnOf(path,step,apart){
-let around2=Math.max(.75,1.25*apart)*step,places=new Map,cellOf=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.
-length;n+=1){let[i,j]=cellOf(path[n]);for(let m=0;m<9;m+=1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-
-1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>around2||before+1>=path.length)continue;let way=difference(
-path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/
-Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;places.set(name,[...places.get(name)??
-[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,OPERATIONS=new Map(Object.
+last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+high)/2;moved(middle,way)>0?low=middle:high=middle}let path=turn(
+low,way),isNew=path&&!found.some(other=>other.path.some(at=>distance(at,path[0])<2*step));path&&isNew&&distance(path[0],
+path[path.length-1])<CLOSED*step&&found.push({path,isStable:way>0})}last=Number.isNaN(out)?null:{place,out}}}}return found}
+function followed(rate,ends2,points,path,step,isEnd=()=>!1){let unit2=at=>{let[u,v2]=rate(...at),size=Math.hypot(u,v2);return[
+u/size,v2/size]},near=END*Math.abs(step),isAway=!1;for(let n=0;n<MOST_STEPS;n+=1){let at=path[path.length-1],one=unit2(at),
+two=unit2(along(at,one,step/2)),three=unit2(along(at,two,step/2)),four=unit2(along(at,three,step)),next=along(at,[0,1].map(
+k=>(one[k]+2*two[k]+2*three[k]+four[k])/6),step);if(!next.every(Number.isFinite))return path;let share=Math.min(...ends2.
+map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:NaN;return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/
+(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),share)),share<1||isEnd(path))return path;let end=points.
+find(point=>distance(point.at,next)<near);if(end&&isAway)return[...path,end.at];isAway||=!points.some(point=>distance(point.
+at,next)<2*near)}return path}function turnOf(path,step,apart){let around2=Math.max(.75,1.25*apart)*step,places=new Map,cellOf=at=>at.
+map(x=>Math.floor(x/around2));for(let n=0;n<path.length;n+=1){let[i,j]=cellOf(path[n]);for(let m=0;m<9;m+=1)for(let before of places.
+get(`${i+m%3-1} ${j+Math.floor(m/3)-1}`)??[]){if(n-before<=LEAST_TURN||distance(path[n],path[before])>around2||before+1>=
+path.length)continue;let way=difference(path[before+1],path[Math.max(before-1,0)]),gap=difference(path[n],path[before]);
+if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/Math.max(Math.hypot(...way),1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;
+places.set(name,[...places.get(name)??[],n])}return null}var PARAMETER="formula.",[HALO,BEFORE]=[36,8],[LEVELS,PLACE2,HALF_ONE]=[3,5,15360],MOST_SADDLES=50,OPERATIONS=new Map(Object.
 entries({"+":(a,b)=>a+b,"*":(a,b)=>a*b,"/":(a,b)=>a/b,"^":(a,b)=>a**b,"<":(a,b)=>+(a<b),">":(a,b)=>+(a>b),"<=":(a,b)=>+(a<=
 b),">=":(a,b)=>+(a>=b),neg:a=>-a,ln:Math.log,mod:(a,b)=>a-b*Math.floor(a/b),where:(a,b,c)=>a?b:c,min:(a,b)=>Math.min(a,b),
 max:(a,b)=>Math.max(a,b)}));for(let name of"sin cos tan asin acos atan atan2 sinh cosh tanh exp log log2 log10 sqrt abs \
@@ -1409,34 +1410,35 @@ header}=this,rate=grid2.rate(header.slices.times[step],this.parameters),points=f
 structure?.kinds.map(({name})=>name)??[],row2=(at,number)=>[...grid2.localOf(at),number],rows=[];if(kind==="nullclines")
 nullclines(rate,grid2.ends).forEach((pieces,component)=>rows.push(...pieces.flat().map(at=>row2(at,component))));else if(kind===
 "critical")rows.push(...points.map(point=>row2(point.at,kinds.indexOf(point.kind))));else{closedOrbits(rate,grid2.ends,points).
-forEach((orbit,n)=>{rows.push(...orbit.map(at=>row2(at,LINE.orbit+n%2)))});let saddles=points.filter(({ways})=>ways).slice(
-0,MOST_SADDLES);separatrices(rate,grid2.ends,points,saddles).forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.saddle*
-saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??
-[]).map(at=>row2(at,number+LINE.orbit)))})}return this.named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[
-rows.length,4]})}whole(steps){let{shape:shape2}=this.header.geometry,level=this.header.pyramid?.depth??0;return this.parts(
-{level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.
-state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(
-window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=
-1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,start+shape2[1]),j*shape2[1])}let values=`scalar\
-s/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flow/${step}`,flow),this.named(`${prefix}${values}`,
-{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,{mesh,pyramid,geometry,slices}=header,{trace}=slices;
-if(!pyramid||!trace)throw new Error("the levels of the formula are missing");let[level,...place]=key,cells=pyramid.tileBlocks*
-mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-
-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map((at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-
-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,
-to},{middle,part:padded}=grid2.padded(window2),share=2**-grid2.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.
-pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,
-shape:shape2,rows:texels(shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.
-sides*(slices.lags.length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,
-trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,
-unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.
-parts(window2,steps,drawn,shape2,prefix);return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(
-`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),
-this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.
-map(n=>Math.ceil((n-1)/mesh.tileCells)),size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),
-place=placesOf(this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[
-Math.floor(block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.
-set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+forEach(({path,isStable},n)=>{let number=LINE.orbit+LINE.leaving*Number(isStable)+n%2;rows.push(...path.map(at=>row2(at,
+number)))});let saddles=points.filter(({ways})=>ways).slice(0,MOST_SADDLES);separatrices(rate,grid2.ends,points,saddles).
+forEach(({path,orbit,saddle,leaves},n)=>{let number=LINE.saddle*saddles.indexOf(saddle)+LINE.leaving*Number(leaves)+n%2;
+rows.push(...path.map(at=>row2(at,number))),rows.push(...(orbit??[]).map(at=>row2(at,number+LINE.orbit)))})}return this.
+named(`${kind}/${step}`,{data:Float32Array.from(rows.flat()),shape:[rows.length,4]})}whole(steps){let{shape:shape2}=this.
+header.geometry,level=this.header.pyramid?.depth??0;return this.parts({level,from:[0,0],to:[shape2[0]-1,shape2[1]-1]},steps,
+[0,0],shape2)}named(name,part){return{...part,name,digest:`${this.state} ${name}`}}parts(window2,steps,drawn,shape2,prefix=""){
+return steps.flatMap(step=>{let{flow,speeds}=this.grid.flow(window2,step,this.parameters),width=flow.shape[1],data=new Float32Array(
+shape2[0]*shape2[1]);for(let j=0;j<shape2[0];j+=1){let start=(j+drawn[0])*width+drawn[1];data.set(speeds.subarray(start,
+start+shape2[1]),j*shape2[1])}let values=`scalars/${this.header.scalars.steps>1?step:0}`;return[this.named(`${prefix}flo\
+w/${step}`,flow),this.named(`${prefix}${values}`,{data,shape:[...shape2]})]})}tile(key,steps){let{header,grid:grid2}=this,
+{mesh,pyramid,geometry,slices}=header,{trace}=slices;if(!pyramid||!trace)throw new Error("the levels of the formula are \
+missing");let[level,...place]=key,cells=pyramid.tileBlocks*mesh.tileCells,count2=grid2.shape(level),first=place.map(at=>at*
+cells),last=first.map((at,axis)=>Math.min(at+cells,count2[axis]-1)),from=first.map(at=>Math.max(at-HALO,0)),to=last.map(
+(at,axis)=>Math.min(at+HALO,count2[axis]-1)),nodes=to.map((at,axis)=>at-from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),
+shape2=last.map((at,axis)=>at-first[axis]+1),window2={level,from,to},{middle,part:padded}=grid2.padded(window2),share=2**
+-grid2.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,
+size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,shape:shape2,rows:texels(shape2[0]),columns:texels(
+shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.sides*(slices.lags.length-lags.length),extra:[],
+unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(
+n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`til\
+e/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);
+return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}\
+unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),
+...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),
+size=Math.log2(mesh.tileCells)+1+PLACE2,data=new Float32Array(rows*columns*size),place=placesOf(this.header),tileBlocks=pyramid?.
+tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(
+key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,(block+1)*size-PLACE2)}return{data,shape:[rows,
+columns,size]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
@@ -1691,15 +1693,15 @@ gl.FLOAT,0,0),made});buffers.push(buffer(corners,gl.ELEMENT_ARRAY_BUFFER));let l
 pieces,3)),paints=buffer(atEnds(colours,pieces,4));for(let n=0;n<4;n+=1)gl.enableVertexAttribArray(n),gl.vertexAttribDivisor(
 n,1);return gl.bindVertexArray(null),{faces,pieces:lines,ends:ends2,colours:paints,buffers:[...buffers,ends2,paints]}}};
 function css([r,g,b,opacity=1]){return`rgb(${[r,g,b].map(c=>Math.round(255*c)).join(" ")} / ${opacity})`}var[NEARER,ABOVE_SHARE]=[.01,.2],[ROW,ENDS_BYTES2]=[4,24],REACH_PX=9;function shapesOf(points,lines,most){let shapes={lines:{
-leaving:[],coming:[],"closed orbit":[]},points:[]};for(let n=0;n<Math.min(points.length/ROW,most.points);n+=1){let kind=points[ROW*
-n+3];(shapes.points[kind]??=[]).push(...[0,1,2].map(k=>points[ROW*n+k]))}let last=NaN;for(let n=0;n<lines.length/ROW;n+=
-1){let number=lines[ROW*n+3];if(number>=LINE.saddle*most.saddles)continue;let turns=number&LINE.orbit?"closed orbit":number&
-LINE.leaving?"leaving":"coming";number!==last&&shapes.lines[turns].push([]),last=number;let path=shapes.lines[turns];path[path.
-length-1].push(...[0,1,2].map(k=>lines[ROW*n+k]))}return shapes}function zeroPieces(rows,component){let numbers=[];for(let n=0;n<
-rows.length;n+=ROW)rows[n+3]===component&&numbers.push(rows[n],rows[n+1],rows[n+2]);return Float32Array.from(numbers)}function ends(paths,areDots=!1){
-let values=Float32Array.from(paths.flat());if(areDots)return atEnds(values,Array.from({length:2*values.length/3},(_,n)=>n>>
-1),3);let pieces=[],first=0;for(let path of paths){let count2=path.length/3;for(let n=first;n<first+count2-1;n+=1)pieces.
-push(n,n+1);first+=count2}return atEnds(values,pieces,3)}var Marks=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(graphics,header,parts){
+"from saddle":[],"to saddle":[],"stable orbit":[],"unstable orbit":[]},points:[]};for(let n=0;n<Math.min(points.length/ROW,
+most.points);n+=1){let kind=points[ROW*n+3];(shapes.points[kind]??=[]).push(...[0,1,2].map(k=>points[ROW*n+k]))}let last=NaN;
+for(let n=0;n<lines.length/ROW;n+=1){let number=lines[ROW*n+3];if(number>=LINE.saddle*most.saddles)continue;let names=number&
+LINE.orbit?["stable orbit","unstable orbit"]:["from saddle","to saddle"],path=shapes.lines[names[number&LINE.leaving?0:1]];
+number!==last&&path.push([]),last=number,path[path.length-1].push(...[0,1,2].map(k=>lines[ROW*n+k]))}return shapes}function zeroPieces(rows,component){
+let numbers=[];for(let n=0;n<rows.length;n+=ROW)rows[n+3]===component&&numbers.push(rows[n],rows[n+1],rows[n+2]);return Float32Array.
+from(numbers)}function ends(paths,areDots=!1){let values=Float32Array.from(paths.flat());if(areDots)return atEnds(values,
+Array.from({length:2*values.length/3},(_,n)=>n>>1),3);let pieces=[],first=0;for(let path of paths){let count2=path.length/
+3;for(let n=first;n<first+count2-1;n+=1)pieces.push(n,n+1);first+=count2}return atEnds(values,pieces,3)}var Marks=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(graphics,header,parts){
 this.graphics=graphics,this.header=header,this.parts=parts}kinds(settings){let there=this.header.structure?.parts??[];return Object.
 keys(MARKS).filter(kind=>there.includes(kind)&&Number(settings[MARKS[kind]])>0)}lacking(settings,moment){let step=nearest(
 moment);return this.kinds(settings).flatMap(kind=>this.parts.has(`${kind}/${step}`)?[]:[[kind,step]])}get program(){let{
@@ -1707,19 +1709,21 @@ lineVertex,lineFragment}=this.header.shaders;return this.graphics.programs.get(l
 LOWTEX_MARK")}isReady(settings){return!this.kinds(settings).length||this.program.ready}shown(settings,moment,kind){let part=this.
 kinds(settings).includes(kind)?this.parts.get(`${kind}/${nearest(moment)}`):void 0;return[part?Number(settings[MARKS[kind]]):
 0,part]}legend(settings,moment){let[most,part]=this.shown(settings,moment,"critical"),kinds=new Set;for(let n=0;n<Math.min(
-most,part?.shape[0]??0);n+=1)kinds.add(Number(part?.data[ROW*n+3]));let{kinds:all=[],nullclines:nullclines2=[]}=this.header.
-structure??{},lines=this.shown(settings,moment,"nullclines")[0]?nullclines2:[];return[...all.filter((_,n)=>kinds.has(n)),
-...lines.map(line=>({...line,isLine:!0}))]}draw({camera,anchor,width,height,ratio},settings,moment){let{header,graphics}=this,
-{structure,geometry}=header,layers=structure&&this.layers(structure,settings,moment);if(!structure||!layers?.length)return;
-let gl=graphics.context,[x,y,z,w]=camera.eye,eye=toFrame(geometry.frame,subtract2([x,y,z],scale2(geometry.center,w))),wider=ratio*
-clamp(Math.sqrt(height/ratio/structure.usualHeight),...structure.widthRange),distance2=w?1:camera.distance/Math.hypot(...eye);
-gl.bindVertexArray(this.array),gl.enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),
-gl.depthFunc(gl.LEQUAL);let program=this.program;graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),
-u_anchor:anchor,u_eye:[...subtract2(eye,scale2(anchor,w)),w],u_picture:[width,height],u_horizon:[0,0,0,1]}),gl.bindBuffer(
-gl.ARRAY_BUFFER,this.buffer);for(let{first,count:count2,color,width:thickness,above}of layers){let[r,g,b,opacity=1]=color;
-graphics.programs.use(program,{u_width:thickness*wider,u_nearer:NEARER*distance2*(1+ABOVE_SHARE*above)});for(let end of[
-0,1])gl.vertexAttribPointer(end,3,gl.FLOAT,!1,ENDS_BYTES2,ENDS_BYTES2*(first+end/2)),gl.vertexAttrib4f(2+end,r,g,b,opacity);
-gl.drawArraysInstanced(gl.TRIANGLE_STRIP,0,4,count2)}gl.bindVertexArray(null),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND)}layers(structure,settings,moment){
+most,part?.shape[0]??0);n+=1)kinds.add(Number(part?.data[ROW*n+3]));let{kinds:all=[],lines={},nullclines:nullclines2=[]}=this.
+header.structure??{},[saddles,paths]=this.shown(settings,moment,"separatrices"),drawn=Object.entries(shapesOf([],paths?.
+data??[],{points:0,saddles}).lines).filter(([,some])=>some.length).map(([name])=>({name,color:lines[name]}));return this.
+shown(settings,moment,"nullclines")[0]&&drawn.push(...nullclines2),[...all.filter((_,n)=>kinds.has(n)),...drawn.map(line=>({
+...line,isLine:!0}))]}draw({camera,anchor,width,height,ratio},settings,moment){let{header,graphics}=this,{structure,geometry}=header,
+layers=structure&&this.layers(structure,settings,moment);if(!structure||!layers?.length)return;let gl=graphics.context,[
+x,y,z,w]=camera.eye,eye=toFrame(geometry.frame,subtract2([x,y,z],scale2(geometry.center,w))),wider=ratio*clamp(Math.sqrt(
+height/ratio/structure.usualHeight),...structure.widthRange),distance2=w?1:camera.distance/Math.hypot(...eye);gl.bindVertexArray(
+this.array),gl.enable(gl.BLEND),gl.blendFuncSeparate(gl.SRC_ALPHA,gl.ONE_MINUS_SRC_ALPHA,gl.ZERO,gl.ONE),gl.depthFunc(gl.
+LEQUAL);let program=this.program;graphics.programs.use(program,{u_matrix:projection(geometry,camera,anchor),u_anchor:anchor,
+u_eye:[...subtract2(eye,scale2(anchor,w)),w],u_picture:[width,height],u_horizon:[0,0,0,1]}),gl.bindBuffer(gl.ARRAY_BUFFER,
+this.buffer);for(let{first,count:count2,color,width:thickness,above}of layers){let[r,g,b,opacity=1]=color;graphics.programs.
+use(program,{u_width:thickness*wider,u_nearer:NEARER*distance2*(1+ABOVE_SHARE*above)});for(let end of[0,1])gl.vertexAttribPointer(
+end,3,gl.FLOAT,!1,ENDS_BYTES2,ENDS_BYTES2*(first+end/2)),gl.vertexAttrib4f(2+end,r,g,b,opacity);gl.drawArraysInstanced(gl.
+TRIANGLE_STRIP,0,4,count2)}gl.bindVertexArray(null),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND)}layers(structure,settings,moment){
 let[[points,dots],[saddles,lines],[,zeros2]]=["critical","separatrices","nullclines"].map(kind=>this.shown(settings,moment,
 kind)),key=JSON.stringify([points,dots?.digest,saddles,lines?.digest,zeros2?.digest,nearest(moment)]);if(this.drawn?.key===
 key)return this.drawn.layers;let shapes=shapesOf(dots?.data??[],lines?.data??[],{points,saddles}),{line,dot:dot3,rim,middle}=structure,
@@ -1728,8 +1732,8 @@ color,width,above}),pieces.push(data),first+=count2},nullclines2=structure.nullc
 [],n));nullclines2.forEach(data=>put(data,rim,line[0],0)),nullclines2.forEach((data,n)=>put(data,structure.nullclines[n].
 color,line[1],1)),put(ends(Object.values(shapes.lines).flat()),rim,line[0],1.5),Object.entries(shapes.lines).forEach(([name,
 paths],n)=>put(ends(paths),structure.lines[name],line[1],2+n));let places=structure.kinds.map((_,n)=>shapes.points[n]??[]);
-return put(ends(places,!0),rim,dot3[0],5),structure.kinds.forEach(({color},n)=>put(ends([places[n]],!0),color,dot3[1],6)),
-put(ends(places.filter((_,n)=>structure.kinds[n].turns),!0),middle,dot3[2],7),this.send(pieces),this.drawn={key,layers},
+return put(ends(places,!0),rim,dot3[0],6),structure.kinds.forEach(({color},n)=>put(ends([places[n]],!0),color,dot3[1],7)),
+put(ends(places.filter((_,n)=>structure.kinds[n].turns),!0),middle,dot3[2],8),this.send(pieces),this.drawn={key,layers},
 layers}send(pieces){let{graphics}=this,gl=graphics.context;this.array??=graphics.counted(gl.createVertexArray()),this.buffer??=
 graphics.counted(gl.createBuffer()),gl.bindVertexArray(this.array),gl.bindBuffer(gl.ARRAY_BUFFER,this.buffer),gl.bufferData(
 gl.ARRAY_BUFFER,Float32Array.from(pieces.flatMap(some=>[...some])),gl.STATIC_DRAW);for(let end of[0,1])gl.enableVertexAttribArray(

@@ -31,7 +31,7 @@ from flowtex.offscreen.annotations import (
 )
 from flowtex.offscreen.movie import frames
 from flowtex.rendering.cpu.shade import mean_colours
-from flowtex.rendering.structure_marks import KIND_MARKS
+from flowtex.rendering.structure_marks import KIND_MARKS, LINE_COLORS, NULLCLINE_COLORS
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 
@@ -339,14 +339,28 @@ def test_kinds_of_marked_points_are_named(texts: list[str]) -> None:
         scene = Scene(field, Settings(critical_points=count))
         found = {plate.name: plate for plate in plates(scene, (800, 600), camera)}
         assert [text for text in texts if text in KIND_MARKS] == named
-        assert ("critical points" in found) == bool(named)
-    bar, kinds = found["scale bar"], found["critical points"]
+        assert ("structure" in found) == bool(named)
+    bar, kinds = found["scale bar"], found["structure"]
     assert kinds.box[3] < bar.top
     # Each has a dot of its colour.
     pixels = np.asarray(kinds.image)[..., :3]
     for name in named:
         color = np.rint(255 * np.array(rgb(KIND_MARKS[name].color)))
         assert (np.abs(pixels - color).max(axis=-1) <= 1).sum() > 10
+
+
+def test_lines_of_the_structure_are_named(texts: list[str]) -> None:
+    rate = "(1 - x**2 - y**2) * (x**2 + y**2 - 2.25)"
+    field = flowtex.formula(f"x*({rate}) - y", f"y*({rate}) + x", x=(-2, 2), resolution=65)
+    camera = Camera.fit(field.surface, 4 / 3)
+    names = ["stable orbit", "unstable orbit", "u = 0", "v = 0"]
+    scene = Scene(field, Settings(separatrices=1, nullclines=True))
+    (plate,) = [p for p in plates(scene, (800, 600), camera) if p.name == "structure"]
+    assert [text for text in texts if text in (*LINE_COLORS, *NULLCLINE_COLORS)] == names
+    pixels = np.asarray(plate.image)[..., :3]
+    for name in names:
+        color = np.rint(255 * np.array(rgb({**LINE_COLORS, **NULLCLINE_COLORS}[name])))
+        assert (np.abs(pixels - color).max(axis=-1) <= 1).sum() > 5
 
 
 def test_a_legend_of_one_value_has_it_once(texts: list[str]) -> None:

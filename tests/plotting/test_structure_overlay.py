@@ -64,12 +64,23 @@ def test_points_and_lines_stand_where_they_are() -> None:
         assert np.ptp(found, axis=0).max() < 0.12
     picture = whole(field, separatrices=True)
     # The flow leaves the saddle along y = 0, to the sink and outwards, and comes along x = -0.5.
-    leaving = scale * seen(picture, LINE_COLORS["leaving"], 50)
+    leaving = scale * seen(picture, LINE_COLORS["from saddle"], 50)
     assert np.abs(leaving[:, 1]).max() < 0.02
     assert leaving[:, 0].min() < -1.9
-    coming = scale * seen(picture, LINE_COLORS["coming"], 50)
+    coming = scale * seen(picture, LINE_COLORS["to saddle"], 50)
     assert np.abs(coming[:, 0] + 0.5).max() < 0.02
     assert coming[:, 1].min() < -0.9 < 0.9 < coming[:, 1].max()
+
+
+def test_stable_and_unstable_orbits_have_their_colors() -> None:
+    rate = "(1 - x**2 - y**2) * (x**2 + y**2 - 2.25)"
+    field = flowtex.formula(f"x*({rate}) - y", f"y*({rate}) + x", x=(-4, 4), y=(-2, 2))
+    scale = Camera.fit(field.surface, 2.0).height
+    picture = whole(field, separatrices=True)
+    for name, radius in (("unstable orbit", 1.0), ("stable orbit", 1.5)):
+        found = scale * seen(picture, LINE_COLORS[name], 50)
+        away = np.linalg.norm(found[np.abs(found).max(axis=1) < 1.9], axis=1)
+        assert np.abs(away - radius).max() < 0.05
 
 
 def test_without_them_a_picture_is_as_before() -> None:

@@ -2,8 +2,9 @@
 
 ``critical/3`` has a row for each point of step 3, (K, 4): where it is, and the number of its kind.
 ``separatrices/3`` has one for each point of its closed orbits and lines, (N, 4): its position, and
-a number that identifies the line. Both begin with the strongest; ``client/src/marks.ts`` is the
-other side. ``nullclines/3`` has two for each straight piece, and the number of the component.
+a number that identifies the line; lines that leave saddles end on stable orbits. Both begin with
+the strongest; ``client/src/marks.ts`` is the other side. ``nullclines/3`` has two for each straight
+piece, and the number of the component.
 """
 
 from __future__ import annotations
@@ -91,7 +92,8 @@ class Marks:
     def _lines(self, step: int) -> Floats:
         rows = [np.empty((0, 4))]
         for n, found in enumerate(self.structure.orbits(step)):
-            codes = np.full((len(found.points), 1), ORBIT + SIDE * (n % 2))
+            code = ORBIT + LEAVING * found.stable + SIDE * (n % 2)
+            codes = np.full((len(found.points), 1), code)
             rows.append(np.concatenate([found.points, codes], axis=1))
         ranks: dict[int, int] = {}
         count: dict[int, int] = {}
