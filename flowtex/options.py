@@ -473,8 +473,9 @@ class Options:
             if name not in TABLE:
                 near = near_names(name, known)
                 if "sel" in known and not near.startswith("did you mean"):
-                    axis = f"sel={{{name!r}: {values[name]!r}}}"
-                    near = f"{near}; for an axis of a dataset, use {axis}"
+                    what = f"an axis of a dataset, use sel={{{name!r}: {values[name]!r}}}"
+                    path = "a group of a file, give its path, such as 'model.nc/ocean'"
+                    near = f"{near}; for {path if name == 'group' else what}"
                 msg = f"the setting or argument {name!r} does not exist; {near}"
                 raise SettingsError(msg)
         return cls(**parts, settings=values)

@@ -20,7 +20,7 @@ from flowtex._util.colours import colour_table, is_diverging
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.dates import expected_times, seconds_since
+from flowtex.field.dates import time_within
 from flowtex.field.derived import DERIVED, steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
@@ -293,14 +293,7 @@ class Scene:
             if value != self._time:
                 notify(f"time is {value!r}, but the field is steady: it is the same at all times")
             return
-        moment = seconds_since(self.field.start, value)
-        first, last = float(self.field.times[0]), float(self.field.times[-1])
-        if not first <= moment <= last:
-            msg = (
-                f"time is {value!r}; expected {expected_times(self.field.start, self.field.times)}"
-            )
-            raise FieldError(msg)
-        self._time = moment
+        self._time = time_within(self.field.start, self.field.times, value)
         self._notify("uniform")
 
     @property

@@ -6,8 +6,9 @@ ds.flowtex.show(level=500)
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, cast
+from typing import IO, TYPE_CHECKING, Any, cast
 
 import numpy as np
 import xarray as xr
@@ -15,7 +16,9 @@ from xarray.plot import FacetGrid
 
 import flowtex
 from flowtex._util.arguments import checked_number
+from flowtex._util.terminal.console import plain_text
 from flowtex.field import FlowField
+from flowtex.field.datasets.read import recognised
 from flowtex.field.locate import locate
 from flowtex.field.point_values import PointValues, values_at
 
@@ -184,6 +187,31 @@ class FlowtexAccessor:
             figure = images[0].axes.figure
             figure.colorbar(images[0], ax=beside, **{"label": label, **(cbar_kwargs or {})})
         return images[0] if panels is None else panels
+
+    def info(self, buf: IO[str] | None = None) -> None:
+        """Write the velocity, grid and coordinates that are recognised, as ``flowtex info`` does.
+
+        Parameters
+        ----------
+        buf
+            File to write to; ``sys.stdout`` by default, as of ``ds.info()``.
+
+        Raises
+        ------
+        FieldError
+            When the dataset is not a flow.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> import flowtex.xarray
+        >>> flowtex.examples.weather().flowtex.info()  # doctest: +ELLIPSIS
+        velocity     ...
+        """
+        rows = recognised(self._dataset)
+        width = max(map(len, rows)) + 2
+        for name, words in rows.items():
+            (buf or sys.stdout).write(plain_text(f"{name:{width}}{words}\n"))
 
     def probe(self, x: float, y: float, **options: Any) -> PointValues | None:
         """Return the values of the flow at a point; ``None`` outside the data.

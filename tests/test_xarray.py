@@ -62,6 +62,18 @@ def test_values_are_told_at_a_place_of_the_earth(tmp_path: Path) -> None:
     assert ds.flowtex.pyramid(tmp_path / "flow.zarr", progress=False).made > 0
 
 
+def test_what_is_recognised_of_a_dataset_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    ds = winds(np.arange(-20.0, 21.0, 2.0), np.arange(40.0, 61.0, 2.0))
+    ds["u"].attrs["long_name"] = "wind\x1b[31m"
+    ds.flowtex.info()
+    told = capsys.readouterr().out
+    first, *others = told.splitlines()
+    assert first.startswith("velocity") and "u" in first and "\x1b" not in told
+    assert any(line.startswith("directions ") for line in others)
+    with pytest.raises(FieldError, match="velocity"):
+        ds[["u"]].flowtex.info()
+
+
 def test_a_dataset_is_plotted_with_the_words_of_xarray(opengl: Any) -> None:
     del opengl
     import matplotlib.pyplot as plt

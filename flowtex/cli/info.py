@@ -95,31 +95,14 @@ def _store_table(place: Path) -> Table:
 
 def _recognised_table(paths: list[Path]) -> Table:
     """Describe the velocity, grid and coordinates that were recognised, with reasons."""
-    from flowtex.field.datasets.axes import axis_values
     from flowtex.field.datasets.files import open_datasets
-    from flowtex.field.datasets.pairs import find_pairs
-    from flowtex.field.datasets.read import recognise
-    from flowtex.field.datasets.series import as_datasets
+    from flowtex.field.datasets.read import recognised
     from flowtex.field.io.reader_errors import errors_of_file
 
     table = _pairs()
     with errors_of_file(paths[0]):
-        datasets = as_datasets(open_datasets(paths))
-        pairs = find_pairs(datasets)
-        likely = pairs[0] if pairs else None
-        known = recognise(datasets, *((likely.u.name, likely.v.name) if likely else ()))
-    table.add_row("velocity", str(known.pair))
-    others = [pair for pair in pairs if pair.u.name != known.pair.u.name]
-    if others:
-        table.add_row("also", "; ".join(map(str, others)))
-    directions = {"earth": "eastward and northward", "grid": "along the grid"}
-    directions["plane"] = "along x and y"
-    table.add_row("directions", directions[known.along])
-    table.add_row("grid", known.grid)
-    table.add_row("coordinates", known.coordinates)
-    for name, words in axis_values(known.pair.u).items():
-        few = ", ".join(words[:MOST_TIMES]) + (", ..." if len(words) > MOST_TIMES else "")
-        table.add_row(name, f"{len(words)}: {few}")
+        for row in recognised(open_datasets(paths)).items():
+            table.add_row(*row)
     return table
 
 

@@ -114,6 +114,15 @@ def span_since(start: Any, date: Any) -> tuple[float, float]:
     return begin, begin + (DAY_S if len(given) == 3 else 0)
 
 
+def time_within(start: Any, times: Any, given: Any) -> float:
+    """Return a time of a field, a number or a date; raise a FieldError if it is outside of them."""
+    time = seconds_since(start, given)
+    if not float(times[0]) <= time <= float(times[-1]):
+        msg = f"time is {given!r}; expected {expected_times(start, times)}"
+        raise FieldError(msg)
+    return time
+
+
 def expected_times(start: Any, times: Any) -> str:
     """Return the first and the last time of a field as text, as dates where they are such."""
     first, last = float(times[0]), float(times[-1])

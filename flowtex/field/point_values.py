@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import check_field, checked_number
+from flowtex._util.arguments import check_field
 from flowtex._util.array_types import Floats
+from flowtex.field.dates import time_within
 from flowtex.field.derived import speed_unit
 from flowtex.field.field import FlowField
 from flowtex.field.interpolation import steps_around
@@ -55,7 +56,7 @@ class PointValues:
         return speed_unit(self.length_unit, self.time_unit)
 
 
-def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> PointValues:
+def values_at(field: FlowField, index: ArrayLike, time: Any = None) -> PointValues:
     """Return the values of a field at a point of its surface.
 
     They are linear in the triangles of the drawn surface, and in time, as are the colours of a
@@ -68,7 +69,8 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
     index
         (j, i) in cells; :func:`~flowtex.probe.locate` returns it for a point in space.
     time
-        Time in the field's unit; the last one by default.
+        Time in the field's unit; or a date, as text, ``numpy.datetime64``, ``datetime`` or of
+        cftime, if the times are dates. The last one by default.
 
     Raises
     ------
@@ -86,11 +88,9 @@ def values_at(field: FlowField, index: ArrayLike, time: float | None = None) -> 
     """
     check_field(field, FlowField)
     point = surface_point(field.surface, index)
-    first, last = float(field.times[0]), float(field.times[-1])
-    expected = f"{first:g} to {last:g}, the times of the field"
-    at = last
+    at = float(field.times[-1])
     if time is not None and not field.steady:
-        at = checked_number("time", time, first, last, expected=expected)
+        at = time_within(field.start, field.times, time)
     before, after, share = steps_around(field.times, at)
 
     def value(steps: Floats) -> Floats:

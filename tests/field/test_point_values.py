@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from datetime import datetime
+
 import numpy as np
 import pytest
 from earth_fields import winds
 
-from flowtex import FlowField
+from flowtex import FieldError, FlowField
 from flowtex.field.point_values import values_at
 
 
@@ -99,3 +101,18 @@ def test_a_field_of_the_earth_tells_place_and_velocity_there(name: str) -> None:
     y, x = np.mgrid[0:3.0, 0:3.0]
     plain = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack([x, y], axis=-1))
     assert values_at(plain, (1, 1)).lonlat is None
+
+
+def test_a_time_may_be_a_date_where_the_times_are() -> None:
+    times = np.array(["2000-01-01", "2000-01-03"], dtype="datetime64[D]")
+    velocity = np.ones((2, 3, 3, 2)) * np.array([1.0, 3.0])[:, None, None, None]
+    field = FlowField.from_arrays((np.arange(3.0), np.arange(3.0)), velocity, times=times)
+    cftime = pytest.importorskip("cftime")
+    dates = ("2000-01-02", np.datetime64("2000-01-02"), datetime(2000, 1, 2), 86_400)
+    for date in (*dates, cftime.datetime(2000, 1, 2, calendar="standard")):
+        got = values_at(field, (1, 1), date)
+        assert got.time == 86_400 and got.speed == pytest.approx(2 * np.sqrt(2))
+    with pytest.raises(FieldError, match="time is '2000-01-04'; expected 2000-01-01 to 2000-01-03"):
+        values_at(field, (1, 1), "2000-01-04")
+    with pytest.raises(FieldError, match="time is 'noon'; expected a number, or a date such as"):
+        values_at(field, (1, 1), "noon")

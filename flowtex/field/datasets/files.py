@@ -115,7 +115,7 @@ def open_files(path: Path) -> list[xr.Dataset]:
             groups = ", ".join(tree.groups[1:]) or "none: there are no groups"
             msg = f"the group {group!r} does not exist; expected {groups}"
             raise FieldError(msg)
-        return [of_tree(tree[group] if group else tree, f"{path.name}{{}}")]
+        return [of_tree(tree[group] if group else tree, path)]
 
 
 def import_cfgrib() -> Any:

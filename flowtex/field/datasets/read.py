@@ -26,6 +26,7 @@ from flowtex.field.datasets.axes import (
     Choice,
     Section,
     axis_kind,
+    axis_values,
     drawn_steps,
     horizontal_dims,
     sections,
@@ -39,7 +40,13 @@ from flowtex.field.datasets.meshes.conventions import find_mesh
 from flowtex.field.datasets.meshes.maps import mesh_on_map
 from flowtex.field.datasets.meshes.mesh import Mesh
 from flowtex.field.datasets.notices import notify
-from flowtex.field.datasets.pairs import Pair, choose_pair, to_metres_per_second, variable
+from flowtex.field.datasets.pairs import (
+    Pair,
+    choose_pair,
+    find_pairs,
+    to_metres_per_second,
+    variable,
+)
 from flowtex.field.datasets.places import LATITUDE, LONGITUDE, Places
 from flowtex.field.datasets.regions import Regions, Words, numbers_in, region_lines
 from flowtex.field.datasets.series import Datasets, as_datasets
@@ -51,8 +58,10 @@ from flowtex.field.steps import LazySteps
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Longest name that a legend has room for.
-LONGEST_NAME = 40
+#: Longest name that a legend has room for, and values of an axis that are listed at most.
+LONGEST_NAME, MOST_VALUES = 40, 8
+#: What the components of a pair go along, in words.
+DIRECTIONS = {"earth": "eastward and northward", "grid": "along the grid", "plane": "along x and y"}
 
 #: Variables that belong to the grid itself: places, sizes of cells, masks.
 OF_GRIDS = re.compile(
@@ -504,3 +513,19 @@ def _scalar(known: Recognised, array: Any, steps: int, choice: Choice) -> _Scala
         return known.mesh.at_nodes(values, horizontal_dims(array)[0])
 
     return _Scalar(section, at_nodes, array.attrs)
+
+
+def recognised(data: Any) -> dict[str, str]:
+    """Return the velocity, grid and coordinates that are recognised, with reasons, and the axes."""
+    datasets = as_datasets(data)
+    pairs = find_pairs(datasets)
+    known = recognise(datasets, *((pairs[0].u.name, pairs[0].v.name) if pairs else ()))
+    rows = {"velocity": str(known.pair)}
+    if others := [pair for pair in pairs if pair.u.name != known.pair.u.name]:
+        rows["also"] = "; ".join(map(str, others))
+    rows |= {"directions": DIRECTIONS[known.along], "grid": known.grid}
+    rows["coordinates"] = known.coordinates
+    for name, words in axis_values(known.pair.u).items():
+        few = ", ".join(words[:MOST_VALUES]) + (", ..." if len(words) > MOST_VALUES else "")
+        rows[name] = f"{len(words)}: {few}"
+    return rows

@@ -45,13 +45,17 @@ def as_datasets(data: Any) -> Datasets:
     return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]))
 
 
-def of_tree(tree: Any, how: str = "tree[{!r}]") -> Any:
-    """Return the dataset of the one group of a tree that has a velocity, or that of its root."""
+def of_tree(tree: Any, file: Any = None) -> Any:
+    """Return the dataset of the one group of a tree that has a velocity, or that of its root.
+
+    Where the tree is that of a file, the error for several gives the path of one.
+    """
     parts = {node.path: node.to_dataset() for node in tree.subtree}
     found = [path for path, ds in parts.items() if find_pairs([ds])]
     if len(found) > 1 and found[0] != tree.path:
         listed = ", ".join(found)
-        msg = f"the groups {listed} have a velocity; give one, as in {how.format(found[0])}"
+        one = f"tree[{found[0]!r}]" if file is None else repr(f"{file}{found[0]}")
+        msg = f"the groups {listed} have a velocity; give one, as in {one}"
         raise FieldError(msg)
     return parts[found[0] if found else tree.path]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ from earth_data import winds
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.field.datasets.source import open_source
+from flowtex.options import Options
+from flowtex.settings import SettingsError
 
 pytest.importorskip("netCDF4")
 
@@ -94,3 +97,11 @@ def test_groups_are_chosen_by_path(tmp_path: Path) -> None:
     tree["air"] = tree["ocean/top"]
     with pytest.raises(FieldError, match=r"the groups /air, /ocean/top have a velocity; give one"):
         FlowField.from_xarray(tree)
+    path = tmp_path / "two.nc"
+    tree.to_netcdf(path)
+    with pytest.raises(FieldError, match="give one, as in ") as caught:
+        FlowField.from_file(path)
+    given = str(caught.value).rpartition(" as in ")[2]  # what it names can be opened
+    assert same(whole, FlowField.from_file(ast.literal_eval(given)))
+    with pytest.raises(SettingsError, match=r"for a group of a file, give its path, such as"):
+        Options.split(group="ocean")
