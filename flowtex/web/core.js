@@ -1149,8 +1149,10 @@ input[role="switch"]:checked::after { transform: translateX(12px); }
   font: 11px/1.4 ui-monospace, Menlo, Consolas, monospace; text-align: left;
 }
 @container (max-width: 640px) { :host(.flowtex-framed) .head:has(.row + .row) { flex-basis: 100%; margin-top: 5px; } }
-@container (max-width: 900px) { :host(.flowtex-framed) .head:has(.row + .row + .row) { flex-basis: 100%; margin-top: 5px\
-; } }
+@container (max-width: 900px) {
+  :host(.flowtex-framed) .head:has(.title:not([hidden]) + .parameters > .row:nth-child(3)) { flex-basis: 100%; margin-to\
+p: 5px; }
+}
 @container (max-width: 460px) {
   .bar { flex-wrap: wrap; justify-content: center; }
   .track { order: -1; flex: 1 1 100%; width: auto; }
