@@ -8,7 +8,7 @@ import flowtex
 from flowtex import FieldError, FlowField
 from flowtex._util.array_types import Floats
 from flowtex.earth import EARTH_RADIUS, Projection
-from flowtex.trace.structure import KINDS
+from flowtex.trace.structure import KINDS, CriticalPoints, Separatrices
 
 #: Gradients of linear flows by their kinds.
 LINEAR = {
@@ -98,7 +98,8 @@ def test_the_double_gyre_has_saddles_on_its_border_and_lines_between_them() -> N
     for line in middle:
         assert np.ptp(line.points[:, 1]) == pytest.approx(1.0, abs=1e-6)
     mesh = lines.to_pyvista()
-    assert mesh.n_cells == len(lines)
+    assert mesh.n_cells == len(lines) == len(lines.to_pandas())
+    assert Separatrices.to_pandas is CriticalPoints.to_pandas
     assert mesh.n_points == sum(len(line.points) for line in lines)
 
 

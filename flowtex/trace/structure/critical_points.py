@@ -11,12 +11,12 @@ import scipy
 
 from flowtex._util.arguments import check_field, checked_count
 from flowtex._util.array_types import AnyArray, Floats, Indices
-from flowtex._util.extras import import_extra
 from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.poles import Pole
 from flowtex.field.triangles.surface import TriangleSurface
+from flowtex.trace.structure.records import Records
 from flowtex.trace.structure.strength import strengths
 from flowtex.trace.structure.zeros import bilinear_zeros, linear_zeros, triangle_indices
 
@@ -74,7 +74,7 @@ class CriticalPoint:
         return -1 if self.kind == "saddle" else 1
 
 
-class CriticalPoints(Sequence[CriticalPoint]):
+class CriticalPoints(Records, Sequence[CriticalPoint]):
     """Critical points of a field, in the order of times and places.
 
     A sequence of records with ``position`` (3,), ``kind``, ``eigenvalues`` (2,), ``eigenvectors``
@@ -132,10 +132,6 @@ class CriticalPoints(Sequence[CriticalPoint]):
                 row |= {f"real_{n}": float(value.real), f"imaginary_{n}": float(value.imag)}
             rows.append(row)
         return rows
-
-    def to_pandas(self) -> Any:
-        """Return a ``pandas.DataFrame`` of :meth:`records`."""
-        return import_extra("pandas", "xarray").DataFrame(self.records())
 
     def to_geojson(self) -> dict[str, Any]:
         """Return a GeoJSON ``FeatureCollection`` of points.

@@ -12,7 +12,6 @@ import scipy
 
 from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import Bools, Floats
-from flowtex._util.extras import import_extra
 from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -23,6 +22,7 @@ from flowtex.trace.structure.critical_points import (
     critical_points,
 )
 from flowtex.trace.structure.isolation import Isolation
+from flowtex.trace.structure.records import Records
 from flowtex.trace.trace import paths
 
 #: Distance from the saddle at which a line begins, and between its points, in cells.
@@ -73,7 +73,7 @@ class Separatrix:
         return self.points if found is None else self.points[: 2 * found[1] - found[0] + 1]
 
 
-class Separatrices(list[Separatrix]):
+class Separatrices(Records, list[Separatrix]):
     """Separatrices of a field, in the order of times and saddles.
 
     Examples
@@ -96,10 +96,6 @@ class Separatrices(list[Separatrix]):
                 row |= {f"{end}_{axis}": float(x) for axis, x in zip("xyz", point, strict=True)}
             rows.append(row)
         return rows
-
-    def to_pandas(self) -> Any:
-        """Return a ``pandas.DataFrame`` of :meth:`records`."""
-        return import_extra("pandas", "xarray").DataFrame(self.records())
 
     def to_geojson(self) -> dict[str, Any]:
         """Return a GeoJSON ``FeatureCollection`` of lines, split where they cross 180 degrees.
