@@ -80,12 +80,12 @@ def test_fixed_points_of_a_formula_follow_its_parameters(
     with opened_page(browser, 640, 400) as page:
         page.goto(path.as_uri())
         page.wait_for_selector(COMPLETE)
-        kinds = page.locator(".kinds span")
-        assert kinds.all_inner_texts() == ["saddle", "spiral sink"]
+        kinds, lines = page.locator(".kinds span"), ["from saddle", "to saddle"]
+        assert kinds.all_inner_texts() == ["saddle", "spiral sink", *lines]
         slider = page.locator('[data-setting="formula.b"] input')
         with acted(page):
             slider.evaluate("(e) => { e.value = 0; e.dispatchEvent(new Event('input')); }")
-        assert kinds.all_inner_texts() == ["saddle", "centre"]
+        assert kinds.all_inner_texts() == ["saddle", "centre", *lines]
         place = page.evaluate("""() => {
           const { camera, canvas } = document.querySelector("flowtex-view").first;
           const { left, top, width, height } = canvas.getBoundingClientRect();
