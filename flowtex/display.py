@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
+from flowtex._util.arguments import checked_size
 from flowtex.errors import FieldError
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 
@@ -31,7 +32,7 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
         of a file.
     size
         Width and height of the window in pixels; 1024 x 768 by default, and in a notebook the width
-        of the cell.
+        of the cell. A page has the size of the browser's window.
     {options}
 
     Returns
@@ -42,8 +43,8 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
     Raises
     ------
     FieldError, SettingsError
-        When the mesh or a setting is invalid, when two views are requested and neither a window nor
-        a notebook is available, or when an argument for windows is used in a notebook.
+        When the mesh or a setting is invalid, when two views or a size are requested and neither a
+        window nor a notebook is available, or when an argument for windows is used in a browser.
     OpenGLMissingError
         When OpenGL is missing; the text names the command that installs it.
     ModuleNotFoundError
@@ -64,7 +65,7 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
     if has_display():
         _show_window(mesh, size or WINDOW_SIZE, options)
     else:
-        _show_page(mesh, options)
+        _show_page(mesh, size, options)
     return None
 
 
@@ -77,7 +78,7 @@ def in_notebook() -> bool:
     return getattr(shell, "kernel", None) is not None
 
 
-def _show_widget(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> FlowWidget:
+def _refuse_vtk(options: dict[str, Any]) -> None:
     for name in VTK_ARGUMENTS:
         if name in options:
             msg = (
@@ -85,6 +86,10 @@ def _show_widget(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any
                 "flowtex.render, or with plotter.flowtex.add and plotter.show"
             )
             raise FieldError(msg)
+
+
+def _show_widget(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> FlowWidget:
+    _refuse_vtk(options)
     from flowtex.widget import FlowWidget
 
     if size is not None:
@@ -97,7 +102,7 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
 
     bar_options = options.pop("scalar_bar_args", None)
     arguments = Options.split(**options)
-    plotter = new_plotter(size, two_views=arguments.view.beside is not None)
+    plotter = new_plotter(checked_size(size), two_views=arguments.view.beside is not None)
     plotter.disable_anti_aliasing()
     plotter.set_background(arguments.view.ground)
     handles = add_scenes(plotter, mesh, arguments, bar_options)
@@ -105,7 +110,14 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
     plotter.show()
 
 
-def _show_page(mesh: Any, options: dict[str, Any]) -> None:
+def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> None:
+    _refuse_vtk(options)
+    if size is not None:
+        msg = (
+            f"size is {size!r}, but there is no display, and a page is as large as the browser's "
+            "window; omit size, or draw with flowtex.render"
+        )
+        raise FieldError(msg)
     if options.pop("beside", None) is not None:
         msg = "two views need a window, but there is no display; use flowtex.render to draw both"
         raise FieldError(msg)

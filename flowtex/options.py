@@ -196,7 +196,8 @@ class FieldOptions:
             return stored
         if is_dataset(mesh):
             return FlowField.from_xarray(mesh, uncertainty=uncertainty, **self._of_dataset(choices))
-        if isinstance(mesh, (str, Path)) or _are_paths(mesh):
+        several = mesh if isinstance(mesh, (list, tuple)) and mesh else [mesh]
+        if all(isinstance(one, (str, Path)) for one in several):
             if "times" in choices:
                 msg = f"times is given, but {str(mesh)!r} already has times; omit it"
                 raise FieldError(msg)
@@ -240,11 +241,6 @@ class FieldOptions:
         if given := [name for name in names if name in choices]:
             msg = f"{', '.join(given)} applies to {what}; omit it"
             raise FieldError(msg)
-
-
-def _are_paths(mesh: Any) -> bool:
-    several = isinstance(mesh, (list, tuple)) and bool(mesh)
-    return several and all(isinstance(one, (str, Path)) for one in mesh)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays are not compared
@@ -445,6 +441,9 @@ class Options:
         values = {**defaults, **self.settings}
         if field is not None and field.projection is not None:
             values.setdefault("fade", True)
+        for name in ("coastlines", "graticule"):
+            if field is not None and field.projection is None and getattr(self.appearance, name):
+                notify(f"{name} is True, but the field is not on the Earth; none is drawn")
         lines = self.settings.get("lines", "auto")
         if field is not None and field.steady and lines != "auto":
             notify(f"lines is {lines!r}, but the flow is steady: its lines are all the same")

@@ -65,6 +65,9 @@ class OffscreenPlotter:
         options = replace(options, field=FieldOptions())
         appearance = options.appearance
         self._legend = appearance.has_bar
+        if scalar_bar_args and (annotations or not appearance.show_scalar_bar):
+            how = "without annotations" if annotations else "with show_scalar_bar=True"
+            notify(f"scalar_bar_args is given, but this bar is drawn only {how}; it is not used")
         if annotations or appearance.show_scalar_bar is None:
             options = replace(options, appearance=replace(appearance, show_scalar_bar=False))
         self._supersampling = supersampling
