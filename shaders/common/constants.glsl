@@ -53,6 +53,12 @@ const float FLOWTEX_MOST_GRAIN = 2147483648.0; // 2^31, the largest value of a g
 const float FLOWTEX_SPARSE_SHARE = 0.008;
 const float FLOWTEX_SPARSE_HIGH = 6.429101;
 const float FLOWTEX_SPARSE_LOW = 0.05184759;
+// In motion a bright grain is a dash: its share of a turn, the value of its head, less what all
+// have, and the rounds of phases of the values that are bright.
+const float FLOWTEX_DASH_SHARE = 0.4;
+const float FLOWTEX_DASH_HIGH = 17.698921;
+const float FLOWTEX_DASH_LOW = 0.02831827;
+const float FLOWTEX_DASH_PHASES = 256.0;
 const float FLOWTEX_GRAIN_VARIANCE = 1.537228672809129e18; // a third of its square
 
 // Shading: the lightness that black and white are drawn to, and how far the texture goes from it.

@@ -49,29 +49,36 @@ uvec3 flowtexScatter(uvec3 key)
 }
 
 #ifdef FLOWTEX_SPARSE
-// Values that are even from -1 to 1 as those of sparse grains.
-vec4 flowtexSparse(vec4 even)
+// Which grains are bright.
+vec4 flowtexBright(vec4 grains)
 {
-  return mix(vec4(-FLOWTEX_SPARSE_LOW), vec4(FLOWTEX_SPARSE_HIGH),
-             step(vec4(1.0 - 2.0 * FLOWTEX_SPARSE_SHARE), even));
+  return step(vec4((1.0 - 2.0 * FLOWTEX_SPARSE_SHARE) * FLOWTEX_MOST_GRAIN), grains);
+}
+
+// Values of bright grains that come once in a turn, and leave a tail.
+vec4 flowtexDash(vec4 grains, float phases, float turn)
+{
+  vec4 late = fract(grains * (phases * FLOWTEX_DASH_PHASES) + turn) / FLOWTEX_DASH_SHARE;
+  return flowtexBright(grains) * max(1.0 - late, 0.0) * FLOWTEX_DASH_HIGH - FLOWTEX_DASH_LOW;
 }
 #endif
 
 // Values of four lattice points from their scattered keys, even over all whole numbers with a sign
-// at every moment. In motion each is a mixture of two triangle waves with different phases.
+// at every moment, or sparse. In motion each is a mixture of two waves with different phases.
 vec4 flowtexGrains(uvec4 key, vec2 turns)
 {
   vec4 grains = vec4(ivec4(key * FLOWTEX_HASH_FACTORS.y));
-#ifdef FLOWTEX_MOVING
+#if defined(FLOWTEX_MOVING) && defined(FLOWTEX_SPARSE)
+  vec4 slow = flowtexDash(grains, flowtexMotion.phases.x, turns.x);
+  vec4 fast = flowtexDash(grains, flowtexMotion.phases.y, turns.y);
+  grains = slow * flowtexMotion.shares.x + fast * flowtexMotion.shares.y;
+#elif defined(FLOWTEX_MOVING)
   vec4 slow = abs(fract(grains * flowtexMotion.phases.x + turns.x) * 4.0 - 2.0) - 1.0;
   vec4 fast = abs(fract(grains * flowtexMotion.phases.y + turns.y) * 4.0 - 2.0) - 1.0;
-#ifdef FLOWTEX_SPARSE
-  slow = flowtexSparse(slow);
-  fast = flowtexSparse(fast);
-#endif
   grains = slow * flowtexMotion.shares.x + fast * flowtexMotion.shares.y;
 #elif defined(FLOWTEX_SPARSE)
-  grains = flowtexSparse(grains / FLOWTEX_MOST_GRAIN) * FLOWTEX_MOST_GRAIN;
+  grains = FLOWTEX_MOST_GRAIN
+    * mix(vec4(-FLOWTEX_SPARSE_LOW), vec4(FLOWTEX_SPARSE_HIGH), flowtexBright(grains));
 #endif
   return grains;
 }

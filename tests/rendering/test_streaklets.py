@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from flowtex.camera import Camera
 from flowtex.field.locate import locator
 from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.render import Picture, render
-from flowtex.rendering.uniforms import is_sparse
+from flowtex.rendering.uniforms import ViewState, is_sparse
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 
@@ -28,11 +29,12 @@ def still(make: Callable[[], FlowField], zoom: float) -> Picture:
     return picture(make().at_step(0), zoom)
 
 
-def picture(field: FlowField, zoom: float) -> Picture:
-    scene = Scene(field, Settings(texture="streaklets"))
+def picture(field: FlowField, zoom: float, clock: float = 0.0, **settings: Any) -> Picture:
+    scene = Scene(field, Settings(texture="streaklets", **settings))
     x, y, _ = field.surface.center + 0.11 * field.surface.extent
     camera = Camera((x, y, 5), (x, y, 0), (0, 1, 0), parallel=True, parallel_scale=0.6 / zoom)
-    return render(scene.textures, scene.settings, camera, SIZE)
+    view = ViewState(clock=clock)
+    return render(scene.textures, scene.settings, camera, SIZE, view=view)
 
 
 def sense(drawn: Picture, velocity: Floats) -> float:
@@ -60,6 +62,34 @@ def test_a_still_tells_which_way_the_flow_goes(make: Callable[[], FlowField], zo
         assert sense(picture(turned, zoom), velocity) < 0.05
 
 
+@pytest.mark.parametrize(
+    ("field", "zoom", "settings"),
+    [
+        (gyre(), 4, {"motion": "uniform"}),
+        (gyre(), 64, {"motion": "speed"}),
+        (swinging(), 16, {}),  # grains of a flow that varies in time move with it
+        (swinging(), 16, {"lines": "streamlines"}),
+    ],
+)
+def test_so_do_those_in_motion(field: FlowField, zoom: float, settings: dict[str, Any]) -> None:
+    drawn = picture(field, zoom, clock=0.3, **settings)
+    velocity = velocity_of(field, drawn)
+    assert sense(drawn, velocity) > 0.9
+    # Streaks, and not dots: the texture changes more across the flow than along it.
+    along, across = slopes(drawn, velocity)
+    assert across > 2 * along
+
+
+def slopes(drawn: Picture, velocity: Floats) -> tuple[float, float]:
+    """Mean change of a texture along the flow and across it, by pixel."""
+    up, right = np.gradient(np.where(drawn.covered, drawn.value, 0.0))
+    u, v = np.moveaxis(velocity[..., :2] / np.linalg.norm(velocity, axis=-1, keepdims=True), -1, 0)
+    inside = ndimage.binary_erosion(drawn.covered, iterations=2)
+    pair = (right * u - up * v, right * v + up * u)  # rows go down
+    along, across = (float(np.abs(change[inside]).mean()) for change in pair)
+    return along, across
+
+
 def test_streaklets_are_sparse_and_bright() -> None:
     dense = Scene(gyre(), Settings())
     drawn = still(gyre, 1)
@@ -76,6 +106,11 @@ def test_the_numbers_of_sparse_grains_keep_mean_and_variance() -> None:
     p, high, low = const.SPARSE_SHARE, const.SPARSE_HIGH, const.SPARSE_LOW
     assert p * high - (1 - p) * low == pytest.approx(0.0, abs=1e-6)
     assert p * high**2 + (1 - p) * low**2 == pytest.approx(1 / 3, abs=1e-6)
+    late = (np.arange(10_000) + 0.5) / 10_000 / const.DASH_SHARE
+    bright = np.maximum(1 - late, 0) * const.DASH_HIGH - const.DASH_LOW
+    assert p * bright.mean() - (1 - p) * const.DASH_LOW == pytest.approx(0.0, abs=1e-6)
+    square = p * (bright**2).mean() + (1 - p) * const.DASH_LOW**2
+    assert square == pytest.approx(1 / 3, abs=1e-6)
 
 
 def test_a_field_without_a_sign_has_strokes_without_a_head() -> None:

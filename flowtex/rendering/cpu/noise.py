@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flowtex._util.array_types import Floats, Ints
+from flowtex._util.array_types import Bools, Floats, Ints
 from flowtex.rendering import constants as const
 from flowtex.rendering.constants import LAST_HALF_LEVEL, LEAST_TEXELS
 from flowtex.rendering.cpu.fragments import Fragments, Varying
@@ -70,22 +70,30 @@ def grains(key: Hashes, motion: Motion | None, *, sparse: bool) -> Floats:
     values = (key * const.HASH_FACTORS[1]).view(np.int32).astype(float)
     if motion is None:
         if sparse:
-            values = const.MOST_GRAIN * _sparse(values / const.MOST_GRAIN)
+            low, high = -const.SPARSE_LOW, const.SPARSE_HIGH
+            values = const.MOST_GRAIN * np.where(_bright(values), high, low)
         return np.asarray(values)
-    waves = (
-        _triangle(values * motion.phases[:, k, None] + motion.clock[:, k, None]) for k in range(2)
+    wave = _dash if sparse else _triangle
+    slow, fast = (
+        wave(values, motion.phases[:, k, None], motion.clock[:, k, None]) for k in range(2)
     )
-    slow, fast = (_sparse(wave) if sparse else wave for wave in waves)
     return np.asarray(slow * motion.shares[:, :1] + fast * motion.shares[:, 1:])
 
 
-def _sparse(even: Floats) -> Floats:
-    """Values that are even from -1 to 1 as those of sparse grains."""
-    bright = even >= 1.0 - 2.0 * const.SPARSE_SHARE
-    return np.where(bright, const.SPARSE_HIGH, -const.SPARSE_LOW)
+def _bright(values: Floats) -> Bools:
+    return np.asarray(values >= (1.0 - 2.0 * const.SPARSE_SHARE) * const.MOST_GRAIN)
 
 
-def _triangle(turn: Floats) -> Floats:
+def _dash(values: Floats, phases: Floats, turn: Floats) -> Floats:
+    """Values of bright grains that come once in a turn, and leave a tail."""
+    turn = values * (phases * const.DASH_PHASES) + turn
+    late = (turn - np.floor(turn)) / const.DASH_SHARE
+    head = const.DASH_HIGH * np.maximum(1.0 - late, 0.0)
+    return np.asarray(_bright(values) * head - const.DASH_LOW)
+
+
+def _triangle(values: Floats, phases: Floats, turn: Floats) -> Floats:
+    turn = values * phases + turn
     return np.asarray(np.abs((turn - np.floor(turn)) * 4.0 - 2.0) - 1.0)
 
 
