@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from flowtex._util.array_types import Bytes
 from flowtex._util.cache import ByteCache
+from flowtex._util.notices import notify
 from flowtex.camera import CAMERA_LIMITS
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
@@ -90,8 +91,11 @@ def render(
         annotations=annotations,
         scalar_bar_args=scalar_bar_args,
     ) as plotter:
+        scene = plotter.handles[0].scene
+        if clock and scene.settings.motion == "off":
+            notify(f"clock is {clock!r}, but motion is 'off', and nothing moves")
         picture = plotter.picture(time=time, clock=clock)
-        _keep(plotter.handles[0].scene)
+        _keep(scene)
         return picture
 
 
