@@ -52,6 +52,8 @@ def steps_of(field: Any, name: str) -> Steps:
         return field.speed
     names = ", ".join(map(repr, dict.fromkeys(("speed", *field.scalars, *DERIVED))))
     msg = f"the field has no scalar {name!r}; expected one of {names}"
+    if name in FOLLOWED:
+        msg = f"{name!r} needs a horizon; first call field.with_derived({name!r}, horizon=...)"
     raise FieldError(msg)
 
 
