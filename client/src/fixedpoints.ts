@@ -183,16 +183,33 @@ export function separatrices(rate: Rate, ends: Ends, points: FixedPoint[], saddl
         const begin = along(saddle.at, way, side * BEGIN * step);
         const path = followed(rate, ends, points, [saddle.at, begin], leaves ? step : -step);
         const closed = turnOf(path, step, CLOSED);
+        const turn = closed && path.slice(closed[0], closed[1] + 1);
+        const ended = points.some(({ at }) => at === path[path.length - 1]);
         const wound = turnOf(path, step, WOUND);
         return {
           path: wound ? path.slice(0, 2 * wound[1] - wound[0] + 1) : path,
           saddle,
           leaves,
-          orbit: closed && path.slice(closed[0], closed[1] + 1),
+          // A line that comes back to its saddle closes, and is no orbit.
+          orbit: turn && !ended && isIsolated(rate, turn) ? turn : null,
         };
       }),
     );
   });
+}
+
+/**
+ * Whether lines beside a turn come to it or leave it, by the divergence over its time; as in
+ * flowtex/trace/structure/isolation.py.
+ */
+function isIsolated(rate: Rate, turn: Pair[]): boolean {
+  let growth = 0;
+  for (let n = 1; n < turn.length; n += 1) {
+    const length = distance(turn[n], turn[n - 1]);
+    const [a, , , d] = gradient(rate, turn[n], [1e-3 * length, 1e-3 * length]);
+    growth += ((a + d) * length) / Math.hypot(...rate(...turn[n]));
+  }
+  return Math.abs(growth) > MOVED;
 }
 
 /**

@@ -78,6 +78,19 @@ test("closed orbits are found where no separatrix ends", () => {
   for (const rate of none) assert.deepEqual(orbitsOf(rate), []);
 });
 
+test("no separatrix of a flow without divergence ends on a closed orbit", () => {
+  const box: Ends = [[0, 6.28], [0, 6.28]];
+  const waves = [[2, -1, 0.7, 0.9], [1, 3, 2.1, -0.6], [-3, 2, 4.4, 0.5], [1, 1, 5.2, 0.8]];
+  const rate: Rate = (x, y) => {
+    const parts = waves.map(([a, b, phase, size]) => [b, -a].map((k) => k * size * Math.cos(a * x + b * y + phase)));
+    return [0, 1].map((k) => parts.reduce((sum, part) => sum + part[k], 0)) as [number, number];
+  };
+  const points = fixedPoints(rate, box);
+  const lines = separatrices(rate, box, points, points.filter(({ ways }) => ways));
+  assert.ok(lines.length > 20);
+  assert.ok(lines.every(({ orbit }) => !orbit));
+});
+
 test("nullclines are where a rate is zero, and not where it jumps", () => {
   const box: Ends = [[-2, 2], [-1.9, 2.1]];
   const lengthOf = (pieces: [number, number][][]) => pieces.reduce((sum, [a, b]) => sum + Math.hypot(a[0] - b[0], a[1] - b[1]), 0);

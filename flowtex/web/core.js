@@ -1347,8 +1347,11 @@ if(Math.hypot(step[0]/cell[0],step[1]/cell[1])<1e-10)break}return Math.hypot(...
 at,gradient(rate,at,small)):null}function separatrices(rate,ends2,points,saddles){let step=Math.hypot(...ends2.map(([low,
 high])=>high-low))/STEPS2;return saddles.flatMap(saddle=>{let{ways}=saddle;return ways?[!0,!1].flatMap(leaves=>[1,-1].map(
 side=>{let way=leaves?ways.leaving:ways.coming,begin=along(saddle.at,way,side*BEGIN*step),path=followed(rate,ends2,points,
-[saddle.at,begin],leaves?step:-step),closed=turnOf(path,step,CLOSED),wound=turnOf(path,step,WOUND);return{path:wound?path.
-slice(0,2*wound[1]-wound[0]+1):path,saddle,leaves,orbit:closed&&path.slice(closed[0],closed[1]+1)}})):[]})}function closedOrbits(rate,ends2,points){
+[saddle.at,begin],leaves?step:-step),closed=turnOf(path,step,CLOSED),turn=closed&&path.slice(closed[0],closed[1]+1),ended=points.
+some(({at})=>at===path[path.length-1]),wound=turnOf(path,step,WOUND);return{path:wound?path.slice(0,2*wound[1]-wound[0]+
+1):path,saddle,leaves,orbit:turn&&!ended&&isIsolated(rate,turn)?turn:null}})):[]})}function isIsolated(rate,turn){let growth=0;
+for(let n=1;n<turn.length;n+=1){let length3=distance(turn[n],turn[n-1]),[a,,,d]=gradient(rate,turn[n],[.001*length3,.001*
+length3]);growth+=(a+d)*length3/Math.hypot(...rate(...turn[n]))}return Math.abs(growth)>MOVED}function closedOrbits(rate,ends2,points){
 let diagonal=Math.hypot(...ends2.map(([low,high])=>high-low)),step=diagonal/STEPS2,found=[];for(let{at:[x,y]}of points.filter(
 ({ways})=>!ways).slice(0,MOST_AROUND)){let turn=(place,way)=>{let side=Math.sign(way*rate(x+place,y)[1]),isBack=path2=>{
 let[before2,after2]=path2.slice(-2).map(at=>side*(at[1]-y));return path2.length>LEAST_TURN&&before2<0&&after2>=0&&path2[path2.
