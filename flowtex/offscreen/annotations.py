@@ -39,7 +39,7 @@ TEXT_SHARE, WIDEST_ASPECT = 1 / 30, 1.6
 #: Height below which text cannot be read, in pixels.
 SMALLEST_TEXT_PX = 11
 #: Share of the picture that a plate covers at most.
-MOST_COVER = 0.12
+MOST_COVER = 0.125
 #: Greatest share of the picture's width that a scale bar has.
 SCALE_BAR_WIDTH = 0.2
 #: Lengths in heights of the text: around it, between plates, of the ramp, of thin lines.
@@ -242,14 +242,17 @@ class _Writer:
         shares, numbers = zip(*marks, strict=True)
         widest = max(map(self._width, numbers)) + self._px(GAP)
         apart = min(np.diff(shares), default=1.0)
-        width = max(self._width(title), math.ceil(widest / apart), self._px(RAMP_WIDTH))
-        high = self._px(RAMP_HEIGHT)
+        high, least = self._px(RAMP_HEIGHT), self._px(RAMP_WIDTH)
         # Numbers stand in the middle below their colours, and may reach beyond the first and last.
+        aside = self._width(numbers[0]) / 2 - shares[0] * least
+        aside = max(aside, 0) + max(self._width(numbers[-1]) / 2 - (1 - shares[-1]) * least, 0)
+        width = math.ceil(max(max(self._width(title), least) - aside, widest / apart))
         places = [share * width - self._width(text) / 2 for share, text in marks]
         ends = [x + self._width(text) for x, text in zip(places, numbers, strict=True)]
-        start, end = math.ceil(max(-min(places), 0)), math.ceil(max(*ends, width))
+        start = math.ceil(max(-min(places), 0))
+        end = math.ceil(max(*ends, width, self._width(title) - start))
         image, draw = self._blank(start + end, 2 * self._line + high)
-        self._write(draw, start, 0, title)
+        self._write(draw, 0, 0, title)
         stops = np.linspace(0, len(table) - 1, width).round().astype(int)
         ramp = np.broadcast_to(table[stops], (high, width, 3))
         shape = Image.new("L", (SMOOTH * width, SMOOTH * high))

@@ -116,7 +116,7 @@ def test_whatever_the_size_and_the_words_are(size: tuple[int, int], name: str, u
 def test_what_has_no_room_is_left_out_the_title_first() -> None:
     scene = Scene(patch(name="a name that is as long as this"))
     assert list(written(scene, (640, 400))) == ["legend", "time", "scale bar", "title"]
-    assert list(written(scene, (250, 180))) == ["legend", "time", "scale bar"]
+    assert list(written(scene, (220, 180))) == ["legend", "time", "scale bar"]
     assert list(written(scene, (40, 30))) == []
 
 
