@@ -141,7 +141,7 @@ class _GridGradient:
 
     def _difference(self, nodal: Floats, axis: int, offset: Floats | None = None) -> Floats:
         """Return the difference per cell along an axis, of second order also beside gaps."""
-        result = np.empty_like(nodal)
+        result = np.zeros_like(nodal)  # the ends of an open axis are halved before they are set
         data, out = (np.swapaxes(a, 1, axis + 1) for a in (nodal, result))
         np.subtract(data[:, 2:], data[:, :-2], out=out[:, 1:-1])
         turn = np.zeros(len(data)) if offset is None else offset
