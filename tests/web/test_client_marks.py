@@ -29,7 +29,7 @@ pytestmark = pytest.mark.browser
 
 
 def sphere() -> FlowField:
-    p = np.random.default_rng(1).normal(size=(3, 2000))
+    p = np.random.default_rng(1).normal(size=(3, 700))
     p /= np.linalg.norm(p, axis=0)
     x, y, z = p
     velocity = np.stack([np.sin(3 * y) + z, np.cos(2 * z) * x, np.sin(4 * x)])
