@@ -34,7 +34,7 @@ FIRST_CELLS, RATIO, EXTENT_SHARE = 1.0, 1.2, 0.03
 #: the distance from the middle; and how far from its beginning an orbit may end, in cells.
 MOVED_CELLS, MOVED_SHARE, CLOSED_CELLS = 0.05, 0.05, 0.1
 #: Parts into which a stretch of a ray with an orbit is divided, and how often.
-PARTS, ROUNDS = 8, 4
+PARTS, ROUNDS = 64, 2
 #: Distances from a critical point and from a wall, in cells, at which a line ends.
 REST_CELLS, WALL_CELLS = 0.25, 0.05
 #: Critical points around which orbits are searched for, the strongest ones.
