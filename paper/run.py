@@ -139,7 +139,7 @@ def _title_picture(bench: Bench) -> Panel:
     """Draw a wide view of the vortices, coloured by speed."""
     import matplotlib as mpl
 
-    size = bench.pick((1240, 420), (400, 136))
+    size = bench.pick((1240, 420), (300, 102))
     step = bench.pick(TITLE_STEP, VORTEX_STEP)  # which has been traced
     view = view_of(bench, bench.vortex, size, zoom=size[0] / size[1] / 0.92, step=step)
     share = np.clip(view.speed / np.quantile(view.speed, 0.98), 0, 1)

@@ -33,7 +33,7 @@ def _plane() -> FlowField:
 
 
 def _view(bench: Bench) -> View:
-    size = bench.pick((440, 300), (220, 150))
+    size = bench.pick((440, 300), (165, 112))
     camera = Camera((-1.15, 1.0, 0.8), (1.6, 1.0, 0.0), (0.0, 0.0, 1.0), view_angle=38.0)
     return View(bench, bench.once("plane", _plane), camera, size)
 

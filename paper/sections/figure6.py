@@ -59,9 +59,9 @@ def _evenness(view: View, resolution: int) -> tuple[list[Panel], dict[str, dict[
 
 
 def _figure6(bench: Bench) -> Finding:
-    flat = view_of(bench, bench.stretched, bench.pick((440, 230), (300, 156)))
+    flat = view_of(bench, bench.stretched, bench.pick((440, 230), (225, 117)))
     noise, even = _evenness(flat, bench.pick(256, 128))
-    view = wing_view(bench, bench.pick((440, 340), (200, 155)), 3.0)
+    view = wing_view(bench, bench.pick((440, 340), (150, 116)), 3.0)
     pictures = _pictures(bench, view)
     figures: dict[str, dict[str, float]] = {
         name: {

@@ -22,8 +22,8 @@ def _post(bench: Bench) -> Finding:
     post = bench.post
     if post is None:
         return Finding([Text("The post's files could not be had, so this figure is left out.")])
-    size = bench.pick((420, 400), (160, 152))
-    small = bench.pick((300, 286), (120, 114))
+    size = bench.pick((420, 400), (120, 114))
+    small = bench.pick((300, 286), (90, 86))
     sizes = post.surface.cell_size
     finding = _finding(
         "figure5_post",
@@ -44,8 +44,8 @@ def _post(bench: Bench) -> Finding:
 
 
 def _shuttle(bench: Bench) -> Finding:
-    size = bench.pick((460, 360), (184, 144))
-    small = bench.pick((300, 235), (130, 102))
+    size = bench.pick((460, 360), (138, 108))
+    small = bench.pick((300, 235), (98, 76))
     return _finding(
         "figure7_shuttle",
         "The shuttle's stand-in, zoomed out (figure 7)",
@@ -61,8 +61,8 @@ def _shuttle(bench: Bench) -> Finding:
 
 def _vortex(bench: Bench) -> Finding:
     view = partial(view_of, bench, bench.vortex, step=VORTEX_STEP)
-    size = bench.pick((400, 400), (150, 150))
-    small = bench.pick((300, 300), (110, 110))
+    size = bench.pick((400, 400), (112, 112))
+    small = bench.pick((300, 300), (82, 82))
     return _finding(
         "figure8_vortex",
         "The vortex data, zoomed out (figure 8)",

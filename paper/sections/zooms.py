@@ -39,7 +39,7 @@ def _drawn(bench: Bench, view: View, method: str) -> Floats:
 def _measured(bench: Bench) -> tuple[dict[str, dict[str, Any]], list[Panel]]:
     zooms = [2.0**n for n in bench.pick(range(11), (0, 5, 10))]
     panel_zooms = bench.pick((1, 16, 256, 1024), (1, 1024))
-    size = bench.pick((320, 260), (130, 104))
+    size = bench.pick((320, 260), (98, 78))
     figures: dict[str, dict[str, Any]] = {name: {} for name in METHODS}
     panels = []
     for name in METHODS:
