@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +23,8 @@ SOURCE = "computed by flowtex.examples from formulas; neither observed nor forec
 #: Earth's turning in radians a second, gravity in m/s², seconds of a day, metres of a degree.
 TURNING, GRAVITY, DAY, DEGREE = 7.2921e-5, 9.81, 86400.0, np.radians(EARTH_RADIUS)
 
-#: Nodes of the ocean, (first, last, count) in degrees.
+#: Days of the ocean, and its nodes, (first, last, count) in degrees.
+DAYS = 8
 OCEAN = {"longitude": (-82.0, -46.0, 217), "latitude": (28.0, 46.0, 109)}
 #: Middle of the Gulf Stream before it meanders, longitude and latitude.
 STREAM = (
@@ -84,15 +86,7 @@ def ocean() -> xr.Dataset:
     >>> flowtex.render(flowtex.examples.ocean(), cmap="viridis")  # doctest: +SKIP
     """
     xarray = import_extra("xarray", "xarray")
-    lon, lat = (np.linspace(*line) for line in OCEAN.values())
-    places = np.stack(np.meshgrid(lon, lat), axis=-1)
-    land = _land(lon, lat)
-    cell = np.array([lat[1] - lat[0], (lon[1] - lon[0]) * np.cos(np.radians(lat.mean()))])
-    far = scipy.ndimage.distance_transform_edt(~land, sampling=cell * DEGREE)
-    sea = 1 - np.exp(-((far / SHELF) ** 2))
-    days = np.arange(8)
-    # The sea is as high along all of the coast, so no current goes through it.
-    height = np.stack([(_height(places, day * DAY) + HEIGHT) * sea - HEIGHT for day in days])
+    lon, lat, land, height = _sea()
     coriolis = 2 * TURNING * np.sin(np.radians(lat))[:, None]
     north, east = np.gradient(height, lat * DEGREE, lon * DEGREE, axis=(1, 2))
     east /= np.cos(np.radians(lat))[:, None]
@@ -101,7 +95,7 @@ def ocean() -> xr.Dataset:
         "vo": (GRAVITY / coriolis * east, "northward_sea_water_velocity", "m s-1"),
         "zos": (height, "sea_surface_height_above_geoid", "m"),
     }
-    times = np.datetime64("2024-03-01", "ns") + days * np.timedelta64(1, "D")
+    times = np.datetime64("2024-03-01", "ns") + np.arange(DAYS) * np.timedelta64(1, "D")
     return _dataset(
         xarray,
         {name: (np.where(land, np.nan, values), *words) for name, (values, *words) in data.items()},
@@ -171,6 +165,20 @@ def _words(standard_name: str) -> str:
     return standard_name.replace("_", " ")
 
 
+@cache
+def _sea() -> tuple[Floats, Floats, Bools, Floats]:
+    """Return longitudes, latitudes, which nodes are land, and heights of the sea, (T, J, I)."""
+    lon, lat = (np.linspace(*line) for line in OCEAN.values())
+    places = np.stack(np.meshgrid(lon, lat), axis=-1)
+    land = _land(lon, lat)
+    cell = np.array([lat[1] - lat[0], (lon[1] - lon[0]) * np.cos(np.radians(lat.mean()))])
+    far = scipy.ndimage.distance_transform_edt(~land, sampling=cell * DEGREE)
+    sea = 1 - np.exp(-((far / SHELF) ** 2))
+    # The sea is as high along all of the coast, so no current goes through it.
+    heights = [(_height(places, day * DAY) + HEIGHT) * sea - HEIGHT for day in range(DAYS)]
+    return lon, lat, land, np.stack(heights)
+
+
 def _land(lon: Floats, lat: Floats) -> Bools:
     """Return which nodes of rows and columns are land: a parallel crosses coasts into it."""
     lines = coastlines(Projection("platecarree"))
@@ -186,7 +194,7 @@ def _land(lon: Floats, lat: Floats) -> Bools:
 
 
 def _height(places: Floats, seconds: float) -> Floats:
-    """Return the height of the sea in metres at longitudes and latitudes, (..., 2)."""
+    """Return the height of the sea in metres at a grid of longitudes and latitudes, (J, I, 2)."""
     narrow = np.cos(np.radians(38.0))
     here = places * [narrow, 1.0] * DEGREE
     path, along = _stream(seconds, narrow)
@@ -200,14 +208,16 @@ def _height(places: Floats, seconds: float) -> Floats:
     middles = random.uniform(low - 2.0, high + 2.0, (EDDIES, 2))
     sizes = random.uniform(0.04, 0.14, EDDIES) * random.choice([-1, 1], EDDIES)
     small = np.column_stack([middles, sizes, random.uniform(45e3, 85e3, EDDIES)])
-    for lon, lat, size, radius in (*RINGS, *small):
-        beta = 2 * TURNING / EARTH_RADIUS * np.cos(np.radians(lat))
-        west = beta * ROSSBY_RADIUS**2 * seconds
-        # Those of a high sea go a little towards the equator, and those of a low one away from it.
-        middle = np.array([lon * narrow * DEGREE - west, lat * DEGREE - np.sign(size) * west / 6])
-        distance = np.sum((here - middle) ** 2, axis=-1) / radius**2
-        height += size * np.exp(-distance / 2)
-    return np.asarray(height)
+    eddies = np.concatenate([np.array(RINGS), small])
+    lon, lat, sizes, radii = eddies.T
+    beta = 2 * TURNING / EARTH_RADIUS * np.cos(np.radians(lat))
+    west = beta * ROSSBY_RADIUS**2 * seconds
+    # Those of a high sea go a little towards the equator, and those of a low one away from it.
+    x, y = lon * narrow * DEGREE - west, lat * DEGREE - np.sign(sizes) * west / 6
+    # A Gaussian is the product of one along each axis.
+    across = np.exp(-(((here[0, :, 0] - x[:, None]) / radii[:, None]) ** 2) / 2)
+    along = np.exp(-(((here[:, 0, 1] - y[:, None]) / radii[:, None]) ** 2) / 2)
+    return np.asarray(height + (sizes[:, None] * along).T @ across)
 
 
 def _stream(seconds: float, narrow: float) -> tuple[Floats, Floats]:

@@ -215,7 +215,7 @@ def crooked_grid() -> flowtex.FlowField:
 
 
 def globe() -> flowtex.FlowField:
-    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 481), np.linspace(-np.pi / 2, np.pi / 2, 241))
+    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 241), np.linspace(-np.pi / 2, np.pi / 2, 121))
     x, y, z = points = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)])
     flow = np.stack([-y, x + 0.7 * z, -0.7 * y])  # around an axis that is not the poles'
     return flowtex.FlowField.from_arrays(np.moveaxis(points, 0, -1), np.moveaxis(flow, 0, -1))
