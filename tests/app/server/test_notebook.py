@@ -1,36 +1,21 @@
-"""The page in a cell of a real JupyterLab, directly and through jupyter-server-proxy."""
+"""The page in the cell of a notebook, without a browser: tests/test_jupyterlab.py has one."""
 
 from __future__ import annotations
 
 import asyncio
-import io
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import aiohttp
-import numpy as np
 import pytest
-from PIL import Image
 
 pytest.importorskip("trame_rca")
 
-from lab import BASE, Lab, LabServer
 from served import Link, enter
-from waiting import PATIENCE_S, wait_until
-from watching import COUNT, DRAWN, SHARP
+from waiting import PATIENCE_S
 
 from flowtex import examples
 from flowtex.app import FlowApp
 from flowtex.app.server.notebook import proxy_path
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Frame, Page
-
-SHOW = """import flowtex
-from flowtex.app import FlowApp
-app = FlowApp(flowtex.examples.double_gyre_field(), samples=5)
-app"""
-#: What a kernel finds in its environment on JupyterHub.
-HUB = f"__import__('os').environ.update(JUPYTERHUB_SERVICE_PREFIX='{BASE}/')"
 
 
 @pytest.mark.parametrize(
@@ -85,52 +70,3 @@ async def test_all_frames_show_the_application_that_python_has() -> None:
             async with asyncio.timeout(PATIENCE_S):
                 while True:
                     await enter(http, bare, secret)
-
-
-def frame_of(page: Page) -> Frame:
-    frame = page.locator("iframe[title=flowtex]").element_handle().content_frame()
-    assert frame is not None
-    return frame
-
-
-def drawn(page: Page, frame: Frame, before: int = 0) -> Any:
-    """Wait for the next full picture, and return the frame as (h, w) greys."""
-    frame.wait_for_function(f"n => ({COUNT})() > n && ({SHARP})()", arg=before)
-    frame.evaluate(DRAWN)
-    with Image.open(io.BytesIO(page.locator("iframe[title=flowtex]").screenshot())) as picture:
-        return np.asarray(picture.convert("L"), dtype=float)[140:300, 80:-30]
-
-
-@pytest.mark.slow
-@pytest.mark.browser
-@pytest.mark.usefixtures("opengl")
-def test_a_cell_shows_a_flow_that_both_sides_can_change(page: Page, jupyter: LabServer) -> None:
-    """Through the proxy, as on JupyterHub; without it the page is that of a server."""
-    page.set_viewport_size({"width": 700, "height": 700})
-    asked: list[str] = []
-    page.on("websocket", lambda socket: asked.append(socket.url))
-    notebook = Lab(page, jupyter)
-    assert notebook.said(HUB) == "None"
-    notebook.run(SHOW)
-    page.locator("iframe[title=flowtex]").wait_for()
-    frame = frame_of(page)
-    before = drawn(page, frame)
-    assert np.abs(np.diff(before, axis=0)).mean() > 5
-    (link,) = [url for url in asked if "/page/" in url]
-    assert f"{BASE}/proxy/" in link
-    assert "secret" not in frame.url
-
-    # The browser to Python, and Python to the browser.
-    count = int(frame.evaluate(COUNT))
-    frame.locator(".picture").hover(position={"x": 200, "y": 200})
-    for _ in range(8):
-        page.mouse.wheel(0, -100)
-    closer = drawn(page, frame, count)
-    assert np.abs(closer - before).mean() > 5
-    assert float(notebook.said("app.viewport.zoom")) > 3
-    assert notebook.said("app.area.reset_camera()") == "None"
-    # A picture of the closer view may still be on its way.
-    wait_until(lambda: np.abs(drawn(page, frame) - before).mean() < 1)
-
-    assert notebook.said("app.close()") == "None"
-    frame.get_by_text("lost its connection").wait_for()
