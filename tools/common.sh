@@ -31,6 +31,6 @@ apt_install() {
     fi
 }
 
-# workers BIN: number of processes for the tests: two more than cores, as some tests wait for
-# processes that they start.
-workers() { "$1/python" -c 'import os; print(min((os.cpu_count() or 1) + 2, 6))'; }
+# workers BIN: number of processes for the tests: one more than cores, as some tests wait for
+# processes that they start. Each takes five seconds to collect the tests.
+workers() { "$1/python" -c 'import os; print(min((os.cpu_count() or 1) + 1, 6))'; }
