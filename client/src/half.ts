@@ -10,6 +10,9 @@ export function fromHalf(bits: number): number {
   return bits & 32768 ? -size : size;
 }
 
+/** Numbers by the bits of their half precision. */
+export const HALVES = Float32Array.from({ length: 1 << 16 }, (_, bits) => fromHalf(bits));
+
 const SINGLE = new Float32Array(1);
 const BITS = new Uint32Array(SINGLE.buffer);
 

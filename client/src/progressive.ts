@@ -45,6 +45,8 @@ interface Content {
   arrange(shown: Moment): Scene[];
   /** Whether outlines are smoothed. */
   readonly smooth: boolean;
+  /** Whether more of what is to be seen is on its way. */
+  readonly isComing: boolean;
 }
 
 /** What is drawn of a picture. */
@@ -104,10 +106,10 @@ export class ProgressiveRenderer {
     this.rowsDone = 0;
   }
 
-  /** Draw the same picture once more when it is complete: more of the surface is there. */
+  /** Draw the same picture once more, as more of the surface is there: once it is complete, if yet more comes. */
   refine(): void {
-    if (this.rowsDone >= this.canvas.height) this.rowsDone = 0;
-    else this.isRefined = true;
+    if (this.rowsDone >= this.canvas.height || !this.content.isComing) this.rowsDone = 0;
+    this.isRefined = true;
   }
 
   /** Change the size; what is on show stays, stretched, until there is something better. */

@@ -522,5 +522,6 @@ function floats(numbers: Uint8Array | Uint16Array | Uint32Array, units: number[]
   if (numbers instanceof Uint16Array) {
     return numbers.map((n, k) => toHalf(((n << 16) >> 16) * units[k % channels]));
   }
-  return Float32Array.from(numbers, (n, k) => (n | 0) * units[k % channels]);
+  // Several times as fast as Float32Array.from with a function.
+  return new Float32Array(new Float64Array(numbers).map((n, k) => (n | 0) * units[k % channels]));
 }

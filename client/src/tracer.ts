@@ -2,7 +2,7 @@
 // drawn from. Python follows the paths alike, and lays out the texels alike:
 // flowtex/rendering/webgl/velocity.py has what comes here.
 
-import { fromHalf } from "./half.ts";
+import { HALVES } from "./half.ts";
 import { makeLayers, sendLayer, type LayersSize } from "./layers.ts";
 import { Poles } from "./poles.ts";
 import type { Program, ProgramContext, Programs } from "./programs.ts";
@@ -17,8 +17,6 @@ export type Made = Omit<Part, "digest">;
 
 /** Greatest value of a component of a normal in sixteen bits. */
 const NORMAL_MAX = 32767;
-/** Numbers by the bits of their half precision. */
-const HALVES = Float32Array.from({ length: 1 << 16 }, (_, bits) => fromHalf(bits));
 /** What the fourth channel of a layer has, as shaders/webgl2/layers.glsl knows it. */
 const [NOTHING, SPEED, REACH, UNKNOWN] = [0, 1, 2, 3];
 /** The layer of a side with the uncertainty of the direction, counted from 0. */
@@ -221,7 +219,7 @@ export class Tracing {
   /** The numbers of a part, which may come in half precision. */
   private numbers(name: string): Float32Array {
     const data = this.data(name);
-    return data instanceof Float32Array ? data : Float32Array.from(data, (bits) => HALVES[bits]);
+    return data instanceof Float32Array ? data : new Float32Array(data).map((bits) => HALVES[bits]);
   }
 
   private texture(width: number, height: number, inner: number, data: Float32Array | null) {

@@ -76,6 +76,10 @@ export class WebGL2Painter implements Painter {
     return this.program(header).price < CARD_PRICE_MS;
   }
 
+  get isComing(): boolean {
+    return !!this.tiles?.missing.length;
+  }
+
   get lacking(): string[] {
     const [before, after] = this.view.player.moment;
     return this.scene?.missing(before, after) ?? [];

@@ -33,7 +33,7 @@ from flowtex.field.steps import Nodes, Steps, map_steps
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.trace import SliceStore
-from flowtex.trace.lags import small_cell
+from flowtex.trace.lags import FIRST_CELLS, small_cell
 
 #: Most nodes, of one time, of a field that is traced whole.
 ROOT_NODES = 150_000
@@ -43,6 +43,9 @@ BLOCK_CELLS, TILE_BLOCKS = 64, 4
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Length of the paths in cells, by their longer side.
 PATH_CELLS = 28
+#: First lag in cells where a finer level is drawn before cells cover more than a few pixels: the
+#: parabolas up to there are off by hundredths of a pixel.
+COARSE_FIRST_CELLS = 1.0
 #: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile; lines that it
 #: has more than that; and its greatest width.
 HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
@@ -244,6 +247,7 @@ class Pyramid:
             lines=self.lines,
             compose=(field.steady or self.lines == "streamlines") and is_small,
             longest=longest,
+            first_cells=COARSE_FIRST_CELLS if key.level else FIRST_CELLS,
             cell=self._cell,
             nodes=nodes,
         )

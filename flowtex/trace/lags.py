@@ -50,15 +50,17 @@ def longest_path(field: FlowField) -> float:
     return LAST_EXTENTS * field.surface.extent / (np.sqrt(3) if closed else 1)
 
 
-def choose_lags(field: FlowField, parameter: str, longest: float | None = None) -> Floats:
+def choose_lags(
+    field: FlowField, parameter: str, longest: float | None = None, first_cells: float = FIRST_CELLS
+) -> Floats:
     """Lags from a quarter of a cell to a quarter of the surface, (M,), in lag units.
 
-    The greatest length may be given instead, in the mesh's units.
+    The first may be given instead, in cells, and the greatest length, in the mesh's units.
     """
     if longest is None:
         longest = longest_path(field)
     if parameter == "arclength":
-        first, last = FIRST_CELLS, longest / small_cell(field)
+        first, last = first_cells, longest / small_cell(field)
     else:
         speed = field.typical.speed[:, field.valid]
         moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
@@ -66,7 +68,7 @@ def choose_lags(field: FlowField, parameter: str, longest: float | None = None) 
             return np.array([1.0, RATIO])
         size = field.surface.cell_size[field.valid]
         crossing = np.broadcast_to(size, speed.shape)[moving] / speed[moving]
-        first = FIRST_CELLS * float(np.percentile(crossing, 10))
+        first = first_cells * float(np.percentile(crossing, 10))
         last = longest / float(np.sqrt(np.mean(speed[moving] ** 2)))
         if not field.steady:
             # Lags that reach other time steps are what long paths can be composed of.
@@ -82,7 +84,11 @@ def small_cell(field: FlowField) -> float:
 
 
 def drawn_lags(
-    field: FlowField, parameter: str, longest: float | None = None, cell: float | None = None
+    field: FlowField,
+    parameter: str,
+    longest: float | None = None,
+    cell: float | None = None,
+    first_cells: float = FIRST_CELLS,
 ) -> tuple[Floats, Floats]:
     """Lags to draw with, (M,), and their unit at each node, (J, I), as :func:`choose_lags` takes.
 
@@ -92,7 +98,7 @@ def drawn_lags(
     """
     unit = lag_unit(field, parameter)
     if parameter == "time":
-        lags = choose_lags(field, parameter, longest)
+        lags = choose_lags(field, parameter, longest, first_cells)
         # Half precision holds lags near one, whatever the field's unit of time is.
         first = 2.0 ** np.rint(np.log2(lags[0]))
         return lags / first, unit * first
@@ -101,13 +107,13 @@ def drawn_lags(
         even = cell * 2.0 ** np.rint(np.log2(even / cell))
     alike = LEAST_CELL * even <= known.min() and known.max() <= MOST_CELL * even
     if not alike or field.triangles is not None:
-        return choose_lags(field, parameter, longest), unit
+        return choose_lags(field, parameter, longest, first_cells), unit
     unit = np.full(field.shape, even)
     if longest is None:
-        return choose_lags(field, parameter), unit
+        return choose_lags(field, parameter, first_cells=first_cells), unit
     # The last is a sum of few that double, as paths are composed of whole slices.
     part = 2.0 ** np.floor(np.log2(longest / even)) / LAST_PARTS
     last = np.ceil(longest / even / part) * part
-    doubled = FIRST_CELLS * RATIO ** np.arange(MOST_CHOSEN_LAGS - 1)
+    doubled = first_cells * RATIO ** np.arange(MOST_CHOSEN_LAGS - 1)
     # A last lag that is hardly longer than the one before takes its place.
     return np.append(doubled[doubled < last / np.sqrt(RATIO)], last), unit

@@ -19,7 +19,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 from flowtex.trace.compose import landings
-from flowtex.trace.lags import drawn_lags, longest_path
+from flowtex.trace.lags import FIRST_CELLS, drawn_lags, longest_path
 from flowtex.trace.lines import chosen_lines
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.trace import trace
@@ -40,8 +40,9 @@ class SliceStore:
     were traced already nothing is traced; in a sign-free field they lead to both sides. ``compose``
     allows to compose all steps together, which is quicker than step by step, but slower for one or
     two of them. ``longest`` is the greatest length that is traced, in the mesh's units, a quarter
-    of the surface by default, ``cell`` the size of small cells of the surface that the field is a
-    part of, and ``nodes`` (J, I) are those that :func:`flowtex.trace` is to follow.
+    of the surface by default, ``first_cells`` the first lag in cells, ``cell`` the size of small
+    cells of the surface that the field is a part of, and ``nodes`` (J, I) are those that
+    :func:`flowtex.trace` is to follow.
     """
 
     def __init__(
@@ -53,6 +54,7 @@ class SliceStore:
         slices: TraceSlices | None = None,
         compose: bool = True,
         longest: float | None = None,
+        first_cells: float = FIRST_CELLS,
         cell: float | None = None,
         nodes: Bools | None = None,
     ) -> None:
@@ -71,7 +73,8 @@ class SliceStore:
         self._lock = threading.Lock()
         if slices is None:
             self.parameter = parameter if self.streamlines else "time"
-            self.lags, self.unit = drawn_lags(field, self.parameter, longest, cell)
+            given = (longest, cell, first_cells)
+            self.lags, self.unit = drawn_lags(field, self.parameter, *given)
             # On a globe the lags that are long enough near a pole are many times that elsewhere.
             poles = field.surface.poles
             closed = poles is not None and poles.both

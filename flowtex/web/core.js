@@ -211,14 +211,15 @@ hypot(...low.map((least,k)=>(high[k]-least)/2));groups.push({first,count:count2,
 let runs=[];for(let{first,count:count2,middle:[x,y,z],radius}of groups){let isOut=([a,b,c,d])=>a*x+b*y+c*z+d<-radius*Math.
 hypot(a,b,c);if(planes.some(isOut))continue;let last=runs[runs.length-1];last&&last[0]+last[1]===first?last[1]+=count2:runs.
 push([first,count2])}return runs}function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
-size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var SINGLE=new Float32Array(1),BITS=new Uint32Array(
-SINGLE.buffer);function toHalf(x){SINGLE[0]=x;let sign=BITS[0]>>>16&32768,size=BITS[0]&2147483647;return size>=1199566848?
-sign|(size>2139095040?32256:31744):size<947912704?sign|Math.round(Math.abs(x)*2**24):sign|size-93952e4>>>13}function halved(texels,width,height,channels){
-let[w,h]=[Math.max(width>>1,1),Math.max(height>>1,1)],result2=new Uint16Array(w*h*channels),between3=(n,few,many)=>{let x=(n+
-.5)*(many/few)-.5,base=Math.floor(x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,
-v2]=between3(j,h,height);for(let i=0;i<w;i+=1){let[left,right,u]=between3(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(
-texels[(y*width+x)*channels+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=
-toHalf(below*(1-v2)+above*v2)}}}return[result2,w,h]}var FORMAT=6,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],MARKS={critical:"criti\
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(
+bits)),SINGLE=new Float32Array(1),BITS=new Uint32Array(SINGLE.buffer);function toHalf(x){SINGLE[0]=x;let sign=BITS[0]>>>
+16&32768,size=BITS[0]&2147483647;return size>=1199566848?sign|(size>2139095040?32256:31744):size<947912704?sign|Math.round(
+Math.abs(x)*2**24):sign|size-93952e4>>>13}function halved(texels,width,height,channels){let[w,h]=[Math.max(width>>1,1),Math.
+max(height>>1,1)],result2=new Uint16Array(w*h*channels),between3=(n,few,many)=>{let x=(n+.5)*(many/few)-.5,base=Math.floor(
+x);return[base,Math.min(base+1,many-1),x-base]};for(let j=0,n=0;j<h;j+=1){let[low,high,v2]=between3(j,h,height);for(let i=0;i<
+w;i+=1){let[left,right,u]=between3(i,w,width);for(let c=0;c<channels;c+=1){let at=(y,x)=>fromHalf(texels[(y*width+x)*channels+
+c]),below=at(low,left)*(1-u)+at(low,right)*u,above=at(high,left)*(1-u)+at(high,right)*u;result2[n++]=toHalf(below*(1-v2)+
+above*v2)}}}return[result2,w,h]}var FORMAT=6,ZERO_SHARE=1e-5,AXES=["ticks","scale","none"],EARTH_LINES=["coastlines","graticule"],MARKS={critical:"criti\
 cal_points",separatrices:"separatrices",nullclines:"nullclines"},LINE={saddle:8,orbit:4,leaving:2},TYPES={float32:Float32Array,
 uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,uint8:Uint8Array};function shareOf({
 low,high,log}){if(!log)return value=>(value-low)/(high-low||1);let span=Math.log(high/low)||1;return value=>Math.log(Math.
@@ -247,7 +248,7 @@ channels;for(let order=0;order<differences[0];order+=1)for(let n=row2;n<count2;n
 differences[1];order+=1)for(let first=0;first<count2;first+=row2)for(let n=first+channels;n<first+row2;n+=1)numbers[n]+=
 numbers[n-channels];return decoded(info,scale3?floats(numbers,scale3.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){
 let channels=units.length;return numbers instanceof Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):
-Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
+new Float32Array(new Float64Array(numbers).map((n,k)=>(n|0)*units[k%channels]))}var NO_VALUE=-1e9;function positions(data,anchor){if(data instanceof Float32Array&&!anchor.some(Boolean))return data;let result2=new Float32Array(
 data.length);for(let n=0;n<data.length;n+=1)result2[n]=data[n]-anchor[n%3];return result2}function grid(us,vs){let result2=new Float32Array(
 2*us.length*vs.length),n=0;for(let v2 of vs)for(let u of us)result2[n++]=u,result2[n++]=v2;return result2}function coordinates({
 shape:shape2,rows,columns}){let middles=(count2,{before,size})=>Array.from({length:count2},(_,n)=>(n+before+.5)/size);return grid(
@@ -353,31 +354,30 @@ PI;angles.push(angle)}angles.forEach((angle,k)=>{let turn=angles[0]+2*Math.PI*k/
 turn);result2.set([angle,Math.hypot(...this.ray(n,k)),line],4*(n*width+k))})}),result2}get uniforms(){let numbers=this.poles.
 flatMap(({line,inward,near},n)=>[line,inward,near,this.shift(n)]),planes=this.poles.flatMap(({plane})=>plane);for(;numbers.
 length<8;)numbers.push(0);for(;planes.length<12;)planes.push(0);return{u_poles:numbers,u_planes:planes,u_polar:Number(this.
-isAlongJ)}}};var NORMAL_MAX=32767,HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(bits)),[NOTHING,SPEED,REACH,UNKNOWN]=[0,
-1,2,3],UNKNOWN_LAYER=2,UNITS=8,DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,MOST_PARTS=64,PASS_NODES=2e4,ENDLESS=1e30,LAG_ROUNDING=1e-5;
-function positionOf(padded,trace,shape2){let[rows,columns]=shape2,width=padded.shape[1],[top,left]=trace.drawn,data=new Float64Array(
-rows*columns*3);for(let j=0,n=0;j<rows;j+=1){let first=3*((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=
-padded.data[first+k]+trace.middle[k%3]}return{data,shape:[rows,columns,3]}}function normalOf(padded,trace,shape2){let[rows,
-columns]=shape2,width=3*padded.shape[1],[top,left]=trace.drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=
-1)for(let i=0;i<columns;i+=1,n+=3){let at=width*(j+top+1)+3*(i+left+1),along2=step=>[0,1,2].map(k=>padded.data[at+step+k]-
-padded.data[at-step+k]),normal=cross2(along2(3),along2(width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.
-round(normal[k]/size*NORMAL_MAX)}for(let{component,line,inward}of trace.poles??[]){let[at,last]=component?[line-top,columns]:
-[line-left,rows];if(at<0||at>=(component?rows:columns))continue;let offset=(across,around2)=>3*(component?across*columns+
-around2:around2*columns+across),sum=[0,0,0];for(let m=0;m<last;m+=1)for(let k=0;k<3;k+=1)sum[k]+=data[offset(at+inward,m)+
-k];let size=length2(sum)||1,mean=sum.map(x=>Math.round(x/size*NORMAL_MAX));for(let m=0;m<last;m+=1)data.set(mean,offset(
-at,m))}return{data,shape:[rows,columns,3]}}function flowsOf({slices},step){let{trace,times:times2,lags}=slices;if(!trace?.
-pathlines||!trace.timed)return[step];let reach=lags[lags.length-1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-
-times2[step])<reach),isNeeded=n=>near[n]||near[n-1]||near[n+1];return[...times2.keys()].filter(isNeeded)}function stretches({
-slices},step,side,from,to){let{trace,times:times2}=slices;if(!trace?.pathlines||!trace.timed)return[{from,to,steps:[step,
-step],between:[0,1]}];let result2=[],{unit:unit2}=trace.timed,lagOf=n=>side*(times2[n]-times2[step])/unit2;for(let n=step;from<
-to;n+=side){let isLast=!(n+side in times2),end=isLast?to:lagOf(n+side);if(end<=from+LAG_ROUNDING*to)continue;let between3=isLast?
-[0,1]:[lagOf(n),end],isWhole=end>=to-LAG_ROUNDING*to;result2.push({from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between3}),
-from=isWhole?to:end}return result2}function programsOf({programs,floats:floats2},header,trace){let{fullVertex,trace:path="",
-layers=""}=header.shaders,get=(fragment,...variant)=>{let names=variant.filter(name=>typeof name=="string"),program=programs.
-get(fullVertex,fragment,...names);if(program.error)throw new Error(`the tracer cannot be built: ${program.error}`);return program},
-target=floats2&&"FLOWTEX_FLOATS",polar=trace.poles!==void 0&&"FLOWTEX_POLES";return{follow:get(path,polar,trace.pathlines&&
-"FLOWTEX_PATHLINES"),compose:trace.pathlines?null:get(path,polar,"FLOWTEX_COMPOSED"),slopes:get(layers,"FLOWTEX_SLOPES",
-target),tangents:get(layers,polar,target)}}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;poles;constructor(graphics,header,trace,find,step){
+isAlongJ)}}};var NORMAL_MAX=32767,[NOTHING,SPEED,REACH,UNKNOWN]=[0,1,2,3],UNKNOWN_LAYER=2,UNITS=8,DIRECT_LAG=4,FLOWS_HELD=4,PASS_CELLS=64,
+MOST_PARTS=64,PASS_NODES=2e4,ENDLESS=1e30,LAG_ROUNDING=1e-5;function positionOf(padded,trace,shape2){let[rows,columns]=shape2,
+width=padded.shape[1],[top,left]=trace.drawn,data=new Float64Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1){let first=3*
+((j+top+1)*width+left+1);for(let k=0;k<3*columns;k+=1)data[n++]=padded.data[first+k]+trace.middle[k%3]}return{data,shape:[
+rows,columns,3]}}function normalOf(padded,trace,shape2){let[rows,columns]=shape2,width=3*padded.shape[1],[top,left]=trace.
+drawn,data=new Int16Array(rows*columns*3);for(let j=0,n=0;j<rows;j+=1)for(let i=0;i<columns;i+=1,n+=3){let at=width*(j+top+
+1)+3*(i+left+1),along2=step=>[0,1,2].map(k=>padded.data[at+step+k]-padded.data[at-step+k]),normal=cross2(along2(3),along2(
+width)),size=length2(normal)||1;for(let k=0;k<3;k+=1)data[n+k]=Math.round(normal[k]/size*NORMAL_MAX)}for(let{component,line,
+inward}of trace.poles??[]){let[at,last]=component?[line-top,columns]:[line-left,rows];if(at<0||at>=(component?rows:columns))
+continue;let offset=(across,around2)=>3*(component?across*columns+around2:around2*columns+across),sum=[0,0,0];for(let m=0;m<
+last;m+=1)for(let k=0;k<3;k+=1)sum[k]+=data[offset(at+inward,m)+k];let size=length2(sum)||1,mean=sum.map(x=>Math.round(x/
+size*NORMAL_MAX));for(let m=0;m<last;m+=1)data.set(mean,offset(at,m))}return{data,shape:[rows,columns,3]}}function flowsOf({
+slices},step){let{trace,times:times2,lags}=slices;if(!trace?.pathlines||!trace.timed)return[step];let reach=lags[lags.length-
+1]*trace.timed.unit,near=times2.map(time=>Math.abs(time-times2[step])<reach),isNeeded=n=>near[n]||near[n-1]||near[n+1];return[
+...times2.keys()].filter(isNeeded)}function stretches({slices},step,side,from,to){let{trace,times:times2}=slices;if(!trace?.
+pathlines||!trace.timed)return[{from,to,steps:[step,step],between:[0,1]}];let result2=[],{unit:unit2}=trace.timed,lagOf=n=>side*
+(times2[n]-times2[step])/unit2;for(let n=step;from<to;n+=side){let isLast=!(n+side in times2),end=isLast?to:lagOf(n+side);
+if(end<=from+LAG_ROUNDING*to)continue;let between3=isLast?[0,1]:[lagOf(n),end],isWhole=end>=to-LAG_ROUNDING*to;result2.push(
+{from,to:isWhole?to:end,steps:[n,isLast?n:n+side],between:between3}),from=isWhole?to:end}return result2}function programsOf({
+programs,floats:floats2},header,trace){let{fullVertex,trace:path="",layers=""}=header.shaders,get=(fragment,...variant)=>{
+let names=variant.filter(name=>typeof name=="string"),program=programs.get(fullVertex,fragment,...names);if(program.error)
+throw new Error(`the tracer cannot be built: ${program.error}`);return program},target=floats2&&"FLOWTEX_FLOATS",polar=trace.
+poles!==void 0&&"FLOWTEX_POLES";return{follow:get(path,polar,trace.pathlines&&"FLOWTEX_PATHLINES"),compose:trace.pathlines?
+null:get(path,polar,"FLOWTEX_COMPOSED"),slopes:get(layers,"FLOWTEX_SLOPES",target),tangents:get(layers,polar,target)}}var Tracing=class{graphics;header;trace;find;textures=new Set;frames=[];result=null;passes;flows=new Map;fastest=1;poles;constructor(graphics,header,trace,find,step){
 this.graphics=graphics,this.header=header,this.trace=trace,this.find=find,this.poles=new Poles(trace.poles??[],trace.nodes,
 find("rays")?.data??[]),this.passes=this.slices(step)}advance(until){if(!Object.values(programsOf(this.graphics,this.header,
 this.trace)).every(program=>program?.ready??!0))return null;let gl=this.graphics.context;try{do{let{done,value}=this.passes.
@@ -386,7 +386,7 @@ this.unbind()}}dispose(){for(let texture of this.textures)this.graphics.free("Te
 this.graphics.free("Framebuffer",frame);this.result&&!this.graphics.context.isContextLost()&&this.graphics.context.deleteTexture(
 this.result),this.result=null,this.textures.clear(),this.frames.length=0}data(name){let part=this.find(name);if(!part)throw new Error(
 `the part "${name}" of the scene is missing`);return part.data}numbers(name){let data=this.data(name);return data instanceof
-Float32Array?data:Float32Array.from(data,bits=>HALVES[bits])}texture(width,height,inner,data){let gl=this.graphics.context,
+Float32Array?data:new Float32Array(data).map(bits=>HALVES[bits])}texture(width,height,inner,data){let gl=this.graphics.context,
 texture=this.graphics.counted(gl.createTexture());return this.textures.add(texture),gl.activeTexture(gl.TEXTURE0),gl.bindTexture(
 gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,inner,width,height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
 gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),data&&gl.texSubImage2D(gl.TEXTURE_2D,0,0,0,
@@ -1494,77 +1494,77 @@ createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document
 this.coarse);front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed={
 strip:4,draft:4};triangles=0;isCoarse=!1;constructor(viewer,content){this.viewer=viewer,this.content=content,this.graphics=
 viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){cameraOnly||(this.lastCamera=
-null),this.version+=1,this.rowsDone=0}refine(){this.rowsDone>=this.canvas.height?this.rowsDone=0:this.isRefined=!0}resize(width,height){
-let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.backPen?.drawImage(canvas,0,0),canvas.
-width=last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(back,0,0,width,height),back.width=
-width,back.height=height}dispose(){for(let canvas of[this.back,this.last,this.coarse,this.front])canvas.width=canvas.height=
-0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==this.version)return this.draft(program,shown,
-moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.isRefined;while(!complete&&performance.
-now()<until);return complete}get isMoving(){return this.viewer.player.playing||this.viewer.isHeld}get leavesOut(){return this.
-isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.content.arrange(shown)}draft(program,shown,moving){
-let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?this.graphics.waiting.size+1:1;this.
-arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),isPlaying=this.viewer.player.playing&&
-!this.viewer.isHeld,time=movingTime(price,this.fixed.draft,width*height,samples,isPlaying),budget=Math.max(time/crowd,MOVING_LEAST_MS),
-best=quality(price,this.fixed.draft,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.
-round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.covers){let region={
-width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,()=>{this.render(program,shown,region,best.samples),
-this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(
-...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),this.isCoarse=best.scale<1||best.
-samples<samples;let isWhole=!this.isCoarse&&!this.content.smooth;return isWhole&&this.complete(),this.drawLines(shown),isWhole&&
-!this.isRefined}strip(program,shown){let{width,height}=this.canvas,{settings}=this.viewer,{smooth}=this.content,samples=Number(
-settings.samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(shown),this.isRefined))return!1;
-this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.min(height-this.rowsDone,smooth?SMOOTH_ROWS:
-height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed.strip,width,samples),most),region={width,height,top:this.rowsDone,
-rows};return this.timed(program,region,samples,()=>{this.render(program,shown,region,samples,smooth);let drawn=smooth?{...region,
-height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?
-!1:(this.pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,
-{camera,ratio}=this.viewer,{scene}=this.content,{width,height}=this.canvas;if(!scene||!camera||!frontPen)return;let{earth,
-bodies}=scene;if(!earth.lines.length&&!bodies.labels.length)return;let{state,aspect}=camera,look=JSON.stringify([state,aspect,
-width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;
-canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,front.height=height,
-earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,
-height,0,0,width,height)}),bodies.drawLabels(frontPen,{camera,anchor,width,height,ratio}),this.frontLook=look}this.pen?.
-drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.isCoarse=!1,this.draftVersion=
-this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,
-camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{camera}=this.viewer,{scene}=this.content;if(!scene?.
-header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;let{geometry}=scene.
-header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,
-camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){
-let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){
-let started=performance.now();draw();let spent=performance.now()-started,pixels=region.width*region.rows,factor=this.factor(
-samples),fixed=region.rows<region.height?this.fixed.strip:this.fixed.draft;program.price=learnedPrice(program.price,spent,
-fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.layers.reduce((sum,layer)=>sum+layer.triangles,0),share=(triangles+
-FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.warm&&share<ALIKE&&share>1/ALIKE)return;let{width,height}=this.
-canvas,row2={width,height,top:0,rows:1},[w,h]=[width,height].map(n=>Math.max(Math.round(n*COARSEST_SCALE),1));program.warm||
-this.render(program,shown,row2,1),this.triangles=triangles;let fixed=[row2,{width:w,height:h,top:0,rows:h}].map(region=>{
-let started=performance.now();return this.render(program,shown,region,1),clamp(performance.now()-started,.5,500)});this.
-fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){let{graphics,viewer}=this,
-{camera}=viewer,{scene}=this.content;if(!camera||!scene)return;let gl=graphics.context,{width,height,top,rows}=region,view=viewer.
-view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<
-height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,
-null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,smooth?0:bottom,width,rows),gl.
-enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background??
-[1,1,1];gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||
-height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);
-let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.use(
-program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),this.drawArrows(
-shown,view,region,layer=>this.values(layer,scene,camera,view,samples,draft)),bodies.draw(around2,"clear"),scene.marks.draw(
-{...around2,ratio:view.density},viewer.settings,shown),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.
-RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(shown,view,{width,height},values){let{camera,settings}=this.viewer,{
-scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={...camera.sight(height/view.density),
-planes:camera.planes};for(let[layer,placed]of scene.arrows.share(seen,settings,this.layers)){let{arrows,header}=layer,program=arrows.
-program(settings,isNear(header,settings,view));if(!program||!placed.length)continue;layer.bindTextures(shown[0],shown[1]);
-let painted=layer.scalarParts(shown[0],shown[1]);arrows.draw(program,placed,painted,view.anchor,{...values(layer),u_picture:[
-width,height]})}}values({header,parts},{bodies},camera,view,samples,draft){let{settings}=this.viewer,{columns,rows}=header.
-geometry,noise=parts.get("noise")?.shape??null,plain=header.scalars.name!==null&&hasArrows(header,settings)&&settings.arrow_color===
-"scalars";return{...uniforms(header,{...settings,samples},view,noise),...draft?draftUniforms(settings,samples,view.density):
-{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_padding:[
-columns.before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.
-areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){
-if(!pen)return;let{width:w,height:h,top,rows}=region,{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;
-if(pen.imageSmoothingEnabled=w!==width||h!==height,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,
-coarse.height=rows,coarsePen?.drawImage(canvas,0,first,w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,
-0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+null),this.version+=1,this.rowsDone=0}refine(){(this.rowsDone>=this.canvas.height||!this.content.isComing)&&(this.rowsDone=
+0),this.isRefined=!0}resize(width,height){let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.
+backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(
+back,0,0,width,height),back.width=width,back.height=height}dispose(){for(let canvas of[this.back,this.last,this.coarse,this.
+front])canvas.width=canvas.height=0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==this.version)
+return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.
+isRefined;while(!complete&&performance.now()<until);return complete}get isMoving(){return this.viewer.player.playing||this.
+viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.content.
+arrange(shown)}draft(program,shown,moving){let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?
+this.graphics.waiting.size+1:1;this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),
+isPlaying=this.viewer.player.playing&&!this.viewer.isHeld,time=movingTime(price,this.fixed.draft,width*height,samples,isPlaying),
+budget=Math.max(time/crowd,MOVING_LEAST_MS),best=quality(price,this.fixed.draft,width*height,samples,budget),w=Math.max(
+Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.
+scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,
+()=>{this.render(program,shown,region,best.samples),this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=
+!reuse.shifts,this.pen.setTransform(...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),
+this.isCoarse=best.scale<1||best.samples<samples;let isWhole=!this.isCoarse&&!this.content.smooth;return isWhole&&this.complete(),
+this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){let{width,height}=this.canvas,{settings}=this.viewer,
+{smooth}=this.content,samples=Number(settings.samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.
+arrange(shown),this.isRefined))return!1;this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.
+min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed.strip,width,samples),
+most),region={width,height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,
+region,samples,smooth);let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.
+rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(
+shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,{camera,ratio}=this.viewer,{scene}=this.content,{width,height}=this.
+canvas;if(!scene||!camera||!frontPen)return;let{earth,bodies}=scene;if(!earth.lines.length&&!bodies.labels.length)return;
+let{state,aspect}=camera,look=JSON.stringify([state,aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){
+let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&
+(canvas.height=height),front.width=width,front.height=height,earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.
+height-height;frontPen.drawImage(canvas,0,top,width,height,0,0,width,height)}),bodies.drawLabels(frontPen,{camera,anchor,
+width,height,ratio}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=
+this.canvas.height,this.isCoarse=!1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.
+playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,
+{camera}=this.viewer,{scene}=this.content;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||
+!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),
+anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(
+before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!==
+"off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
+now()-started,pixels=region.width*region.rows,factor=this.factor(samples),fixed=region.rows<region.height?this.fixed.strip:
+this.fixed.draft;program.price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.
+layers.reduce((sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.
+warm&&share<ALIKE&&share>1/ALIKE)return;let{width,height}=this.canvas,row2={width,height,top:0,rows:1},[w,h]=[width,height].
+map(n=>Math.max(Math.round(n*COARSEST_SCALE),1));program.warm||this.render(program,shown,row2,1),this.triangles=triangles;
+let fixed=[row2,{width:w,height:h,top:0,rows:h}].map(region=>{let started=performance.now();return this.render(program,shown,
+region,1),clamp(performance.now()-started,.5,500)});this.fixed={strip:fixed[0],draft:fixed[1]},program.warm=!0}render(program,shown,region,samples,smooth=!1){
+let{graphics,viewer}=this,{camera}=viewer,{scene}=this.content;if(!camera||!scene)return;let gl=graphics.context,{width,
+height,top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.height),{canvas}=graphics;canvas.width<width&&
+(canvas.width=width),canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(
+width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),
+gl.scissor(0,smooth?0:bottom,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(
+gl.CULL_FACE);let[r,g,b]=scene.header.background??[1,1,1];gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);
+let draft=samples!==viewer.settings.samples||height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,
+ratio:viewer.ratio};scene.earth.drawGround(around2);let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{
+for(let layer of this.layers)graphics.programs.use(program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(
+shown[0],shown[1],view.anchor,!0)}),this.drawArrows(shown,view,region,layer=>this.values(layer,scene,camera,view,samples,
+draft)),bodies.draw(around2,"clear"),scene.marks.draw({...around2,ratio:view.density},viewer.settings,shown),smooth&&graphics.
+copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(shown,view,{width,height},values){
+let{camera,settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={
+...camera.sight(height/view.density),planes:camera.planes};for(let[layer,placed]of scene.arrows.share(seen,settings,this.
+layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));if(!program||!placed.length)
+continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.scalarParts(shown[0],shown[1]);arrows.draw(program,placed,
+painted,view.anchor,{...values(layer),u_picture:[width,height]})}}values({header,parts},{bodies},camera,view,samples,draft){
+let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get("noise")?.shape??null,plain=header.scalars.name!==
+null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{...uniforms(header,{...settings,samples},view,
+noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),
+u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_padding:[columns.before,rows.before],u_colour:header.colour,
+u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.
+geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,
+{width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,
+pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,
+w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
@@ -1969,21 +1969,21 @@ let{view}=this;this.leave(),this.scene=new Scene(view.graphics,header,view.parts
 this.tiles?.dispose(),this.scene?.dispose(),this.tiles=this.scene=null}dispose(){this.leave(),this.renderer.dispose()}restart(cameraOnly){
 this.renderer.restart(cameraOnly)}resize(width,height){this.renderer.resize(width,height)}refine(){this.renderer.refine()}arrange(shown){
 let scenes2=this.tiles?.arrange(shown)??[];return this.view.root.dataset.tiles=String(this.tiles?.pending??0),scenes2}get smooth(){
-let{header,options}=this.view;return options.smooth!==void 0||!header?options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get lacking(){
-let[before,after]=this.view.player.moment;return this.scene?.missing(before,after)??[]}missing(steps){return[...new Set(
-steps.flatMap(step=>this.scene?.lacking(step)??[]))]}make(steps,until){return this.next=steps,!this.missing(steps).length&&
-!!this.scene?.make(steps,until)}available(until){let{view,scene,shown,lacking}=this,{header,player}=view;if(!header||!scene)
-return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+n)%header.slices.steps):[],steps=this.
-missing([moment[0],moment[1],...this.next,...ahead]);steps.length&&view.requests.hasSteps&&!view.options.isComing?.()&&view.
-requests.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until),marks=view.requests.hasMarks?scene.
-marks.lacking(view.settings,moment):[];return view.options.isComing?.()||view.requests.wantMarks(marks),view.root.dataset.
-lacking=String(lacking.length+marks.length||+!isMade),view.panel.wait(lacking,isMade,this.renderer.leavesOut,marks.length>
-0),view.panel.showKinds(scene.marks.legend(view.settings,moment)),isMade&&String(moment.slice(0,2))!==String(shown?.slice(
-0,2))&&(view.trim(),view.change()),isMade?this.shown=moment:(lacking.length||view.request(),shown&&scene.isMade(shown.slice(
-0,2))?shown:null)}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.shaders,variant=variantOf(header,
-this.view.settings,isClose);return this.view.graphics.programs.get(vertex,fragment,...variant)}isClose(header){let{view}=this;
-if(!view.camera)return!1;let seen=view.view([0,0,0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.header)??
-[];return(tiles.length?tiles:[header]).some(part=>isNear(part,view.settings,seen))}frame(now,until){let{view,scene}=this,
+let{header,options}=this.view;return options.smooth!==void 0||!header?options.smooth??!1:this.program(header).price<CARD_PRICE_MS}get isComing(){
+return!!this.tiles?.missing.length}get lacking(){let[before,after]=this.view.player.moment;return this.scene?.missing(before,
+after)??[]}missing(steps){return[...new Set(steps.flatMap(step=>this.scene?.lacking(step)??[]))]}make(steps,until){return this.
+next=steps,!this.missing(steps).length&&!!this.scene?.make(steps,until)}available(until){let{view,scene,shown,lacking}=this,
+{header,player}=view;if(!header||!scene)return null;let moment=player.moment,ahead=player.playing?[1,2].map(n=>(moment[1]+
+n)%header.slices.steps):[],steps=this.missing([moment[0],moment[1],...this.next,...ahead]);steps.length&&view.requests.hasSteps&&
+!view.options.isComing?.()&&view.requests.wantSteps(steps);let isMade=!lacking.length&&scene.make(moment.slice(0,2),until),
+marks=view.requests.hasMarks?scene.marks.lacking(view.settings,moment):[];return view.options.isComing?.()||view.requests.
+wantMarks(marks),view.root.dataset.lacking=String(lacking.length+marks.length||+!isMade),view.panel.wait(lacking,isMade,
+this.renderer.leavesOut,marks.length>0),view.panel.showKinds(scene.marks.legend(view.settings,moment)),isMade&&String(moment.
+slice(0,2))!==String(shown?.slice(0,2))&&(view.trim(),view.change()),isMade?this.shown=moment:(lacking.length||view.request(),
+shown&&scene.isMade(shown.slice(0,2))?shown:null)}program(header,isClose=this.isClose(header)){let{vertex,fragment}=header.
+shaders,variant=variantOf(header,this.view.settings,isClose);return this.view.graphics.programs.get(vertex,fragment,...variant)}isClose(header){
+let{view}=this;if(!view.camera)return!1;let seen=view.view([0,0,0],view.ratio),tiles=this.tiles?.layers.slice(1).map(({scene})=>scene.
+header)??[];return(tiles.length?tiles:[header]).some(part=>isNear(part,view.settings,seen))}frame(now,until){let{view,scene}=this,
 {graphics,header}=view;if(graphics.isLost||!graphics.gl||!view.isVisible||!header||!scene||view.canvas.width<2)return;this.
 next=[],view.advance(now);let shown=this.available(until);view.camera||view.place();let program=this.program(header);if(scene.
 prepare(),!shown||!view.camera)return;if(program.error)return view.panel.fail("The shader does not compile with this gra\

@@ -29,9 +29,10 @@ if(from&&typeof from=="object"||typeof from=="function")for(let key of __getOwnP
 key!==except&&__defProp(to,key,{get:()=>from[key],enumerable:!(desc=__getOwnPropDesc(from,key))||desc.enumerable});return to};var __toESM=(mod,isNodeMode,target)=>(target=mod!=null?__create(__getProtoOf(mod)):{},__copyProps(isNodeMode||!mod||!mod.
 __esModule?__defProp(target,"default",{value:mod,enumerable:!0}):target,mod)),__toCommonJS=mod=>__copyProps(__defProp({},
 "__esModule",{value:!0}),mod);var store_exports={};__export(store_exports,{open:()=>open2});function fromHalf(bits){let exponent=bits>>10&31,part=bits&1023,size;return exponent===0?size=part*2**-24:exponent===31?
-size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var SINGLE=new Float32Array(1),BITS=new Uint32Array(
-SINGLE.buffer);function toHalf(x){SINGLE[0]=x;let sign=BITS[0]>>>16&32768,size=BITS[0]&2147483647;return size>=1199566848?
-sign|(size>2139095040?32256:31744):size<947912704?sign|Math.round(Math.abs(x)*2**24):sign|size-93952e4>>>13}var TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,
+size=part?NaN:1/0:size=(1024+part)*2**(exponent-25),bits&32768?-size:size}var HALVES=Float32Array.from({length:65536},(_,bits)=>fromHalf(
+bits)),SINGLE=new Float32Array(1),BITS=new Uint32Array(SINGLE.buffer);function toHalf(x){SINGLE[0]=x;let sign=BITS[0]>>>
+16&32768,size=BITS[0]&2147483647;return size>=1199566848?sign|(size>2139095040?32256:31744):size<947912704?sign|Math.round(
+Math.abs(x)*2**24):sign|size-93952e4>>>13}var TYPES={float32:Float32Array,uint32:Uint32Array,float16:Uint16Array,uint16:Uint16Array,int16:Int16Array,int8:Int8Array,
 uint8:Uint8Array};function stepOf(name){return Number(name.split("/")[1])}function tilePart(name){let[kind,level,row,column,...rest]=name.split("/");return kind==="tile"?[[level,row,column].join(
 "/"),rest.join("/")]:null}function decoded(info,bytes){let view=ArrayBuffer.isView(bytes)?new Uint8Array(bytes.buffer,bytes.
 byteOffset,bytes.byteLength):new Uint8Array(bytes),{name,dtype,shape,digest}=info,Type=TYPES[dtype];if(!Type)throw new Error(
@@ -48,7 +49,7 @@ channels;for(let order=0;order<differences[0];order+=1)for(let n=row;n<count;n+=
 differences[1];order+=1)for(let first=0;first<count;first+=row)for(let n=first+channels;n<first+row;n+=1)numbers[n]+=numbers[n-
 channels];return decoded(info,scale?floats(numbers,scale.map(exponent=>2**exponent)):numbers)}function floats(numbers,units){
 let channels=units.length;return numbers instanceof Uint16Array?numbers.map((n,k)=>toHalf((n<<16>>16)*units[k%channels])):
-Float32Array.from(numbers,(n,k)=>(n|0)*units[k%channels])}var ZarritaError=class extends Error{},NotFoundError=class extends ZarritaError{_tag="NotFoundError";name="NotFoundError";path;found;constructor(context,options={}){
+new Float32Array(new Float64Array(numbers).map((n,k)=>(n|0)*units[k%channels]))}var ZarritaError=class extends Error{},NotFoundError=class extends ZarritaError{_tag="NotFoundError";name="NotFoundError";path;found;constructor(context,options={}){
 super(`Not found: ${context}`,{cause:options.cause}),this.path=options.path,this.found=options.found}},InvalidMetadataError=class extends ZarritaError{_tag="\
 InvalidMetadataError";name="InvalidMetadataError";path;constructor(message,options={}){super(message,{cause:options.cause}),
 this.path=options.path}},UnknownCodecError=class extends ZarritaError{_tag="UnknownCodecError";name="UnknownCodecError";codec;constructor(codec){
@@ -423,8 +424,8 @@ split("/")[0]];if(!(kind?data instanceof kind[0]&&kind[1].includes(data.length):
 own.length===3&&own[0]===blocks[0]&&own[1]===blocks[1]&&data.length===own[0]*own[1]*own[2]))throw new Error(`the part "${name}\
 " of a tile has a wrong size`)}}function speedOf(flow,{geometry,slices},typical){let[rows,columns]=geometry.shape,[channels,
 {drawn,nodes}={drawn:[0,0],nodes:[0,0]}]=[flow.shape[2],slices.trace],data=new Float32Array(rows*columns);for(let n=0;n<
-data.length;n+=1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=typical*fromHalf(Number(flow.
-data[channels*(at+1)-1-Number(slices.trace?.uncertain??!1)]))}return{name:"",data,shape:[rows,columns],digest:`${flow.digest}\
+data.length;n+=1){let at=(Math.floor(n/columns)+drawn[0])*nodes[1]+n%columns+drawn[1];data[n]=typical*HALVES[Number(flow.
+data[channels*(at+1)-1-Number(slices.trace?.uncertain??!1)])]}return{name:"",data,shape:[rows,columns],digest:`${flow.digest}\
  speed`}}function explained(error){let known=storeError(error);return known.fault==="other"||known.detail!==known.message?
 known:new StoreError(known.fault,REASONS[known.fault],known.message)}var Stream=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(header,base){
 let told=header.store;if(!told)throw new Error("the page does not say where its store is");this.header=header,this.told=

@@ -1,7 +1,7 @@
 // A source of parts that reads them from the store that they lie in: flowtex/pyramid/layout.py
 // describes the layout, and flowtex/pyramid/client_parts.py the surface of a tile.
 
-import { fromHalf } from "../half.ts";
+import { HALVES } from "../half.ts";
 import {
   infosOfFile,
   partsOfFile,
@@ -169,7 +169,7 @@ function speedOf(flow: NamedPart, { geometry, slices }: Place, typical: number):
   const data = new Float32Array(rows * columns);
   for (let n = 0; n < data.length; n += 1) {
     const at = (Math.floor(n / columns) + drawn[0]) * nodes[1] + (n % columns) + drawn[1];
-    data[n] = typical * fromHalf(Number(flow.data[channels * (at + 1) - 1 - Number(slices.trace?.uncertain ?? false)]));
+    data[n] = typical * HALVES[Number(flow.data[channels * (at + 1) - 1 - Number(slices.trace?.uncertain ?? false)])];
   }
   return { name: "", data, shape: [rows, columns], digest: `${flow.digest} speed` };
 }
