@@ -46,6 +46,17 @@ def test_the_texture_of_the_earth_fades_where_it_is_calm() -> None:
     assert Scene.of(flowtex.examples.double_gyre(), fade=True).settings.fade == 0.2
 
 
+@pytest.mark.parametrize("projection", ["platecarree", "robinson", "mercator", "south"])
+def test_no_map_makes_the_earth_calm(projection: str) -> None:
+    """Next to the poles a flat map stretches velocities without limit."""
+    winds = flowtex.examples.weather()
+    one, whole = (
+        Scene.of(winds, level=250, **where).textures.typical_speed
+        for where in ({"projection": projection}, {"globe": True})
+    )
+    assert one == pytest.approx(whole, rel=0.05)  # some leave out a part
+
+
 def test_values_are_told_at_a_place_of_the_earth(tmp_path: Path) -> None:
     lon, lat = np.arange(-20.0, 21.0, 2.0), np.arange(40.0, 61.0, 2.0)
     ds = winds(lon, lat)

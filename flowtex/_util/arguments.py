@@ -94,10 +94,15 @@ def check_field(field: Any, kind: type) -> None:
         raise FieldError(msg)
 
 
-def near_names(name: str, known: Iterable[str]) -> str:
-    """Say which of the known names are near one that there is not, or name them all."""
-    names = tuple(known)
+def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> str:
+    """Say which of the known names are near one that does not exist, or list them.
+
+    Of many names only the ``usual`` ones are listed.
+    """
+    names, some = tuple(known), ", ".join(usual)
     close = difflib.get_close_matches(name, names, n=2)
     if close:
         return f"did you mean {' or '.join(map(repr, close))}?"
+    if some:
+        return f"expected one of {len(names)} names, such as {some}"
     return f"expected one of: {', '.join(names)}" if names else "expected none: there are no names"

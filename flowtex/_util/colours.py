@@ -81,7 +81,7 @@ def _named_table(name: Any) -> Bytes:
     try:
         return _resampled(np.asarray(pv.LookupTable(name, n_values=ENTRIES).values))
     except (TypeError, ValueError, ModuleNotFoundError) as error:
-        hint = near_names(name, sorted(colormaps)) if isinstance(name, str) else "expected a name"
+        hint = near_names(name, colormaps, CMAPS) if isinstance(name, str) else "expected a name"
         msg = f"the colour map {name!r} does not exist; {hint}"
         raise FieldError(msg) from error
 

@@ -143,6 +143,10 @@ def _made(expressions: tuple[str, ...], choice: dict[str, Any]) -> FlowField:
     try:
         return make(*expressions, **choice)
     except FieldError as error:
+        for flag in (text for text in expressions if re.fullmatch(r"--[A-Za-z]\w*(=.*)?", text)):
+            name = flag[2:].partition("=")[0]
+            msg = f"formula has no option {flag}; a parameter is set by --set {name}=1"
+            raise UsageError(msg) from error
         text = str(error)
         for before, after in _IN_SHELL:
             text = re.sub(before, after, text)

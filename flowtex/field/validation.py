@@ -67,7 +67,7 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
 
 
 ALL_AT_REST = (
-    "The velocity is zero at every node, so the picture shows only noise; check the selected "
+    "The velocity is zero at every node, so the picture shows no flow; check the selected "
     "array and its region."
 )
 

@@ -43,6 +43,7 @@ from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.paper import PaperTextures
 from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace import SliceStore, TraceSlices
+from flowtex.trace.lags import typical_speed
 
 #: Slices on each side that a shader has room for.
 MOST_LAGS = 32
@@ -141,11 +142,8 @@ class TextureSet:
 
     @cached_property
     def typical_speed(self) -> float:
-        """Root mean square of the speed in the field's own units; 1 in a flow at rest."""
-        if self.whole_speed is not None:
-            return self.whole_speed
-        speed = self.geometry.field.typical.speed[:, self.geometry.field.valid]
-        return float(np.sqrt(np.mean(speed**2))) or 1.0
+        """Typical speed of the field, or of the whole of which it is a part."""
+        return self.whole_speed or typical_speed(self.geometry.field)
 
     @cached_property
     def unit(self) -> float:

@@ -33,7 +33,7 @@ from flowtex.field.steps import Nodes, Steps, map_steps
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.trace import SliceStore
-from flowtex.trace.lags import FIRST_CELLS, small_cell
+from flowtex.trace.lags import FIRST_CELLS, small_cell, typical_speed
 
 #: Most nodes, of one time, of a field that is traced whole.
 ROOT_NODES = 150_000
@@ -198,8 +198,7 @@ class Pyramid:
     @cached_property
     def whole_speed(self) -> float:
         """Typical speed of the flow on the whole surface."""
-        speed = self.root.typical.speed[:, self.root.valid]
-        return float(np.sqrt(np.mean(speed**2))) or 1.0
+        return typical_speed(self.root)
 
     @cached_property
     def _cell(self) -> float:

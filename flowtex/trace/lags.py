@@ -69,13 +69,27 @@ def choose_lags(
         size = field.surface.cell_size[field.valid]
         crossing = np.broadcast_to(size, speed.shape)[moving] / speed[moving]
         first = first_cells * float(np.percentile(crossing, 10))
-        last = longest / float(np.sqrt(np.mean(speed[moving] ** 2)))
+        on_earth = field.projection is not None
+        typical = typical_speed(field) if on_earth else np.sqrt(np.mean(speed[moving] ** 2))
+        last = longest / float(typical)
         if not field.steady:
             # Lags that reach other time steps are what long paths can be composed of.
             step = float(np.mean(np.diff(field.times)))
             first = step * RATIO ** np.rint(np.log(first / step) / np.log(RATIO))
     count = int(np.ceil(np.log(max(last / first, RATIO)) / np.log(RATIO))) + 1
     return np.asarray(first * RATIO ** np.arange(min(count, MOST_CHOSEN_LAGS)))
+
+
+def typical_speed(field: FlowField) -> float:
+    """Return the root mean square of the speed in the field's own units; 1 in a flow at rest.
+
+    On a map it is that of the speed on the Earth: towards the poles a flat map stretches velocities
+    without limit.
+    """
+    some = field.typical
+    on_earth = field.projection is not None and "speed" in field.scalars
+    speed = np.asarray(some.scalars["speed"] if on_earth else some.speed)
+    return float(np.sqrt(np.mean(np.square(speed[:, field.valid])))) or 1.0
 
 
 def small_cell(field: FlowField) -> float:

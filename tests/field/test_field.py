@@ -175,7 +175,7 @@ def test_velocity_of_zero_everywhere_warns_at_the_callers_line() -> None:
     with pytest.warns(
         UserWarning,
         match=(
-            "^The velocity is zero at every node, so the picture shows only noise; check the "
+            "^The velocity is zero at every node, so the picture shows no flow; check the "
             "selected array and its region.$"
         ),
     ) as told:

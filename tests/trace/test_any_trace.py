@@ -142,6 +142,6 @@ def test_a_path_of_more_cells_than_single_precision_holds_ends_before() -> None:
 
 
 def test_a_field_at_rest_has_lags_to_draw_with() -> None:
-    with pytest.warns(UserWarning, match="shows only noise"):
+    with pytest.warns(UserWarning, match="shows no flow"):
         field = FlowField.from_arrays(plane(3, 3), np.zeros((3, 3, 2)))
     assert len(SliceStore(field, parameter="time").lags) == 2
