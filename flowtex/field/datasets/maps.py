@@ -25,6 +25,9 @@ AROUND = 359.0
 SAME_LINE = 0.01
 #: On a globe this many columns close around it, where the gap is no wider than this many cells.
 LEAST_RING, MOST_GAP = 8, 1.5
+#: Share of the nodes that have longitudes of their own where nodes are scattered, and the square
+#: root of the sphere's area in square degrees.
+SCATTERED, SPHERE_DEGREES = 0.125, 203.0
 #: Where a map is larger by this factor than it mostly is, it ends.
 LARGEST = 4.0
 #: Edges between nodes are torn where they are longer by this factor than on the Earth.
@@ -204,7 +207,10 @@ def _middle(lon: Floats) -> tuple[float, float]:
     widest = int(np.argmax(gaps))
     typical = float(np.median(gaps))
     span = 360.0 - gaps[widest]
-    if gaps[widest] <= max(1.5 * typical, 1.0):
+    # Nodes that are scattered over the Earth have longitudes at all distances.
+    scattered = len(values) > SCATTERED * lon.size
+    spacing = SPHERE_DEGREES / np.sqrt(lon.size) if scattered else 0.0
+    if gaps[widest] <= max(1.5 * typical, 2.0 * spacing, 1.0):
         return 0.0, 360.0
     middle = values[(widest + 1) % len(values)] + span / 2
     return float((middle + 180.0) % 360.0 - 180.0), float(span)

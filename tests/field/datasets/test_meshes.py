@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from earth_data import RATE, on_sphere, turning
-from mesh_data import CONVENTIONS, fvcom, globe, icon, mpas, ugrid
-from scipy.spatial import cKDTree
+from mesh_data import CONVENTIONS, Globe, fvcom, globe, icon, mpas, ugrid
+from scipy.spatial import ConvexHull, cKDTree
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
@@ -128,6 +128,15 @@ def test_a_global_mesh_on_flat_maps(projection: str | None) -> None:
         area = np.linalg.norm(ends, axis=-1).sum() / 2
         whole = 2 * np.pi**2 * EARTH_RADIUS**2
         assert 0.95 * whole < area < whole
+
+
+def test_a_mesh_of_the_earth_is_drawn_around_greenwich() -> None:
+    """Whatever the widest gap is between longitudes of nodes that lie anywhere."""
+    rng = np.random.default_rng(5)
+    lon, lat = rng.uniform(-180, 180, 400), np.degrees(np.arcsin(rng.uniform(-1, 1, 400)))
+    mesh = Globe(lon, lat, ConvexHull(on_sphere(lon, lat)).simplices.astype(np.int64))
+    field = FlowField.from_xarray(ugrid(mesh, at="node"))
+    assert field.projection is not None and field.projection.center == (0.0, 0.0)
 
 
 def test_what_a_map_tears_apart_is_told() -> None:
