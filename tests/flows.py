@@ -116,6 +116,21 @@ def rippled() -> FlowField:
     return FlowField.from_triangles(points, triangles, velocity)
 
 
+@cache
+def folded(w: float = 0.0) -> FlowField:
+    """A stream over a right angle between two planes, on triangles that are long across it.
+
+    It goes up by ``w``.
+    """
+    s, y = np.meshgrid(np.linspace(-1, 1, 5), np.linspace(-1, 1, 101))
+    points = np.stack([np.minimum(s, 0), y, -np.maximum(s, 0)], axis=-1).reshape(-1, 3)
+    node = np.arange(s.size).reshape(s.shape)[:-1, :-1].ravel()
+    corners = node, node + 1, node + s.shape[1] + 1, node + s.shape[1]
+    halves = [[corners[k] for k in some] for some in ((0, 1, 2), (0, 2, 3))]
+    triangles = np.concatenate(halves, axis=1).T
+    return FlowField.from_triangles(points, triangles, np.tile([1.0, 0.6, w], (s.size, 1)))
+
+
 def ring() -> FlowField:
     """Curved, closed around, on a cone."""
     turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 81), np.linspace(0, 1, 40))

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from flows import (
     dense_gyre,
+    folded,
     gyre,
     holed,
     lines,
@@ -134,6 +135,7 @@ VIEWS: dict[str, View] = {
     "triangles, streaming": View(scattered_gyre, straight(2), MOTION, clock=1.7),
     "triangles, centre": View(scattered_gyre, straight(64, (0.5, 0.5))),
     "triangles, curved": View(rippled, ASIDE),
+    "triangles, sharp edge": View(folded, ASIDE),
     "triangles, holes": View(scattered_holed, MIDDLE),
     "triangles, between two steps": View(
         scattered_swinging, MIDDLE, {"lines": "pathlines"}, time=0.55

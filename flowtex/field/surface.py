@@ -74,6 +74,11 @@ class Surface(ABC):
         """Return the parts of vectors (..., 3), one for each cell, that lie in the cells."""
 
     @property
+    def sharp(self) -> Bools:
+        """Nodes of sharp edges, (J, I), whose velocity has another direction in each face."""
+        return np.zeros(self.valid.shape, dtype=bool)
+
+    @property
     @abstractmethod
     def is_closed(self) -> bool:
         """Whether it has no border at all."""

@@ -286,6 +286,11 @@ class TextureSet:
             across = pole.lines(rate)[pole.line, :, pole.component] / unit
             still = pole.vector(across) @ pole.plane
             pole.lines(along)[pole.line] = unit[:, None] * still
+        if (sharp := surface.sharp).any():
+            # The faces of a sharp edge each take the part of the whole velocity that lies in them.
+            whole = self.geometry.field.velocity[self._step(slices)][sharp]
+            length = np.maximum(norm(whole), np.finfo(float).tiny)
+            along[sharp] = whole * (norm(along[sharp]) / length)[:, None]
         return np.asarray(along[texels] @ self.geometry.frame.T) / self._length
 
     @cached_property

@@ -65,6 +65,7 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
   FLOWTEX_VELOCITY velocity;
   FLOWTEX_RATE rate;
   vec2 lengths = vec2(0.0);
+  float off = 0.0;
   for (int n = 0; n < FLOWTEX_CELL_NODES; ++n)
   {
 #ifdef FLOWTEX_TRIANGLES
@@ -74,7 +75,14 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
     float cells = sqrt(dot(rate[n], rate[n]) + rate[n].x * rate[n].y);
     float speed = length(moved);
     // Velocities lie in the tangent planes of the nodes, and the path in that of the triangle.
-    velocity[n] = moved - dot(flowtexNormal, moved) * flowtexNormal;
+    float height = dot(flowtexNormal, moved);
+    velocity[n] = moved - height * flowtexNormal;
+    off = max(off, abs(height) / max(speed, FLOWTEX_LEAST_SPEED));
+    for (int side = 0; side < u_sides; ++side)
+    {
+      vec3 slope = flowtexFetch(n, 1 + side * u_lagCount).xyz;
+      off = max(off, abs(dot(flowtexNormal, slope)) / max(length(slope), FLOWTEX_LEAST_SPEED));
+    }
 #else
     ivec2 node = clamp(ivec2(floor(at)) + ivec2(n & 1, n >> 1), ivec2(0), ivec2(u_slicesSize) - 1);
     vec4 tangent = texelFetch(u_slices, ivec3(node, 0), 0);
@@ -97,7 +105,9 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
   flowtexCell.rate = rate * about;
   float agreed = length(flowtexCell.velocity[0]);
   float cells = reach * lengths.y / lengths.x;
-  flowtexCell.share = (1.0 - smoothstep(FLOWTEX_PARTING, FLOWTEX_AGREED, agreed))
+  float edge = smoothstep(FLOWTEX_ALONG_PLANE, FLOWTEX_OFF_PLANE, off);
+  cells /= mix(1.0, FLOWTEX_EDGE_CELLS, edge);
+  flowtexCell.share = max(1.0 - smoothstep(FLOWTEX_PARTING, FLOWTEX_AGREED, agreed), edge)
     * (1.0 - smoothstep(FLOWTEX_NEAR_CELLS, FLOWTEX_FAR_CELLS, cells));
   return flowtexCell.share > 0.0;
 }

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
-from flows import rippled
+from flows import folded, rippled
 from measures import streaks
 from plain_pyvista import off_colours
 from triangle_meshes import cube, random_plane, soup, surface_of
 
+import flowtex
 from flowtex import FlowField
 from flowtex.camera import Camera
 from flowtex.plotting.vtk_camera import apply_camera
@@ -80,6 +81,25 @@ def test_streaks_go_up_to_a_sharp_edge(plotter: Any) -> None:
     mask = np.zeros((height, width), dtype=bool)
     mask[20:-20, 20:-20] = True
     found = streaks(picture, np.ones_like(mask, float), np.zeros_like(mask, float), mask)
+    assert found["angle"] < 3
+    assert found["coherence"] > 0.9
+
+
+@pytest.mark.parametrize("zoom", [1.0, 4.0])
+@pytest.mark.parametrize("up", [-1.0, 0.0, 1.0])
+def test_streaks_beside_a_sharp_edge_lie_in_the_surface(up: float, zoom: float) -> None:
+    """Also in triangles that are long across it, whose slices lead into the air.
+
+    The flow goes over the edge, into it or along it in the other plane.
+    """
+    camera = Camera((-0.2, 0, 3), (-0.2, 0, 0), (0, 1, 0), parallel=True, parallel_scale=0.5 / zoom)
+    options: dict[str, Any] = {"scalars": False, "lighting": False, "size": (300, 240)}
+    picture = flowtex.render(folded(up), camera=camera, **options)
+    x = -0.2 + (np.arange(300) - 149.5) / 240 / zoom
+    mask = np.tile((x > -0.35) & (x < -0.02), (240, 1))
+    mask[:20] = mask[-20:] = False
+    mask[:, :20] = mask[:, -20:] = False
+    found = streaks(picture, np.ones(mask.shape), np.full(mask.shape, 0.6), mask)
     assert found["angle"] < 3
     assert found["coherence"] > 0.9
 

@@ -237,9 +237,9 @@ class TriangleSurface(Surface):
         is all around.
         """
         flow = super().express(velocity)
-        triangle, corner = self._sharp_corners()
-        if not len(triangle):
+        if not self.sharp.any():
             return flow
+        triangle, corner = np.nonzero(self.sharp[0][self.triangles])
         nodes = self.triangles[triangle, corner]
         some, at = np.unique(nodes, return_inverse=True)
         unit = self.crosses[triangle]
@@ -256,15 +256,15 @@ class TriangleSurface(Surface):
             components[step, 0, some] *= share[:, None]
         return replace(flow, components=components, speed=speed)
 
-    def _sharp_corners(self) -> tuple[Indices, Indices]:
-        """Triangles and their corners (K,) that lie at sharp edges."""
-        if self._plane_normal is not None:
-            none = np.empty(0, np.intp)
-            return none, none
-        length = np.linalg.norm(self.crosses, axis=1)
+    @cached_property
+    def sharp(self) -> Bools:
+        """Nodes of sharp edges, (1, N)."""
         sharp = np.zeros(self.shape[1], dtype=bool)
+        if self._plane_normal is not None:
+            return sharp[None]
+        length = np.linalg.norm(self.crosses, axis=1)
         for k in range(3):
             nodes = self.triangles[:, k]
             alike = np.einsum("mc,mc->m", self.crosses, self.normals[0, nodes])
             sharp[nodes[alike < SHARP * length]] = True
-        return np.nonzero(sharp[self.triangles])  # type: ignore[return-value]
+        return sharp[None]

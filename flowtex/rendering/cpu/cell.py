@@ -29,16 +29,20 @@ class CellPath:
         else:
             about, nodes = _square(slices, coordinate, values)
         both = np.zeros((len(reach), 5, len(about)))
-        speed, rate = np.zeros((2, len(reach)))
-        for weights, (moved, by, lengths) in zip(about, nodes, strict=True):
+        speed, rate, off = np.zeros((3, len(reach)))
+        for weights, (moved, by, lengths, height) in zip(about, nodes, strict=True):
             both += np.concatenate([moved, by], axis=1)[:, :, None] * weights.T[:, None]
             speed += weights[0] * lengths[0]
             rate += weights[0] * lengths[1]
+            off = np.maximum(off, height)
         speed = np.maximum(speed, const.LEAST_SPEED)
         agreed = np.linalg.norm(both[:, :3, 0], axis=1) / speed
-        far = _smoothstep(const.NEAR_CELLS, const.FAR_CELLS, reach * rate / speed)
+        edge = _smoothstep(const.ALONG_PLANE, const.OFF_PLANE, off)
+        cells = reach * rate / speed / (1 + (const.EDGE_CELLS - 1) * edge)
+        far = _smoothstep(const.NEAR_CELLS, const.FAR_CELLS, cells)
         #: Share of these paths in those of the fragments, (N,).
-        self.share = (1 - _smoothstep(const.PARTING, const.AGREED, agreed)) * (1 - far)
+        self.share = np.maximum(1 - _smoothstep(const.PARTING, const.AGREED, agreed), edge)
+        self.share *= 1 - far
         # Only where it is wanted.
         self._some = np.flatnonzero(self.share)
         self._both = both[self._some] / speed[self._some, None, None]
@@ -76,8 +80,9 @@ class CellPath:
         return np.asarray(np.einsum("nck,kn->nc", self._both, factors))
 
 
-#: A node's velocity in space, (N, 3), in cells, (N, 2), and its lengths in both, (N,) each.
-_Node = tuple[Floats, Floats, tuple[Floats, Floats]]
+#: A node's velocity in space, (N, 3), in cells, (N, 2), its lengths in both, (N,) each, and the
+#: sine of the angle by which it or its paths leave the plane of the cell, (N,).
+_Node = tuple[Floats, Floats, tuple[Floats, Floats], Floats]
 
 
 def _square(
@@ -102,7 +107,7 @@ def _square(
         tangent, turn = (slices.layer(there, n, finest) for n in (0, values["u_rateLayer"]))
         by = turn[:, :2] * (turn[:, 3:] / (tangent[:, 3:] * values["u_cell"]))
         moved = tangent[:, :3] * turn[:, 3:]
-        return moved, by, (np.linalg.norm(moved, axis=1), np.linalg.norm(by, axis=1))
+        return moved, by, (np.linalg.norm(moved, axis=1), np.linalg.norm(by, axis=1)), 0 * one
 
     return about, map(node, ((0, 0), (1, 0), (0, 1), (1, 1)))
 
@@ -122,7 +127,13 @@ def _triangle(
         moved = tangent[:, :3] * turn[:, 3:]
         by = np.einsum("nkc,nc->nk", places.by, moved)
         lengths = np.linalg.norm(moved, axis=1), np.sqrt((by**2).sum(axis=1) + by[:, 0] * by[:, 1])
-        return moved - np.einsum("nc,nc->n", normal, moved)[:, None] * normal, by, lengths
+        height = np.einsum("nc,nc->n", normal, moved)
+        off = np.abs(height) / np.maximum(lengths[0], const.LEAST_SPEED)
+        for side in range(values["u_sides"]):
+            slope = slices.at_node(number, 1 + side * len(values["u_lags"]))[:, :3]
+            length = np.maximum(np.linalg.norm(slope, axis=1), const.LEAST_SPEED)
+            off = np.maximum(off, np.abs(np.einsum("nc,nc->n", normal, slope)) / length)
+        return moved - height[:, None] * normal, by, lengths, off
 
     return about, map(node, places.nodes.T)
 
