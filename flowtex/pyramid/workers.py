@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import io
 import os
 import traceback
 from collections.abc import Callable, Generator, Sequence
@@ -181,19 +182,14 @@ def _set_allocator() -> None:
             libc.mallopt(parameter, value)
 
 
-class _Limited:
+class _Limited(io.BytesIO):
     """A file in memory that takes so much and no more."""
-
-    def __init__(self) -> None:
-        self.data = bytearray()
 
     def write(self, data: Any) -> int:
         """Take some bytes."""
-        size = memoryview(data).nbytes
-        if len(self.data) + size > MOST_SENT:
+        if self.tell() + memoryview(data).nbytes > MOST_SENT:
             raise _TooLargeError
-        self.data += data
-        return size
+        return super().write(data)
 
 
 class _TooLargeError(Exception):
@@ -213,7 +209,7 @@ def _packed(thing: Any) -> bytes | None:
             "from a file or a store, or build without a scheduler"
         )
         raise PyramidError(msg) from error
-    return bytes(file.data)
+    return file.getvalue()
 
 
 def _unpacked(data: bytes) -> Any:

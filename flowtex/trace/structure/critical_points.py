@@ -11,12 +11,11 @@ import scipy
 
 from flowtex._util.arguments import check_field, checked_count
 from flowtex._util.array_types import AnyArray, Floats, Indices
-from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.poles import Pole
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.trace.structure.records import Records
+from flowtex.trace.structure.records import Records, steady_parts
 from flowtex.trace.structure.strength import strengths
 from flowtex.trace.structure.zeros import bilinear_zeros, linear_zeros, triangle_indices
 
@@ -133,23 +132,10 @@ class CriticalPoints(Records, Sequence[CriticalPoint]):
             rows.append(row)
         return rows
 
-    def to_geojson(self) -> dict[str, Any]:
-        """Return a GeoJSON ``FeatureCollection`` of points.
-
-        Raises
-        ------
-        FieldError
-            When the field is not in coordinates of the Earth.
-        """
-        features = []
-        for point, row in zip(self._points, self.records(), strict=True):
-            if point.lonlat is None:
-                msg = "GeoJSON needs longitudes and latitudes, but this field is not on the Earth"
-                raise FieldError(msg)
-            properties = {key: value for key, value in row.items() if key not in ("lon", "lat")}
-            geometry = {"type": "Point", "coordinates": list(point.lonlat)}
-            features.append({"type": "Feature", "geometry": geometry, "properties": properties})
-        return {"type": "FeatureCollection", "features": features}
+    def _geometries(self) -> list[dict[str, Any] | None]:
+        """Return the GeoJSON geometry of each point."""
+        places = (point.lonlat for point in self._points)
+        return [place and {"type": "Point", "coordinates": list(place)} for place in places]
 
     def to_pyvista(self) -> Any:
         """Return a ``pyvista.PolyData`` of the points.
@@ -205,10 +191,8 @@ def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> 
     if field.sign_free:
         msg = "critical points need a direction, but this field is sign-free"
         raise FieldError(msg)
-    numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
     points: list[CriticalPoint] = []
-    for number in track(numbers, len(numbers), "Finding critical points"):
-        part = field.at_step(number)
+    for part in steady_parts(field, steps, "Finding critical points"):
         search = _on_grid if part.triangles is None else _on_triangles
         points += _with_strength(search(part), part)
     return CriticalPoints(points)

@@ -17,11 +17,11 @@ import scipy
 
 from flowtex._util.arguments import check_field
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.progress import track
 from flowtex.field import FlowField
 from flowtex.field.locate import locator, surface_point
 from flowtex.trace.structure.critical_points import CriticalPoints, critical_points
 from flowtex.trace.structure.isolation import Isolation
+from flowtex.trace.structure.records import steady_parts
 from flowtex.trace.trace import paths
 
 #: Distance between the points of a line in cells, points that are followed at once, and the length
@@ -106,10 +106,8 @@ def closed_orbits(field: FlowField, *, steps: Sequence[int] | None = None) -> li
     (True, 6.7, 2.0)
     """
     check_field(field, FlowField)
-    numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
     found: list[ClosedOrbit] = []
-    for number in track(numbers, len(numbers), "Finding closed orbits"):
-        part = field.at_step(number)
+    for part in steady_parts(field, steps, "Finding closed orbits"):
         found += orbits_around(part, critical_points(part))
     return found
 

@@ -12,8 +12,6 @@ import scipy
 
 from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import Bools, Floats
-from flowtex._util.progress import track
-from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locator
 from flowtex.trace.structure.critical_points import (
@@ -22,7 +20,7 @@ from flowtex.trace.structure.critical_points import (
     critical_points,
 )
 from flowtex.trace.structure.isolation import Isolation
-from flowtex.trace.structure.records import Records
+from flowtex.trace.structure.records import Records, steady_parts
 from flowtex.trace.trace import paths
 
 #: Distance from the saddle at which a line begins, and between its points, in cells.
@@ -97,24 +95,9 @@ class Separatrices(Records, list[Separatrix]):
             rows.append(row)
         return rows
 
-    def to_geojson(self) -> dict[str, Any]:
-        """Return a GeoJSON ``FeatureCollection`` of lines, split where they cross 180 degrees.
-
-        Raises
-        ------
-        FieldError
-            When the field is not in coordinates of the Earth.
-        """
-        features = []
-        for line, row in zip(self, self.records(), strict=True):
-            if line.lonlat is None:
-                msg = "GeoJSON needs longitudes and latitudes, but this field is not on the Earth"
-                raise FieldError(msg)
-            jumps = np.flatnonzero(np.abs(np.diff(line.lonlat[:, 0])) > 180) + 1
-            parts = [part.tolist() for part in np.split(line.lonlat, jumps) if len(part) > 1]
-            geometry = {"type": "MultiLineString", "coordinates": parts}
-            features.append({"type": "Feature", "geometry": geometry, "properties": row})
-        return {"type": "FeatureCollection", "features": features}
+    def _geometries(self) -> list[dict[str, Any] | None]:
+        """Return the GeoJSON geometry of each line."""
+        return [None if line.lonlat is None else _split(line.lonlat) for line in self]
 
     def to_pyvista(self) -> Any:
         """Return lines as a ``pyvista.PolyData``.
@@ -182,10 +165,8 @@ def separatrices(
         most = checked_number("length", length, np.nextafter(0, 1), expected=expected)
     if strongest is not None:
         checked_count("strongest", strongest, expected="a number of saddles, 1 or more")
-    numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
     lines = Separatrices()
-    for number in track(numbers, len(numbers), "Following separatrices"):
-        part = field.at_step(number)
+    for part in steady_parts(field, steps, "Following separatrices"):
         lines += separatrices_between(part, critical_points(part), most, strongest)
     return lines
 
@@ -283,6 +264,13 @@ def _followed(
         positions[FIRST_POINTS:, away] = later.positions
         reach[away] = lags[FIRST_POINTS - 1] + later.reach
     return positions, reach
+
+
+def _split(lonlat: Floats) -> dict[str, Any]:
+    """Return the GeoJSON geometry of a line (N, 2), in parts where it crosses 180 degrees."""
+    jumps = np.flatnonzero(np.abs(np.diff(lonlat[:, 0])) > 180) + 1
+    parts = [part.tolist() for part in np.split(lonlat, jumps) if len(part) > 1]
+    return {"type": "MultiLineString", "coordinates": parts}
 
 
 def _cell(field: FlowField, point: CriticalPoint) -> float:

@@ -19,7 +19,7 @@ from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import check
 from flowtex.trace.compose import ERROR_CELLS, ERROR_SHARE, MOST_PIECES, Map
 from flowtex.trace.integrate import MOST_CELLS
-from flowtex.trace.triangles.integrate import TrianglePaths
+from flowtex.trace.triangles.integrate import TrianglePaths, all_shares
 from flowtex.trace.triangles.motion import BEHIND, SteadyMotion, TriangleMesh
 
 #: Length in small cells up to which paths are integrated, and least number of such slices.
@@ -90,7 +90,7 @@ class Composition:
                 blocks = [going[k : k + BLOCK] for k in range(0, len(going), BLOCK)]
                 list(run(partial(self._follow, m, search), blocks))
                 corners = self._corners.take(self._triangle[m, nodes], axis=1)
-                place = _blend(_all_shares(self._shares[:, nodes]), self.points, corners)
+                place = _blend(all_shares(self._shares[:, nodes]), self.points, corners)
                 beyond = np.maximum(self.lags[m] - self.reach[nodes], 0.0)
                 moved = place + self._ahead[:, nodes] * beyond - self.points[nodes].T
                 self.moved[m, nodes] = np.clip(moved.T, -MOST_CELLS, MOST_CELLS)
@@ -143,7 +143,7 @@ class Composition:
         from here (n,) at which paths end: infinite where no corner's path does, and more than that
         of the slice where only some do.
         """
-        corners, weights = self._corners.take(triangle, axis=1), _all_shares(shares)
+        corners, weights = self._corners.take(triangle, axis=1), all_shares(shares)
         reach, span = self.reach[corners], self.lags[number]
         ended = reach <= span
         target = _blend(weights, self.points, corners)
@@ -253,11 +253,6 @@ class _Bends:
         for side in self._sides:
             result[side] = size
         return np.maximum(np.maximum(result[::3], result[1::3]), result[2::3])
-
-
-def _all_shares(two: Floats) -> Floats:
-    """All three shares, (3, n), by the second and third."""
-    return np.stack([1 - two[0] - two[1], two[0], two[1]])
 
 
 def _blend(weights: Floats, nodal: Floats, corners: Indices) -> Floats:

@@ -282,7 +282,7 @@ class _Run:
         few = EDGE_ROUNDING * (np.abs(now.first[0]) + np.abs(now.first[1]))
         rate = _three(now.first)[state.edge, np.arange(len(few))]
         at = np.flatnonzero((rate <= few) & (state.edge >= 0))
-        share = _all_shares(state.shares[:, at])[state.edge[at], np.arange(len(at))]
+        share = all_shares(state.shares[:, at])[state.edge[at], np.arange(len(at))]
         at = at[share <= SHARE_ROUNDING]
         if not len(at):
             return
@@ -311,7 +311,7 @@ class _Run:
 
     def _behind(self, at: Indices, edge: Indices, code: Indices) -> tuple[Indices, Indices, Floats]:
         """Triangles (n,) behind the edges of some particles, their edges, and shares (2, n)."""
-        shares, count = _all_shares(self.state.shares[:, at]), np.arange(len(at))
+        shares, count = all_shares(self.state.shares[:, at]), np.arange(len(at))
         one, two = (np.maximum(shares[(edge + step) % 3, count], 0.0) for step in (1, 2))
         share, way = one / (one + two), code & 7
         beyond = NEXT[:, way] * share + AFTER[:, way] * (1 - share)
@@ -385,7 +385,7 @@ class _Run:
             self.further[m, some] = self.lags[m, some] - state.lag[later]
 
 
-def _all_shares(two: Floats) -> Floats:
+def all_shares(two: Floats) -> Floats:
     """All three shares, (3, N), by the second and third."""
     return np.stack([1 - two[0] - two[1], two[0], two[1]])
 
