@@ -267,7 +267,7 @@ def _opengl() -> Check:
 def _display() -> Check:
     if has_display():
         return Check("Display", "ok", os.environ.get("DISPLAY") or "the system's")
-    return Check("Display", "ok", "none: pictures and the browser work, windows do not open open")
+    return Check("Display", "ok", "none: pictures and the browser work, windows do not open")
 
 
 def _shaders() -> Check:

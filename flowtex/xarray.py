@@ -1,7 +1,10 @@
 """Flow textures from xarray: ``import flowtex.xarray`` gives every Dataset ``ds.flowtex``.
 
-import flowtex.xarray
-ds.flowtex.show(level=500)
+::
+
+    import flowtex.xarray
+
+    ds.flowtex.show(level=500)
 """
 
 from __future__ import annotations

@@ -190,7 +190,7 @@ def _field_table(field: FlowField) -> Table:
     sizes = sizes[np.isfinite(sizes) & (sizes > 0)]
     if sizes.size:
         table.add_row(
-            "cells", (f"the longest is {sizes.max() / sizes.min():,.3g} times the shortest")
+            "cells", f"the longest is {sizes.max() / sizes.min():,.3g} times the shortest"
         )
     table.add_row("lost", f"{field.normal_share:.1%} of the flow is normal to the surface")
     table.add_row("memory", f"about {_megabytes(field):,.0f} MB of traces for one time")

@@ -136,7 +136,7 @@ class FrameFlags:
     size: SIZE = "1024x768"
     supersampling: Annotated[
         int,
-        Parameter(group=PICTURE, help=("Draw larger by this factor along each side, and average.")),
+        Parameter(group=PICTURE, help="Draw larger by this factor along each side, and average."),
     ] = 1
     annotations: Annotated[
         bool,
@@ -194,7 +194,7 @@ class ServeFlags(AddressFlags):
     ] = None
     idle: Annotated[
         float,
-        Parameter(group=PAGE, help=("Minutes during which a closed page can be opened again.")),
+        Parameter(group=PAGE, help="Minutes during which a closed page can be opened again."),
     ] = 15.0
 
 

@@ -37,7 +37,7 @@ def pyramid(
     fresh: Annotated[
         bool,
         Parameter(
-            negative=(), help=("Remove the existing pyramid from the store, and build a new one.")
+            negative=(), help="Remove the existing pyramid from the store, and build a new one."
         ),
     ] = False,
     lines: Annotated[
@@ -47,7 +47,7 @@ def pyramid(
     scheduler: Annotated[
         str | None,
         Parameter(
-            help=("Dask scheduler, such as tcp://host:8786; threads of this process by default.")
+            help="Dask scheduler, such as tcp://host:8786; threads of this process by default."
         ),
     ] = None,
     memory: Annotated[

@@ -45,9 +45,7 @@ FIELD_OPTIONS = (
 
 FILE = Annotated[
     Path,
-    Parameter(
-        help=("Files that PyVista reads, PLOT3D or data of the Earth; or one folder of them.")
-    ),
+    Parameter(help="Files that PyVista reads, PLOT3D or data of the Earth; or one folder of them."),
 ]
 
 

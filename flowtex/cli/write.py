@@ -41,7 +41,7 @@ def render(
     *files: FILE,
     output: Annotated[
         Path,
-        Parameter(name=["--output", "-o"], help=("Picture to write; the suffix sets the format.")),
+        Parameter(name=["--output", "-o"], help="Picture to write; the suffix sets the format."),
     ],
     clock: Annotated[
         float, Parameter(group=PICTURE, help="Time of the streaming (--motion), in seconds.")
@@ -88,7 +88,7 @@ def movie(
     seconds: Annotated[
         float | None,
         Parameter(
-            group=PICTURE, help=("Length of the movie in seconds; a steady flow repeats after it.")
+            group=PICTURE, help="Length of the movie in seconds; a steady flow repeats after it."
         ),
     ] = None,
     fps: Annotated[
@@ -98,7 +98,7 @@ def movie(
     quality: Annotated[
         int,
         Parameter(
-            group=PICTURE, help=("1 to 100; higher values give better pictures and larger files.")
+            group=PICTURE, help="1 to 100; higher values give better pictures and larger files."
         ),
     ] = 80,
     flow: Annotated[FieldFlags | None, FLAT] = None,

@@ -83,9 +83,8 @@ class TextureSet:
         """Make the textures that the settings ask for.
 
         The image (H, W, 4) is that for ``noise="image"``, and the geometry is the field's own by
-        default. Raises a FieldError when the slices do
-        not belong to the field, or are more than a shader has room for; or when an image is
-        missing, or the surface does not support the noise.
+        default. Raises a FieldError when the slices do not belong to the field, or are more than a
+        shader has room for; or when an image is missing, or the surface does not support the noise.
         """
         field = store.field
         check_noise(field, settings.noise)

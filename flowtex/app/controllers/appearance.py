@@ -186,7 +186,7 @@ class Appearance(Controller):
             return
         self.close()  # the latest picture counts
         self._laying = start_task(
-            self._lay(*picture), ("an image could not be applied to the surface")
+            self._lay(*picture), "an image could not be applied to the surface"
         )
 
     async def _lay(self, content: bytes, name: str) -> None:

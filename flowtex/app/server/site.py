@@ -6,8 +6,8 @@
     POST /flowtex/session          secret and token for a token: of one's own session, or a new one
     GET  /page/<token>/index.html  trame's page with ?secret=..., without it the door
     GET  /page/<token>/ws          the connection of a session
-    GET /flowtex/<token>/<name> what a session serves GET /... scripts and styles, the same for all
-    pages
+    GET  /flowtex/<token>/<name>   what a session serves
+    GET  /...                      scripts and styles, the same for all pages
 
 trame's client looks for its connection beside its page. It accepts another address, but writes it
 in lower case, which breaks the tokens and the paths of some proxies.

@@ -101,7 +101,7 @@ def _save(controllers: Controllers) -> None:
     key = controllers.context.state.key
     movie = f"{key('out_format')} !== 'PNG'"
     with row(
-        "format", ("Choose a picture, or a movie: one seamless period, or all times of the flow.")
+        "format", "Choose a picture, or a movie: one seamless period, or all times of the flow."
     ):
         buttons("Format", key("out_format"), FORMATS)
     with row("size", "Width and height in pixels; may exceed the window."):
@@ -113,7 +113,7 @@ def _save(controllers: Controllers) -> None:
         html.Span("Fineness", classes="flowtex-label")
         number("Fineness", key("out_density"), 1, 8)
     with row(
-        "smooth", ("Draw at twice the size and average: smoother edges, but four times slower.")
+        "smooth", "Draw at twice the size and average: smoother edges, but four times slower."
     ):
         html.Span("Smooth edges", classes="flowtex-label")
         switch("Smooth edges", key("out_smooth"))

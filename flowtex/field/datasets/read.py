@@ -321,8 +321,7 @@ def recognise(
     if len(set(factors)) > 1:
         units = " and ".join(repr(str(a.attrs.get("units", ""))) for a in (pair.u, pair.v))
         msg = (
-            f"the units of {pair.u.name!r} and {pair.v.name!r} are {units}; expected the same "
-            "unit unit"
+            f"the units of {pair.u.name!r} and {pair.v.name!r} are {units}; expected the same unit"
         )
         raise FieldError(msg)
     factor = factors[0] if factors[0] is not None else 1.0
