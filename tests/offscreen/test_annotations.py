@@ -24,6 +24,7 @@ from flowtex.offscreen.annotations import (
     Plate,
     _font,
     _Writer,
+    difference_text,
     length_text,
     plates,
     round_length,
@@ -371,3 +372,10 @@ def test_a_legend_of_one_value_has_it_once(texts: list[str]) -> None:
     )
     written(Scene.of(field, scalars="level"))
     assert texts[0] == "level" and len(set(texts[1:3])) == len(texts[1:3])
+
+
+def test_a_comparison_names_the_lines_that_are_drawn() -> None:
+    few = flowtex.examples.double_gyre_field(shape=(11, 21), time_varying=True)
+    scene = Scene(few, Settings(lines="auto", lod=False))
+    text = difference_text(scene, {"lines": "auto", "lod": False, "cmap": "turbo"})
+    assert text == f"lines = {scene.lines}, lod = False"
