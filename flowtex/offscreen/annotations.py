@@ -364,7 +364,7 @@ def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) ->
 
 def difference_text(scene: Scene, changes: Mapping[str, Any]) -> str:
     """Return the settings by which one of two views differs from the other."""
-    settings = {**scene.settings, "lines": scene.lines}
+    settings = dict(scene.settings) | {"lines": scene.lines}
     return ", ".join(f"{name} = {settings[name]}" for name in changes if name in settings)
 
 

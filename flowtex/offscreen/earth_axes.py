@@ -21,6 +21,8 @@ from flowtex.earth.lines import MOST_LINES, STEPS
 DEGREE_STEPS = [1, 1.5, 2, 3, 5, 6, 10]
 #: Degrees between ticks on a border.
 TICKS = (90, 60, *STEPS)
+#: Share of the ticks for which matplotlib sees room, where they are longitudes.
+WIDE = 0.85
 #: Places along a border of axes, and inwards from it, where longitude and latitude are looked up.
 ALONG, INWARDS = 241, 33
 #: Share of the axes within which a place maps back to where it was looked up.
@@ -84,7 +86,7 @@ def label_degrees(ax: Axes, projection: Projection, unit: AxesUnit) -> None:
             axis.set_major_locator(_BorderLocator(border))
             axis.set_major_formatter(_BorderFormatter(border))
         else:
-            axis.set_major_locator(MaxNLocator(nbins=MOST_LINES, steps=DEGREE_STEPS))
+            axis.set_major_locator(_DegreeLocator(nbins="auto", steps=DEGREE_STEPS))
             axis.set_major_formatter(FuncFormatter((longitude_text, latitude_text)[number]))
 
 
@@ -102,6 +104,17 @@ def latitude_text(degrees: float, position: Any = None) -> str:
     return f"{abs(degrees):.6g}°{'' if abs(degrees) < 1e-6 else 'N' if degrees > 0 else 'S'}"
 
 
+def _room(axis: Any) -> int:
+    """Return the number of ticks for which an axis has room: longitudes are wide."""
+    share = WIDE if axis.axis_name == "x" else 1.0
+    return max(min(MOST_LINES, int(share * axis.get_tick_space())), 1)
+
+
+def _step(degrees: float, most: float) -> float:
+    """Return the degrees between ticks of which there is room for so many."""
+    return next((step for step in TICKS[::-1] if degrees / step <= most), TICKS[0])
+
+
 class _Border:
     """Where meridians meet the lower border of axes (0), or parallels the left one (1)."""
 
@@ -111,10 +124,12 @@ class _Border:
 
     def crossings(self) -> tuple[Floats, Floats, DegreeText]:
         """Return the places along the border, the degrees there, and what writes them."""
-        return self._find((self._ax.get_xlim(), self._ax.get_ylim()))
+        axis = (self._ax.xaxis, self._ax.yaxis)[self._number]
+        most = _room(axis)
+        return self._find((self._ax.get_xlim(), self._ax.get_ylim()), most)
 
     def _crossings(
-        self, both: tuple[tuple[float, float], tuple[float, float]]
+        self, both: tuple[tuple[float, float], tuple[float, float]], most: int
     ) -> tuple[Floats, Floats, DegreeText]:
         limits = np.array(both)
         (start, end), (border, other) = limits[self._number], limits[1 - self._number]
@@ -137,8 +152,8 @@ class _Border:
         else:  # around a pole meridians meet all sides
             degrees, text = np.unwrap(lon, period=360.0), longitude_text
         low, high = degrees.min(), degrees.max()
-        most = MOST_LINES * abs(float(np.ptp(along) / np.ptp(limits[self._number])))
-        step = next((s for s in TICKS[::-1] if (high - low) / s <= most), TICKS[0])
+        room = most * abs(float(np.ptp(along) / np.ptp(limits[self._number])))
+        step = _step(high - low, room)
         places, values = [], []
         for value in np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step:
             beyond = degrees >= value
@@ -147,6 +162,18 @@ class _Border:
                 places.append(along[k] + share * (along[k + 1] - along[k]))
                 values.append(value)
         return np.array(places), np.array(values), text
+
+
+class _DegreeLocator(MaxNLocator):
+    """Ticks at whole parts of a right angle, where the axes show more than some degrees."""
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        """Return ticks between two values, and one beyond each."""
+        low, high = sorted((vmin, vmax))
+        step = _step(high - low, _room(self.axis))
+        if step < 2 * TICKS[-1]:
+            return super().tick_values(vmin, vmax)
+        return np.arange(math.floor(low / step), math.ceil(high / step) + 1) * step
 
 
 class _BorderLocator(Locator):

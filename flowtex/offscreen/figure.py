@@ -297,9 +297,9 @@ class FlowImage(AxesImage):
                 )
             )
         if ax.get_autoscalex_on():
-            ax.set_xlim(left, right)
+            ax.set_xlim(*((right, left) if ax.xaxis_inverted() else (left, right)))
         if ax.get_autoscaley_on():
-            ax.set_ylim(bottom, top)
+            ax.set_ylim(*((top, bottom) if ax.yaxis_inverted() else (bottom, top)))
         self._tell()
         if (section := self._flow.section) is not None:
             self._frame_section(section)

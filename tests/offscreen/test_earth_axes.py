@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -104,6 +105,27 @@ def test_the_title_tells_level_and_time_until_it_is_another(figure: Figure) -> N
     other.set_title("Winds")
     flowtex.axes(other, ds, level=500, samples=3)
     assert other.get_title() == "Winds"
+
+
+def test_degrees_of_small_axes_have_room(figure: Figure) -> None:
+    figure.set_size_inches(5.2, 3.3)
+    winds_, currents = flowtex.examples.weather().sel(level=500), flowtex.examples.ocean()
+    for number, ds in enumerate([currents, winds_], start=1):
+        flowtex.axes(figure.add_subplot(2, 2, number), ds, samples=3)
+    figure.canvas.draw()
+    for ax in figure.axes:
+        low, high = ax.get_xlim()
+        labels = [text for text in ax.get_xticklabels() if low <= text.get_position()[0] <= high]
+        assert labels and all(int(text.get_text().split("°")[0]) % 15 == 0 for text in labels)
+        boxes = [text.get_window_extent() for text in labels]
+        assert all(one.x1 < two.x0 for one, two in itertools.pairwise(boxes))
+
+
+def test_an_axis_that_is_inverted_stays_so(figure: Figure) -> None:
+    ax = figure.add_subplot()
+    ax.invert_yaxis()
+    flowtex.axes(ax, flowtex.examples.double_gyre_field(shape=(11, 21)), samples=3)
+    assert ax.get_ylim() == (1.0, 0.0) and ax.get_xlim() == (0.0, 2.0)
 
 
 def test_colours_follow_the_limits_that_matplotlib_sets(figure: Figure) -> None:
