@@ -107,7 +107,7 @@ def latitude_text(degrees: float, position: Any = None) -> str:
 def _room(axis: Any) -> int:
     """Return the number of ticks for which an axis has room: longitudes are wide."""
     share = WIDE if axis.axis_name == "x" else 1.0
-    return max(min(MOST_LINES, int(share * axis.get_tick_space())), 1)
+    return max(min(MOST_LINES, round(share * axis.get_tick_space())), 1)
 
 
 def _step(degrees: float, most: float) -> float:
