@@ -42,10 +42,8 @@ from flowtex.web.view import WebView, browser_options, web_views
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75
-#: Bytes of the client, the header with its shaders, and the preview, about.
-CLIENT_BYTES = 300_000
-#: Bytes of what reads a store.
-READER_BYTES = 60_000
+#: Bytes of the header with its shaders, and of the preview, about.
+HEADER_BYTES = 30_000
 #: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
 TILE_BYTES = 40_000_000
 #: Endings of the names of modules.
@@ -236,17 +234,17 @@ def estimate(scenes: Sequence[ClientData], *, linked: bool = False) -> int:
 
     Pages that are linked to a store have one moment.
     """
-    size = 0
+    size = HEADER_BYTES + len(client_script(with_store=linked))
     for n, scene in enumerate(scenes):
         if n and scene.textures is scenes[0].textures:
             break
         steps = len(scene.moment(scene.times[0])) if linked else scene.steps
         root = _arrays_bytes(scene, steps)
-        size += READER_BYTES * linked + root
+        size += root
         if (pyramid := scene.pyramid) is not None and not linked:
             levels = range(scene.finest, pyramid.depth)
             size += int(root * sum(_times_larger(pyramid, level) for level in levels))
-    return CLIENT_BYTES + size
+    return size
 
 
 def page_pieces(
