@@ -27,9 +27,9 @@ from flowtex.tiles import BLOCK_CELLS, block_places
 MAX_ERROR_PIXELS = 0.05
 #: What counts of an error of the outline, a quarter of a pixel across it; and of one along the
 #: surface, half a pixel: noise is looked up where a point lies, and only paths belong to a
-#: place that is off by this error. Where fragments correct their place it may be two pixels along
+#: place that is off by this error. Where fragments correct their place it may be four pixels along
 #: the surface and half of one across it, which the outline of a curved one is off by at most.
-OUTLINE_SHARE, SLIDE_SHARE, PLACED_SHARE, HEIGHT_SHARE = 0.2, 0.1, 0.025, 0.1
+OUTLINE_SHARE, SLIDE_SHARE, PLACED_SHARE, HEIGHT_SHARE = 0.2, 0.1, 0.0125, 0.1
 #: Longest side of a triangle, in heights of the view: single precision interpolates across it.
 MAX_SIDE_HEIGHTS = 2.0
 #: Nearest that a block is taken to be, as a share of its radius, when the eye is inside of it.

@@ -23,7 +23,7 @@ vec2 flowtexPlaced; // texture coordinate of the fragment
 uniform sampler2DArray u_nodes;   // positions as they are given, from the middle of the surface, and normals
 uniform vec3 u_anchor;            // what positions are counted from there
 const int FLOWTEX_POSITIONS = 0, FLOWTEX_NORMALS = 1; // layers
-const float FLOWTEX_PLACE_FAR = 4.0;       // cells beyond which no correction is made
+const float FLOWTEX_PLACE_FAR = 16.0;      // cells beyond which no correction is made
 const float FLOWTEX_EXTENT = 1073741824.0; // finest cells of the noise in the size of the surface, 2^30
 const float FLOWTEX_LEAST_DEPTH = 1e-6;    // of the size, up to which it is rounding
 
