@@ -67,9 +67,9 @@ case " $* " in
 esac
 case $which in
 all)
-    # Tests with a browser mostly wait, so they share the cores with the others.
+    # Playwright's event loop excludes that of other tests, so these run in processes of their own.
     # shellcheck disable=SC2086 # a list of files
-    (tests -n $(($(workers "$bin") - 1)) -m browser "$@" $with_browser) >"$logs/browser" 2>&1 &
+    (tests -n "$(workers "$bin")" -m browser "$@" $with_browser) >"$logs/browser" 2>&1 &
     browser=$!
     aside="$aside $browser"
     tests -n "$(workers "$bin")" -m "not browser" "$@" || failed="$failed, tests"
