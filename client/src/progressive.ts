@@ -106,7 +106,7 @@ export class ProgressiveRenderer {
     this.rowsDone = 0;
   }
 
-  /** Draw the same picture once more, as more of the surface is there: once it is complete, if yet more comes. */
+  /** More of the surface is there: draw the picture again, at once if nothing else is coming, else when it is complete. */
   refine(): void {
     if (this.rowsDone >= this.canvas.height || !this.content.isComing) this.rowsDone = 0;
     this.isRefined = true;

@@ -73,7 +73,7 @@ class Surface(ABC):
     def in_cells(self, vectors: Floats) -> Floats:
         """Return the parts of vectors (..., 3), one for each cell, that lie in the cells."""
 
-    @property
+    @cached_property
     def sharp(self) -> Bools:
         """Nodes of sharp edges, (J, I), whose velocity has another direction in each face."""
         return np.zeros(self.valid.shape, dtype=bool)

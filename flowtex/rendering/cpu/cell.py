@@ -30,11 +30,11 @@ class CellPath:
             about, nodes = _square(slices, coordinate, values)
         both = np.zeros((len(reach), 5, len(about)))
         speed, rate, off = np.zeros((3, len(reach)))
-        for weights, (moved, by, lengths, height) in zip(about, nodes, strict=True):
+        for weights, (moved, by, lengths, sine) in zip(about, nodes, strict=True):
             both += np.concatenate([moved, by], axis=1)[:, :, None] * weights.T[:, None]
             speed += weights[0] * lengths[0]
             rate += weights[0] * lengths[1]
-            off = np.maximum(off, height)
+            off = np.maximum(off, sine)
         speed = np.maximum(speed, const.LEAST_SPEED)
         agreed = np.linalg.norm(both[:, :3, 0], axis=1) / speed
         edge = _smoothstep(const.ALONG_PLANE, const.OFF_PLANE, off)
