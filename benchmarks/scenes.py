@@ -116,7 +116,7 @@ class Stage:
         lic = settings.pop("surface_lic", False)
         self.handle = None
         if lic:
-            self.plotter.add_actor(lic_actor(_grid_of(field)))
+            self.plotter.add_actor(lic_actor(grid_of(field)))
         else:
             self.handle = self.plotter.flowtex.add(field, scalars=False, **settings)
 
@@ -138,7 +138,7 @@ class Stage:
         self.plotter.close()
 
 
-def _grid_of(field: flowtex.FlowField) -> Any:
+def grid_of(field: flowtex.FlowField) -> Any:
     """Return the polygons of a structured field, with its vectors as ``velocity``."""
     import pyvista as pv
 
