@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import socket
 import subprocess
 import sys
 from collections.abc import Callable
@@ -338,6 +339,18 @@ def test_info_says_that_a_field_has_no_sign(run: Run, tmp_path: Path) -> None:
     words = "v and -v mean the same"
     assert words in run("info", tmp_path / "axis.vti", "--sign-free")[1]
     assert words not in run("info", tmp_path / "axis.vti")[1]
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_port_in_use_is_told(run: Run) -> None:
+    pytest.importorskip("trame_rca")
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        code, _, err = run("demo", "--no-browser", "--port", port)
+    assert code == 2
+    assert f"cannot listen on 127.0.0.1:{port}" in err and "Traceback" not in err
 
 
 def test_the_terminal_says_what_takes_long(

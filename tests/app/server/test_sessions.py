@@ -18,12 +18,10 @@ import pytest
 
 pytest.importorskip("trame_rca")
 
-from pages import new_context
-from served import Link, Served, enter, start
+from served import Link, enter
 from small_pages import small
 from trame.app.core import AVAILABLE_SERVERS
 from waiting import PATIENCE_S, until, wait_until
-from watching import Watch, count, difference, zoom_of
 
 from flowtex import FlowField
 from flowtex.app import FlowApp, ServeError, serve
@@ -35,12 +33,6 @@ from flowtex.app.server.sessions.registry import Sessions, usual_limit
 from flowtex.app.server.site import Site
 from flowtex.errors import FieldError
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
-
-SIZE = {"width": 560, "height": 400}
-#: Part of the view that nothing lies on, as left, top, right, bottom.
-WATCH = Watch((140, 130, 480, 320))
 
 
 class Plain:
@@ -426,77 +418,3 @@ def test_pages_are_as_many_as_memory_has_room_for(
 ) -> None:
     monkeypatch.setattr("flowtex.app.server.sessions.registry.available_bytes", lambda: free)
     assert usual_limit() == pages
-
-
-def zoom(page: Page) -> Any:
-    before = count(page)
-    page.mouse.move(150, 170)
-    for _ in range(10):
-        page.mouse.wheel(0, -100)
-    return WATCH.settled(page, before)
-
-
-def let_in(page: Page) -> None:
-    """Ask again until there is room."""
-    again = page.get_by_role("button", name="Try again")
-
-    def is_open() -> bool:
-        if again.is_visible():
-            again.click()
-        return page.locator(".flowtex[data-sharp]").count() > 0
-
-    wait_until(is_open, lambda: page.inner_text("body"))
-
-
-@pytest.fixture(scope="module")
-def two_places(opengl: object) -> Iterator[Served]:
-    words = ("demo", "--example", "double_gyre", "--samples", "5", "--limit", "2")
-    started = start(*words, "--idle", "0.05")
-    yield started
-    if started.process.returncode is None:
-        started.end(signal.SIGINT)
-
-
-@pytest.mark.browser
-def test_two_users_at_once_look_from_different_places(
-    browser: Browser, two_places: Served, request: pytest.FixtureRequest
-) -> None:
-    users = [new_context(browser, viewport=SIZE) for _ in range(2)]
-    for user in users:
-        request.addfinalizer(user.close)
-    one, other = (user.new_page() for user in users)
-    for page in (one, other):
-        page.goto(two_places.address)
-        WATCH.settled(page)
-    whole = WATCH.shot(other)
-    closer = zoom(one)
-    assert difference(whole, closer) > 8
-    assert difference(WATCH.shot(other), whole) == 0
-    assert 8 < zoom_of(one) < 12
-
-    # A page that is loaded again is where it was, and its address does not tell the secret.
-    one.reload()
-    assert difference(WATCH.settled(one), closer) < 1
-    assert "secret" not in one.url and two_places.secret not in one.url
-
-    # Both places are taken: a third page says so, and opens when one has become free.
-    third = users[0].new_page()
-    third.goto(two_places.address)
-    third.get_by_text("limit is 2 pages at a time").wait_for()
-    other.close()
-    let_in(third)
-    # Another tab of the first user, and yet not the first user's camera.
-    assert difference(WATCH.settled(third), whole) < 1
-
-
-@pytest.mark.browser
-def test_a_page_whose_session_is_over_says_so(page: Page, two_places: Served) -> None:
-    page.set_viewport_size(SIZE)  # type: ignore[arg-type]
-    page.goto(two_places.address)
-    let_in(page)
-    WATCH.settled(page)
-    said = two_places.end(signal.SIGTERM)
-    assert two_places.process.returncode == 128 + signal.SIGTERM
-    assert "ended by SIGTERM" in said and "Traceback" not in said
-    page.get_by_text("lost its connection").wait_for()
-    assert page.get_by_role("button", name="Open it again").is_visible()
