@@ -40,6 +40,8 @@ sys.dont_write_bytecode = False
 # Its threads wait for each other by turning round: beside other processes, for several times as
 # long as they compute. Workers begin with it, before they load NumPy.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# With it jsonschema, which Jupyter loads, builds parsers of addresses for four seconds.
+sys.modules["rfc3987_syntax"] = None  # type: ignore[assignment]
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -223,7 +225,7 @@ def page(browser: Browser) -> Iterator[Page]:
     """Yield its own page context, so that no test sees another's state."""
     from pages import opened_page
 
-    with opened_page(browser, 1280, 720) as opened:
+    with opened_page(browser, 640, 400) as opened:
         yield opened
 
 

@@ -28,7 +28,7 @@ T = TypeVar("T")
 
 PREFERENCES = 'user_pref("webgl.force-enabled", true);\n'
 CALL = "async (words) => JSON.stringify(await (%s)(...JSON.parse(words)) ?? null)"
-SIZE = {"width": 1000, "height": 700}
+SIZE = {"width": 500, "height": 350}
 
 
 class Firefox:

@@ -37,14 +37,14 @@ def is_textured(pixels: Bytes) -> bool:
 @pytest.mark.usefixtures("quick_export")
 def test_an_exported_page_draws(page: Firefox, tmp_path: Path) -> None:
     file = tmp_path / "gyre.html"
-    flowtex.export(flowtex.examples.double_gyre(), file)
+    flowtex.export(flowtex.examples.double_gyre(), file, samples=9)
     page.goto(file.as_uri())
     page.wait_for_function(SHARP)
     assert is_textured(page.screenshot())
 
 
 def test_the_page_draws(page: Firefox) -> None:
-    served = start("demo")
+    served = start("demo", "--example", "double_gyre", "--samples", "9")
     try:
         page.goto(served.address)
         wait_until(lambda: is_textured(page.screenshot()))
