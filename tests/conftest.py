@@ -197,6 +197,8 @@ def chromium() -> Path:
 #: WebGL of Mesa's, several times as fast as the one that Chromium brings; it draws the views alone,
 #: as the page around them costs less where it is put together without OpenGL.
 MESA = ("--use-angle=gl-egl", "--ignore-gpu-blocklist", "--disable-gpu-compositing")
+#: Pages of a context lie in one process, which has compiled what each of them runs: see pages.py.
+TOGETHER = ("--renderer-process-limit=1", "--disable-site-isolation-trials")
 DRAWS = "!!document.createElement('canvas').getContext('webgl2')"
 
 
@@ -209,13 +211,13 @@ def browser(chromium: Path) -> Iterator[Browser]:
     if subprocess.run(asked, capture_output=True, check=False).returncode != 0:
         pytest.skip("Playwright does not start: apt-get install libatomic1")
     with sync_playwright() as driver:
-        started = driver.chromium.launch(executable_path=chromium, args=list(MESA))
+        started = driver.chromium.launch(executable_path=chromium, args=[*MESA, *TOGETHER])
         page = started.new_page()
         draws = page.evaluate(DRAWS)
         page.close()
         if not draws:
             started.close()
-            started = driver.chromium.launch(executable_path=chromium)
+            started = driver.chromium.launch(executable_path=chromium, args=[*TOGETHER])
         yield started
         started.close()
 

@@ -282,7 +282,9 @@ while not pathlib.Path("FILE").exists():
     time.sleep(0.1)"""
 
 
-def test_two_views_of_a_formula_are_drawn_while_the_cell_still_runs(notebook: Lab, tmp_path: Path) -> None:
+def test_two_views_of_a_formula_are_drawn_while_the_cell_still_runs(
+    notebook: Lab, tmp_path: Path
+) -> None:
     lab, page = notebook, notebook.page
     page.set_viewport_size({"width": 900, "height": 900})
     lab.run(TWO.replace("FILE", (tmp_path / "go").as_posix()))

@@ -34,7 +34,6 @@ from flowtex.app.server.site import Site
 from flowtex.errors import FieldError
 
 
-
 class Plain:
     """An application that draws nothing."""
 
