@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import asyncio
 import gc
-import signal
 import threading
 import weakref
 from collections.abc import AsyncIterator, Callable, Iterator
@@ -10,7 +9,7 @@ from contextlib import asynccontextmanager
 from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import aiohttp
 import numpy as np
@@ -21,7 +20,7 @@ pytest.importorskip("trame_rca")
 from served import Link, enter
 from small_pages import small
 from trame.app.core import AVAILABLE_SERVERS
-from waiting import PATIENCE_S, until, wait_until
+from waiting import PATIENCE_S, until
 
 from flowtex import FlowField
 from flowtex.app import FlowApp, ServeError, serve
