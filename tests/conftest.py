@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import ctypes
+import gc
 import inspect
 import os
 import shutil
@@ -56,6 +57,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker("browser")
     items.sort(key=lambda item: ("browser" in item.keywords, item.path not in slow))
+
+
+def pytest_collection_finish() -> None:
+    """Leave what collecting has made out of each later collection of garbage."""
+    gc.freeze()
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -26,7 +26,7 @@ from flowtex.trace.trace import paths
 
 #: Distance between the points of a line in cells, points that are followed at once, and the length
 #: of a turn at most, as a share of the surface's extent and in points.
-POINT_CELLS, CHUNK, TURN_EXTENTS, MOST_POINTS = 0.5, 200, 3.0, 3000
+POINT_CELLS, CHUNK, TURN_EXTENTS, MOST_POINTS = 0.5, 50, 3.0, 3000
 #: Points of a ray: the first one in cells, the ratio of the distances of two, and the distance of
 #: two at most, as a share of the extent.
 FIRST_CELLS, RATIO, EXTENT_SHARE = 1.0, 1.2, 0.03
