@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matrix import COLOUR, DEEP, GROUND, ROOT, SHARE, SIZE, VIEWS, View, difference, judged
+from matrix import COLOUR, DEEP, GROUND, ROOT, SHARE, SMALL, VIEWS, View, difference, judged
 from webgl_page import ClientPage, packed, state
 
 from flowtex._util.array_types import Bytes
@@ -38,7 +38,7 @@ def agree(theirs: Bytes, name: str, more: float = 1.0) -> None:
 
 def drawn_by_vtk(plotter: Any, view: View) -> Bytes:
     camera = view.camera
-    plotter.window_size = list(SIZE)
+    plotter.window_size = list(SMALL)
     plotter.set_background(GROUND)
     shown: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR}
     settings = {"samples": 11, **view.settings}
@@ -60,7 +60,7 @@ def drawn_by_webgl(client: ClientPage, name: str) -> Bytes:
         shown.settings, camera=state(view.camera), time=shown.time, clock=view.clock
     )
     given = packed(whole, header, (before, after))
-    return client.picture(client.mount(given, SIZE, controls=False, smooth=False))
+    return client.picture(client.mount(given, SMALL, controls=False, smooth=False))
 
 
 @pytest.mark.parametrize("name", VIEWS)
@@ -73,7 +73,7 @@ def test_two_hundredths_more_would_be_noticed(name: str) -> None:
     view, (shown, ours) = VIEWS["many samples"], judged("many samples")
     settings = shown.settings.copy()
     setattr(settings, name, getattr(settings, name) * 1.02)
-    other = render(Scene(view.field(), settings).textures, settings, view.camera, SIZE)
+    other = render(Scene(view.field(), settings).textures, settings, view.camera, SMALL)
     assert difference(other.rgb(COLOUR, background=GROUND), ours)[0] > ROOT
 
 
