@@ -105,7 +105,7 @@ def mount(client: ClientPage, field: FlowField, **options: Any) -> None:
     client.sharp()
 
 
-def test_a_click_shows_card_and_path(client: ClientPage) -> None:
+def test_a_click_shows_card_and_path_until_the_card_is_closed(client: ClientPage) -> None:
     mount(client, leaving(share=0.0), hear=["onPoint"])
     page = client.page
     page.mouse.click(300, 150)
@@ -126,27 +126,23 @@ def test_a_click_shows_card_and_path(client: ClientPage) -> None:
     x, y = map(float, tip.split()[0].split(","))
     assert x > 300 and y < 150
 
+    # The path follows the camera and the settings.
+    ring = page.locator("svg.path .point")
+    assert float(ring.get_attribute("cx") or 0) == pytest.approx(300, abs=1)
+    page.evaluate("() => { viewers[0].camera.pan(0.2, 0); viewers[0].reportCamera(); }")
+    assert float(ring.get_attribute("cx") or 0) == pytest.approx(240, abs=1)
+    client.sharp()
+    count = """() => {
+      const { sampled } = viewers[0].card.drawn.path;
+      return sampled[sampled.length - 1][0] - sampled[0][0];
+    }"""
+    before = page.evaluate(count)
+    page.evaluate("() => viewers[0].choose('samples', 17)")
+    client.sharp()
+    assert page.evaluate(count) == pytest.approx(2 * before, rel=0.01)
 
-def test_what_leaves_the_surface_is_told(client: ClientPage) -> None:
-    mount(client, leaving(), controls=True)
-    client.page.mouse.click(300, 150)
-    client.page.locator(".card").wait_for()
-    got = card(client.page)
-    assert got["speed in the surface"] == "1.25 m/s"
-    # Velocities travel with an error of 2^-10 of the speed at most.
-    velocity = re.fullmatch(r"\((\S+), (\S+)\) m/s", got["velocity in the surface"])
-    assert velocity is not None
-    assert [float(part) for part in velocity.groups()] == pytest.approx([1, 0.75], abs=0.0013)
-    assert client.page.inner_text(".legend .name") == "speed in the surface (m/s)"
-    client.page.mouse.move(310, 150)
-    client.page.mouse.move(320, 150)
-    client.page.locator(".readout b").wait_for()
-    assert client.page.inner_text(".readout b") == "speed in the surface 1.25 m/s"
-
-
-def test_the_card_closes(client: ClientPage) -> None:
-    mount(client, leaving())
-    page = client.page
+    # And there are several ways to close the card.
+    page.keyboard.press("Escape")
     ways: list[Callable[[], None]] = [
         lambda: page.keyboard.press("Escape"),
         lambda: page.mouse.click(597, 3),
@@ -163,24 +159,21 @@ def test_the_card_closes(client: ClientPage) -> None:
         client.sharp()
 
 
-def test_the_path_follows_the_camera_and_the_settings(client: ClientPage) -> None:
-    mount(client, leaving())
-    page = client.page
-    page.mouse.click(300, 150)
-    page.locator(".card").wait_for()
-    ring = page.locator("svg.path .point")
-    assert float(ring.get_attribute("cx") or 0) == pytest.approx(300, abs=1)
-    page.evaluate("() => { viewers[0].camera.pan(0.2, 0); viewers[0].reportCamera(); }")
-    assert float(ring.get_attribute("cx") or 0) == pytest.approx(240, abs=1)
-    client.sharp()
-    count = """() => {
-      const { sampled } = viewers[0].card.drawn.path;
-      return sampled[sampled.length - 1][0] - sampled[0][0];
-    }"""
-    before = page.evaluate(count)
-    page.evaluate("() => viewers[0].choose('samples', 17)")
-    client.sharp()
-    assert page.evaluate(count) == pytest.approx(2 * before, rel=0.01)
+def test_what_leaves_the_surface_is_told(client: ClientPage) -> None:
+    mount(client, leaving(), controls=True)
+    client.page.mouse.click(300, 150)
+    client.page.locator(".card").wait_for()
+    got = card(client.page)
+    assert got["speed in the surface"] == "1.25 m/s"
+    # Velocities travel with an error of 2^-10 of the speed at most.
+    velocity = re.fullmatch(r"\((\S+), (\S+)\) m/s", got["velocity in the surface"])
+    assert velocity is not None
+    assert [float(part) for part in velocity.groups()] == pytest.approx([1, 0.75], abs=0.0013)
+    assert client.page.inner_text(".legend .name") == "speed in the surface (m/s)"
+    client.page.mouse.move(310, 150)
+    client.page.mouse.move(320, 150)
+    client.page.locator(".readout b").wait_for()
+    assert client.page.inner_text(".readout b") == "speed in the surface 1.25 m/s"
 
 
 def test_both_of_two_views_show_the_path(client: ClientPage) -> None:
