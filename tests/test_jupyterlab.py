@@ -306,49 +306,6 @@ def test_two_views_of_a_formula_are_drawn_while_the_cell_still_runs(
     page.wait_for_function("() => !document.querySelector('.flowtex')")
 
 
-def test_a_saved_notebook_shows_pictures_where_no_kernel_runs(
-    notebook: Lab, jupyter: LabServer
-) -> None:
-    """Whether or not JupyterLab is set to save the state of widgets; it leaves the notebook."""
-    shown, page = notebook, notebook.page
-    page.set_viewport_size({"width": 900, "height": 1300})
-    shown.run(SHOW)
-    shown.run(BOXES)
-    shown.run(PLOTTER)
-    page.wait_for_function(DRAWN, arg=4)
-    # In a row views of no width share the room.
-    widths = page.evaluate("[...document.querySelectorAll('.flowtex')].map(v => v.clientWidth)")
-    assert widths[1] == widths[2] > 300
-    # PyVista's widget fills the plotter's window, and looks from the plotter's camera.
-    assert variation(picture(page, 3)) > 3
-    box = page.locator(".flowtex").nth(3).bounding_box()
-    assert box is not None
-    assert (box["width"], box["height"]) == (300, 200)
-    assert shown.said("w.camera['parallel_scale']") == "0.25"
-    assert page.get_by_text("does not show: 'ball'").count() == 0  # it is drawn
-    # The still that is saved is the last picture.
-    page.wait_for_function(SENT)
-    was = shown.said("len(w._frame), hash(w._frame)")
-    with acted(page, 3):
-        assert shown.said("setattr(w, 'contrast', 0.2)") == "None"
-    page.wait_for_function(SENT)
-    assert shown.said("len(w._frame), hash(w._frame)") != was
-    pictures, words, views = page.evaluate(SEEN)
-    assert not any(width for width, _ in pictures)
-    assert (words, views) == ("", 4)
-    saved = shown.saved()
-    bare = json.loads(saved)
-    assert bare["metadata"].pop("widgets")
-    for text in (saved, json.dumps(bare)):
-        Lab(page, jupyter, text)
-        page.wait_for_function(LOADED)
-        pictures, words, views = page.evaluate(SEEN)
-        assert pictures[0] == pictures[3] == [300, 200]
-        assert pictures[1][0] == pytest.approx(pictures[2][0], abs=1)
-        assert pictures[1][0] > 300
-        assert (words, views) == ("", 0)
-
-
 APPLICATION = """import flowtex
 from flowtex.app import FlowApp
 app = FlowApp(flowtex.examples.double_gyre_field(), samples=5)
@@ -402,3 +359,46 @@ def test_a_cell_shows_the_application(notebook: Lab) -> None:
 
     assert notebook.said("app.close()") == "None"
     frame.get_by_text("lost its connection").wait_for()
+
+
+def test_a_saved_notebook_shows_pictures_where_no_kernel_runs(
+    notebook: Lab, jupyter: LabServer
+) -> None:
+    """Whether or not JupyterLab is set to save the state of widgets; it leaves the notebook."""
+    shown, page = notebook, notebook.page
+    page.set_viewport_size({"width": 900, "height": 1300})
+    shown.run(SHOW)
+    shown.run(BOXES)
+    shown.run(PLOTTER)
+    page.wait_for_function(DRAWN, arg=4)
+    # In a row views of no width share the room.
+    widths = page.evaluate("[...document.querySelectorAll('.flowtex')].map(v => v.clientWidth)")
+    assert widths[1] == widths[2] > 300
+    # PyVista's widget fills the plotter's window, and looks from the plotter's camera.
+    assert variation(picture(page, 3)) > 3
+    box = page.locator(".flowtex").nth(3).bounding_box()
+    assert box is not None
+    assert (box["width"], box["height"]) == (300, 200)
+    assert shown.said("w.camera['parallel_scale']") == "0.25"
+    assert page.get_by_text("does not show: 'ball'").count() == 0  # it is drawn
+    # The still that is saved is the last picture.
+    page.wait_for_function(SENT)
+    was = shown.said("len(w._frame), hash(w._frame)")
+    with acted(page, 3):
+        assert shown.said("setattr(w, 'contrast', 0.2)") == "None"
+    page.wait_for_function(SENT)
+    assert shown.said("len(w._frame), hash(w._frame)") != was
+    pictures, words, views = page.evaluate(SEEN)
+    assert not any(width for width, _ in pictures)
+    assert (words, views) == ("", 4)
+    saved = shown.saved()
+    bare = json.loads(saved)
+    assert bare["metadata"].pop("widgets")
+    for text in (saved, json.dumps(bare)):
+        Lab(page, jupyter, text)
+        page.wait_for_function(LOADED)
+        pictures, words, views = page.evaluate(SEEN)
+        assert pictures[0] == pictures[3] == [300, 200]
+        assert pictures[1][0] == pytest.approx(pictures[2][0], abs=1)
+        assert pictures[1][0] > 300
+        assert (words, views) == ("", 0)

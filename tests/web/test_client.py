@@ -277,7 +277,9 @@ def test_the_bar_and_the_settings(client: ClientPage) -> None:
     rows = page.locator("[data-setting]").evaluate_all("(all) => all.map((r) => r.dataset.setting)")
     assert {"samples", "kernel", "contrast", "motion", "seed", "resolution"} <= set(rows)
     # What would need the host, has no effect here, or lies in the bar.
-    assert not {"noise", "parameter", "tiles", "noise_correction", "lod"} & set(rows)
+    absent = {"noise", "parameter", "tiles", "noise_correction", "lod", "critical_points"}
+    assert not absent & set(rows)
+    assert page.locator(".kinds span").count() == 0
     page.locator("[data-setting=contrast] input").fill("2")
     page.locator("[data-setting=kernel] select").select_option("box")
     page.locator("[data-name=levels]").click()

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.browser
 
 Pixels = NDArray[np.uint8]
 
-SIZE = (450, 300)
+SIZE = (360, 240)
 #: A plain surface, so that what is dark is a line.
 PLAIN: dict[str, Any] = {
     "scalars": False,
