@@ -204,7 +204,12 @@ def chromium() -> Path:
 #: as the page around them costs less where it is put together without OpenGL.
 MESA = ("--use-angle=gl-egl", "--ignore-gpu-blocklist", "--disable-gpu-compositing")
 #: Pages of a context lie in one process, which has compiled what each of them runs: see pages.py.
-TOGETHER = ("--renderer-process-limit=1", "--disable-site-isolation-trials")
+#: Coverage is counted by processes, so there each page has its own.
+TOGETHER = (
+    ()
+    if "FLOWTEX_CLIENT_COVERAGE" in os.environ
+    else ("--renderer-process-limit=1", "--disable-site-isolation-trials")
+)
 DRAWS = "!!document.createElement('canvas').getContext('webgl2')"
 
 

@@ -27,7 +27,7 @@ pytest.importorskip("trame_rca")
 
 pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("opengl")]
 
-SIZE = {"width": 960, "height": 480}
+SIZE = {"width": 800, "height": 440}
 #: Part of the picture that nothing lies on, as left, top, right, bottom.
 WATCH = Watch((240, 130, 600, 336), "RGB")
 #: The first view of the page.
@@ -463,7 +463,7 @@ def test_the_view_alone_serves_in_an_application_of_ones_own(page: Page) -> None
     assert block.endswith("server.start()\n")
     script = OWN.replace("BLOCK", block.removesuffix("server.start()\n"))
     process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
-    page.set_viewport_size({"width": 400, "height": 300})
+    page.set_viewport_size({"width": 300, "height": 240})
     try:
         address = next(found.group() for line in process.stdout or () if (found := ADDRESS(line)))
         page.goto(address)
@@ -472,7 +472,7 @@ def test_the_view_alone_serves_in_an_application_of_ones_own(page: Page) -> None
 
         def moves() -> bool:
             """Whether it plays: no two pictures are the same."""
-            shown = Watch((80, 80, 360, 220)).shot(page)
+            shown = Watch((60, 60, 260, 170)).shot(page)
             if np.abs(np.diff(shown, axis=0)).mean() > 5:
                 pictures.append(shown)
             return len(pictures) > 1 and difference(pictures[0], pictures[-1]) > 2
