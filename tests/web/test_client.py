@@ -9,26 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from flows import gyre, swinging, torus
-from matrix import (
-    ASIDE,
-    IMAGE,
-    ROOT,
-    SIZE,
-    TILTED,
-    WHOLE,
-    difference,
-    straight,
-)
+from matrix import ASIDE, SIZE, TILTED, WHOLE, straight
 from numpy.typing import NDArray
 from pages import opened_page
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
 from flowtex.camera import Camera
-from flowtex.rendering.cpu.render import Picture, render
+from flowtex.rendering.cpu.render import render
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.settings import Settings
-from flowtex.textures import TextureSet, as_picture
+from flowtex.textures import TextureSet
 from flowtex.trace import SliceStore
 
 if TYPE_CHECKING:
@@ -61,8 +52,7 @@ def store(field: Callable[[], FlowField]) -> SliceStore:
 
 
 def made(field: Callable[[], FlowField], settings: Settings) -> TextureSet:
-    image = as_picture(IMAGE) if settings.noise == "image" else None
-    return TextureSet.build(store(field), settings, image)
+    return TextureSet.build(store(field), settings)
 
 
 def scene(
@@ -72,7 +62,6 @@ def scene(
     colours: Colours | None = None,
     steps: tuple[int, ...] = (0,),
     time: float | None = None,
-    clock: float = 0.0,
     **options: Any,
 ) -> Any:
     """A scene as JSON."""
@@ -80,25 +69,11 @@ def scene(
     plain = colours or Colours(plain=(0.6, 0.6, 0.6), background=(1.0, 0.0, 0.0))
     whole = ClientData(made(field, settings), plain)
     look = {} if camera is None else state(camera)
-    header = whole.header(settings, camera=look, time=time, clock=clock)
+    header = whole.header(settings, camera=look, time=time)
     return packed(whole, header | {"camera": look or None}, steps)
 
 
-def colours(picture: Picture) -> Pixels:
-    return picture.rgb((0.6, 0.6, 0.6), background=(1, 0, 0))
-
-
 # --- pictures ---------------------------------------------------------------------------------
-
-
-def test_two_hundredths_more_would_be_noticed(client: ClientPage) -> None:
-    camera = straight(4)
-    theirs = client.picture(client.mount(scene(gyre, camera), SIZE, **PLAIN))
-    near, far = (
-        difference(theirs, colours(render(made(gyre, s), s, camera, SIZE)))[0]
-        for s in (Settings(**QUICK), Settings(**QUICK, spacing=0.714))
-    )
-    assert near < ROOT < far
 
 
 def test_smooth_outlines_leave_the_inside_alone(client: ClientPage) -> None:
