@@ -22,6 +22,8 @@ pytestmark = pytest.mark.browser
 Pixels = NDArray[np.uint8]
 
 SIZE = (360, 240)
+#: There is room for ticks.
+WITH_AXES = (450, 300)
 #: A plain surface, so that what is dark is a line.
 PLAIN: dict[str, Any] = {
     "scalars": False,
@@ -123,7 +125,7 @@ def test_lines_are_as_wide_in_every_draft_and_at_every_zoom(client: ClientPage) 
 
 def test_switches_show_and_hide_lines(client: ClientPage) -> None:
     field = earth("globe")
-    number = client.mount(scene(field, camera_of(field, 1)), SIZE)
+    number = client.mount(scene(field, camera_of(field, 1)), WITH_AXES)
     before = client.picture(number)
     page = client.page
     page.evaluate("(n) => viewers[n].panel.fold(true)", number)
@@ -135,14 +137,14 @@ def test_switches_show_and_hide_lines(client: ClientPage) -> None:
     after = client.picture(number)
     assert (before.astype(int) - after).min() < -60
     bare = scene(field, camera_of(field, 1), coastlines=False, graticule=False)
-    hidden = client.picture(client.mount(bare, SIZE))
+    hidden = client.picture(client.mount(bare, WITH_AXES))
     assert np.abs(after.astype(int) - hidden).mean() < 0.5
 
 
 def test_the_readout_tells_longitude_and_latitude(client: ClientPage) -> None:
     for name in ("globe", "mercator"):
         field = earth(name)
-        number = client.mount(scene(field, camera_of(field, 1)), SIZE)
+        number = client.mount(scene(field, camera_of(field, 1)), WITH_AXES)
         client.sharp(number)
         client.page.wait_for_function("(n) => viewers[n].canPick", arg=number)
         point, text = client.page.evaluate(

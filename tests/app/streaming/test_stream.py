@@ -7,6 +7,7 @@ from functools import partial
 from types import SimpleNamespace
 from typing import Any, Literal
 
+import numpy as np
 import pytest
 from waiting import until
 
@@ -76,6 +77,31 @@ def test_pictures_come_until_rest_and_then_no_more(flat: FlowApp) -> None:
         stream.changed()
         await until(lambda: len(asked) == 2 and wake.waiting)
         assert len(streamer.sent) == count
+        # Who comes back meanwhile is sent one.
+        away = iter([False])
+        stream.watched = lambda: next(away, True)
+        stream.changed()
+        await until(partial(streamer.has, count + 1))
         task.cancel()
 
     asyncio.run(watch())
+
+
+def test_parts_of_a_picture_that_takes_long_are_sent_until_something_changes(
+    flat: FlowApp, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stream, streamer, part = flat.stream, Streamer(), np.zeros((2, 3, 3), np.uint8)
+    monkeypatch.setattr("flowtex.app.streaming.stream.PARTIAL_INTERVAL_S", -1.0)
+    monkeypatch.setattr(stream.painter, "full", lambda: iter([part, part]))
+    stream.painter.forget()
+
+    async def draw() -> None:
+        stream._wake = asyncio.Event()
+        stream.set_streamer(streamer)
+        await stream._full()
+        assert [sent["sharp"] for sent in streamer.sent] == [False, False, True]
+        stream._wake.set()
+        await stream._full()
+        assert len(streamer.sent) == 3
+
+    asyncio.run(draw())
