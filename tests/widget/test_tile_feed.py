@@ -20,6 +20,7 @@ from flowtex.textures import TextureSet
 from flowtex.tiles import Pyramid
 from flowtex.web.view import web_views
 from flowtex.widget.views import Views
+from flowtex.widget.worker import Worker, WorkerPool
 
 
 def swirl(times: int = 1) -> Any:
@@ -228,3 +229,14 @@ def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Client], wrong
     client.load((1, 0, 0), 0)
     assert client.loaded == ["1"]
     assert client.errors == []
+
+
+def test_a_pool_that_is_busy_does_the_urgent_jobs_of_all_workers_first() -> None:
+    pool, done, may = WorkerPool("a test", 1), list[str](), threading.Event()
+    first, other = (Worker(pool, lambda error: done.append(str(error))) for _ in range(2))
+    first.do(lambda: done.append(str(may.wait(PATIENCE_S))))
+    first.do(lambda: done.append("first"))
+    other.do(lambda: done.append("other"), urgency=1)
+    may.set()
+    wait_until(lambda: not first.busy and not other.busy)
+    assert done == ["True", "other", "first"]
