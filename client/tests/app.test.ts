@@ -157,6 +157,7 @@ const CLIENT = `data:text/javascript,
   class Viewer {
     constructor(log, own) {
       Object.assign(this, { log, own, header: null, playing: false, root: {}, stage: {}, canvas: { width: 300, height: 200 } });
+      this.panel = { fail: (...values) => log.push(["fail", ...values]) };
       for (const name of ["setHeader", "followSetting", "setCamera", "setTime", "followTime", "setClock",
         "setPart", "play", "pause", "change", "resize"])
         this[name] = (...values) => this.log.push([name, ...values]);
@@ -258,6 +259,17 @@ test("what changes while the client is loaded is taken over after that", async (
   const headers = log.filter(([name]) => name === "setHeader").map(([, header]) => (header as { name: string }).name);
   assert.deepEqual(headers, ["one", "late"]);
   assert.ok(log.some(([name, time]) => name === "followTime" && time === 9));
+  leave();
+});
+
+test("a scene that the server does not have any more is told", async () => {
+  const { take, taken, leave } = await begun();
+  taken();
+  mock.method(globalThis, "fetch", () => Promise.resolve({ ok: false, status: 404 }));
+  take({ scenes: [scene("lost")] });
+  await rested();
+  const failed = taken().filter(([name]) => name === "fail");
+  assert.deepEqual(failed, [["fail", "The flow could not be loaded.", "Error: /lost.whole: 404"]]);
   leave();
 });
 

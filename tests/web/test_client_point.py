@@ -157,6 +157,18 @@ def test_a_click_shows_card_and_path_until_the_card_is_closed(client: ClientPage
         assert page.locator("svg.path > *").count() == 0
         page.evaluate("viewers[0].reset()")
         client.sharp()
+    # A click is kept while the program that finds points is being compiled, and far in there are
+    # as many digits as tell pixels apart.
+    page.evaluate("""() => {
+      let asked = 0;
+      Object.defineProperty(viewers[0], "canPick", { get: () => asked++ > 2, configurable: true });
+      viewers[0].camera.zoomBy(1e5, 0.1, 0.1);
+      viewers[0].reportCamera();
+    }""")
+    page.mouse.click(330, 170)
+    page.locator(".card").wait_for()
+    assert len(card(page)["position"]) > 20
+    page.evaluate("() => { delete viewers[0].canPick; }")
 
 
 def test_what_leaves_the_surface_is_told(client: ClientPage) -> None:
