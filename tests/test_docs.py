@@ -46,7 +46,8 @@ def small_examples() -> dict[str, Any]:
     return {
         "airfoil": fewer(examples.airfoil()),
         "cylinder_series": [fewer(mesh) for mesh in examples.cylinder_series()[::10]],
-        "vortex_field": examples.vortex_field().downsample(3).at_steps(range(0, 31, 6)),
+        "cylinder_field": examples.cylinder_field().downsample(4).at_steps(range(0, 31, 10)),
+        "vortex_field": examples.vortex_field().downsample(4).at_steps(range(0, 31, 6)),
         **{
             name: getattr(examples, name)().isel(few, missing_dims="ignore")
             for name in ("ocean", "weather")
@@ -67,6 +68,7 @@ def test_the_blocks_of_a_page_run(
     monkeypatch.setattr(pv.global_theme, "window_size", [160, 120])
     defaults = {**(flowtex.render.__kwdefaults__ or {}), "size": (160, 120)}
     monkeypatch.setattr(flowtex.render, "__kwdefaults__", defaults)
+    monkeypatch.setitem(flowtex.formula.__kwdefaults__ or {}, "resolution", 97)
     for name, shape in (("airfoil_field", (33, 97)), ("double_gyre_field", (33, 65))):
         made = partial(getattr(flowtex.examples, name), shape=shape)
         monkeypatch.setattr(flowtex.examples, name, made)

@@ -172,6 +172,7 @@ def test_a_path_stands_for_its_file(tmp_path: Path) -> None:
         FieldOptions().field(str(tmp_path / "none.vts"))
 
 
+@pytest.mark.usefixtures("quick_export")
 def test_every_front_end_takes_a_path(tmp_path: Path) -> None:
     path = tmp_path / "gyre.vts"
     flowtex.examples.double_gyre(2.5).save(path)

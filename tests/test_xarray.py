@@ -20,6 +20,7 @@ from flowtex.scene import Scene
 from flowtex.settings import SettingsError
 
 
+@pytest.mark.usefixtures("quick_export")
 def test_a_dataset_has_the_calls_of_the_package(opengl: Any, tmp_path: Path) -> None:
     del opengl
     ds = winds(np.arange(-180.0, 180.0, 20.0), np.arange(-80.0, 81.0, 20.0))

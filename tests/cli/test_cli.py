@@ -390,6 +390,7 @@ def test_two_views_and_a_moment(run: Run, gyre: Path, tmp_path: Path, opengl: ob
     assert np.abs(first[below, 10:90] - first[below, 110:190]).mean() > 2
 
 
+@pytest.mark.usefixtures("quick_export")
 def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path: Path) -> None:
     page = tmp_path / "page.html"
     code, out, err = run(

@@ -110,6 +110,7 @@ def test_missing_values_are_left_out_at_all_levels(tmp_path: Path) -> None:
         assert (valid != ~hole).mean() < 0.12
 
 
+@pytest.mark.usefixtures("quick_export")
 def test_pictures_pages_and_the_shell(
     opengl: Any, stores: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -132,6 +133,7 @@ def test_pictures_pages_and_the_shell(
     assert f"`flowtex pyramid {store} -o flow.zarr` and export that" in str(told.value)
 
 
+@pytest.mark.usefixtures("quick_export")
 @pytest.mark.parametrize("name", TOLD)
 def test_a_store_is_built_from_what_lies_on_the_web(
     stores: dict[str, Path], tmp_path: Path, name: str

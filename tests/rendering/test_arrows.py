@@ -70,7 +70,7 @@ def middles(picture: Bytes) -> Floats:
     return np.array(ndimage.center_of_mass(np.ones(SIZE[::-1]), labels, numbers))
 
 
-@pytest.mark.parametrize("zoom", [1.0, 1.3, 7.0, 100.0])
+@pytest.mark.parametrize("zoom", [1.0, 1.3, 100.0])
 @pytest.mark.parametrize("make", [gyre, crooked, globe])
 def test_arrows_are_even_on_the_screen(make: Any, zoom: float) -> None:
     places = middles(drawn(make(), arrows=SPACING, zoom=zoom))
@@ -88,10 +88,16 @@ def view_of(camera: Camera) -> TileView:
     return TileView(None, half, SIZE[1], np.array(sides, dtype=float))
 
 
+@cache
+def gyre_seeds() -> tuple[SurfaceGeometry, ArrowSeeds]:
+    geometry = SurfaceGeometry.of(gyre())
+    return geometry, ArrowSeeds(geometry)
+
+
 def seen(camera: Camera) -> tuple[Seeds, Floats]:
     """Return the seeds that are shown, made again, and their points, (N, 2)."""
-    geometry = SurfaceGeometry.of(gyre())
-    shown = ArrowSeeds(geometry).seen(view_of(camera), ARROW_LEAST * SPACING)
+    geometry, seeds = gyre_seeds()
+    shown = seeds.seen(view_of(camera), ARROW_LEAST * SPACING)
     pixel = 2 * camera.parallel_scale / SIZE[1]
     shown = shown[shown.radius >= ARROW_LEAST * SPACING * pixel]
     points = (shown.position @ geometry.frame + geometry.center)[:, :2]

@@ -69,7 +69,7 @@ def found(field: FlowField, slices: TraceSlices, m: int = -1, *, forward: bool =
 
 def test_a_vortex_on_a_plane_is_followed_to_second_order() -> None:
     errors = []
-    for count in (500, 8000):
+    for count in (1000, 4000):
         points, triangles = square(count)
         r = np.linalg.norm(points, axis=1)
         field = FlowField.from_triangles(points, triangles, spin(points) * r[:, None])
@@ -83,15 +83,14 @@ def test_a_vortex_on_a_plane_is_followed_to_second_order() -> None:
         assert np.isinf(slices.reach[0, 0, inside]).all()
         errors.append(float(np.sqrt(np.mean(off**2))))
     # Four times as many nodes are half as far apart.
-    order = np.log2(errors[0] / errors[1]) / 2
-    assert 1.7 < order < 2.6
+    assert 1.7 < np.log2(errors[0] / errors[1]) < 2.6
 
 
 @pytest.mark.parametrize("parameter", ["time", "arclength"])
 def test_a_rotation_of_a_sphere_is_followed_to_second_order(parameter: str) -> None:
     errors = []
     lags = np.linspace(0.3, 1.5, 9)
-    for count in (500, 8000):
+    for count in (1000, 4000):
         points, triangles = sphere(count)
         field = FlowField.from_triangles(points, triangles, spin(points))
         slices = trace(field, lags=lags, unit=1.0, parameter=parameter, tolerance=1e-5)
@@ -104,7 +103,7 @@ def test_a_rotation_of_a_sphere_is_followed_to_second_order(parameter: str) -> N
         errors.append(float(np.sqrt(np.mean(off**2))))
     assert errors[1] < 5e-4
     # Four times as many nodes are half as far apart.
-    assert 1.75 < np.log2(errors[0] / errors[1]) / 2 < 2.5
+    assert 1.75 < np.log2(errors[0] / errors[1]) < 2.5
 
 
 def test_a_uniform_flow_is_exact_however_the_nodes_lie() -> None:
@@ -268,7 +267,7 @@ def test_a_path_goes_on_along_the_line_that_it_is_drawn_to() -> None:
 
 
 def test_a_saddle_parts_and_a_centre_holds() -> None:
-    points, triangles = square(800)
+    points, triangles = square(400)
     saddle = FlowField.from_triangles(points, triangles, points * [1, -1])
     slices = trace(saddle, lags=[0.5, 1.0], parameter="time")
     p = saddle.points[0]
@@ -293,7 +292,7 @@ def test_a_saddle_parts_and_a_centre_holds() -> None:
 
 def test_pathlines_of_a_rotation_that_changes() -> None:
     """The rate goes 0, 1, 3 at the times 0, 1, 2: linear between, and constant before and after."""
-    points, triangles = square(1000)
+    points, triangles = square(500)
     velocity = np.stack([rate * spin(points) for rate in (0.0, 1.0, 3.0)])
     field = FlowField.from_triangles(points, triangles, velocity, times=[0.0, 1.0, 2.0])
     lags = [0.25, 1.0, 1.5, 2.5]
@@ -491,7 +490,8 @@ def test_any_triangles(
             field = FlowField.from_triangles(points, triangles, velocity)
     except FieldError:
         return
-    for parameter in ("arclength", "time"):
+    # Along pathlines there is no other lag than time.
+    for parameter in ("arclength", "time") if field.steady else ("time",):
         store = SliceStore(field, parameter=parameter)
         for step in range(store.steps):
             check(store.at(step))

@@ -73,6 +73,7 @@ WRITERS: dict[str, Callable[[Path], None]] = {
 }
 
 
+@pytest.mark.usefixtures("quick_export")
 @pytest.mark.parametrize("name", WRITERS)
 def test_a_full_disk_leaves_the_old_file_alone(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
