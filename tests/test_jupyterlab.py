@@ -181,7 +181,7 @@ def test_a_slider_changes_the_data_and_the_view_stays(notebook: Lab) -> None:
 
 MANY = """import flowtex
 mesh = flowtex.examples.double_gyre_field(shape=(30, 60))
-ws = [flowtex.show(mesh, samples=5, size=(90, 60), bar=False) for n in range(4)]"""
+ws = [flowtex.show(mesh, samples=5, size=(90, 60), bar=False) for n in range(8)]"""
 #: What all widgets of the page hold together; of a page without a widget nothing is left.
 HELD = """() => {
   const gl = globalThis[Symbol.for("flowtex.gl/3")];
@@ -213,16 +213,16 @@ def test_many_widgets_draw_share_and_leave_nothing(notebook: Lab) -> None:
     page.set_viewport_size({"width": 700, "height": 900})
     page.evaluate(COUNT)
     lab.run(MANY)
-    page.wait_for_function(DRAWN, arg=4)
+    page.wait_for_function(DRAWN, arg=8)
     assert page.evaluate("window.contexts") <= 1  # there may be one already
     assert variation(picture(page)) > 3
     # Textures and buffers lie there once; each view adds what binds them to a program.
     held = page.evaluate(HELD)
-    assert held["users"] == 4
+    assert held["users"] == 8
     assert held["arrays"] < 10
     assert held["common"] < 10
-    assert held["objects"] < 28
-    assert page.evaluate("window.listening") >= 8
+    assert held["objects"] < 40
+    assert page.evaluate("window.listening") >= 16
 
     assert lab.said("[w.close() for w in ws][0]") == "None"
     page.wait_for_function("() => !document.querySelector('.flowtex')")
