@@ -38,7 +38,7 @@ from flowtex.trace.node_grid import Corners, NodeGrid
 #: Pieces of a path, at most, before the rest is looked up in one whatever its error.
 MOST_PIECES = 64
 #: Paths looked up together.
-BLOCK = 16384
+BLOCK = 65536
 #: Cells beyond a border where a path that follows it may be put by its look-ups.
 BORDER_CELLS = 1e-2
 #: Parts of a piece in which its end is looked for, and how often one is halved then.

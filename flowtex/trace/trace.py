@@ -34,8 +34,9 @@ from flowtex.trace.triangles import triangle_paths, triangle_slices
 LEAST_LAG, MOST_LAG = 1e-30, 1e30
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
-#: Particles followed together, and blocks of them followed at once.
-BLOCK, MOST_THREADS = 16384, 8
+#: Particles followed together, and blocks of them followed at once. Threads wait for each other
+#: between the operations on a block: on 16 cores blocks a quarter as large take 1.5 times as long.
+BLOCK, MOST_THREADS = 65536, 8
 #: Length in cells up to which the paths of a steady field are integrated, not composed.
 DIRECT_CELLS = 1.0
 
