@@ -28,7 +28,7 @@ pytest.importorskip("trame_rca")
 
 pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("opengl")]
 
-SIZE = {"width": 800, "height": 440}
+SIZE = {"width": 960, "height": 480}
 #: Part of the picture that nothing lies on, as left, top, right, bottom.
 WATCH = Watch((240, 130, 600, 336), "RGB")
 #: The first view of the page.
