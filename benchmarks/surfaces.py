@@ -46,7 +46,7 @@ def surface_view(field: Any, camera: Camera, size: tuple[int, int]) -> SurfaceVi
     coverage = cover(surface, camera, size)
     points = surface.points.reshape(-1, 3)
     place = coverage.mix(points - surface.center)[0] + surface.center
-    velocity = coverage.mix(field.velocity[-1].reshape(-1, 3))[0]
+    velocity = coverage.mix(field.velocity[0].reshape(-1, 3))[0]
     a, b, c = (points[coverage.corners[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
     normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-300)
@@ -80,7 +80,7 @@ def as_polydata(field: Any) -> Any:
     import pyvista as pv
 
     mesh = pv.PolyData.from_regular_faces(field.points[0], field.triangles[field.surface.cells])
-    mesh.point_data["velocity"] = field.velocity[-1, 0]
+    mesh.point_data["velocity"] = field.velocity[0, 0]
     return mesh
 
 
