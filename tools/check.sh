@@ -72,7 +72,8 @@ all)
     (tests -n "$(workers "$bin")" -m browser "$@" $with_browser) >"$logs/browser" 2>&1 &
     browser=$!
     aside="$aside $browser"
-    tests -n "$(workers "$bin")" -m "not browser" "$@" || failed="$failed, tests"
+    # One process more than cores, as many of these tests wait for servers and files.
+    tests -n $(($(workers "$bin") + 1)) -m "not browser" "$@" || failed="$failed, tests"
     ended $browser "tests with a browser" browser
     ;;
 fast) tests -n "$(workers "$bin")" -m "$fast" "$@" || failed="$failed, tests" ;;
