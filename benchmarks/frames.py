@@ -1,7 +1,7 @@
 """Time of a frame against its pixels, samples and nodes: ``python benchmarks/frames.py``.
 
-Everything is measured in one run on one plotter, so the ratios mean something on a noisy
-machine; the figure is the least of several frames, each with a camera that has moved a little.
+Everything is measured in one run, so the ratios mean something on a noisy machine; the figure is
+the least of several frames, each with a camera that has moved a little.
 ``--lic`` measures VTK's enhanced Surface LIC in the same views.
 """
 

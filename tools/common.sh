@@ -31,6 +31,6 @@ apt_install() {
     fi
 }
 
-# workers BIN: number of processes for the tests. Tests keep all cores busy, and more processes
-# only collect the tests once more, in five seconds each.
+# workers BIN: number of processes for the tests, one for each core: each takes five seconds to
+# collect them.
 workers() { "$1/python" -c 'import os; print(min(os.cpu_count() or 1, 6))'; }
