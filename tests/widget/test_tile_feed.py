@@ -213,7 +213,7 @@ def test_tiles_are_not_taken_for_time_steps(make: Callable[..., Client]) -> None
         return {}
 
     feed: Any = make(swirl()).views.feeds[0]
-    feed.scene = SimpleNamespace(steps=3, surface=dict, step=step)
+    feed.scene = SimpleNamespace(steps=3, surface=dict, step=step, moment=lambda _: [])
     feed._send_named(["tile/1/0/0/slices/0", "a/b", "slices/2", "scalars/2/1", "slices/99"])
     assert asked == [2]
 
