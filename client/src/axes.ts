@@ -4,7 +4,7 @@ import { pointInPlane, type Camera } from "./camera.ts";
 import { withUnit } from "./dom.ts";
 import { lonLatOf } from "./lonlat.ts";
 import type { AxesKind, Earth, Header, Part } from "./protocol.ts";
-import { degreeTicks, ticksOf, type Tick } from "./ticks.ts";
+import { degreeTicks, offsetOf, ticksOf, type Tick } from "./ticks.ts";
 import { clamp, length, subtract, type Vector } from "./vectors.ts";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -20,7 +20,7 @@ const [POLE_SHARE, HALF_TURN] = [1 / 64, 180.1];
 const MOST_BACK = 0.02;
 /** Pixels of a letter and between labels at the lower border, and between labels at the left one. */
 const [LETTER_PX, GAP_PX, ROW_PX] = [6.5, 14, 34];
-const TICK_PX = 4;
+const [TICK_PX, LINE_PX] = [4, 13];
 /** Pixels beside the picture. */
 const ASIDE_PX = 42;
 /** Most ticks of a border, and the widest scale bar, in pixels and as a share of the picture. */
@@ -36,6 +36,8 @@ const fitting = (name: string, room: number) =>
 /** Values of a coordinate at even places of a border, and its name, or the letters of its two sides. */
 export interface Border {
   readonly name?: string;
+  /** What was taken from the values. */
+  readonly offset?: string;
   readonly letters?: string;
   readonly values: number[];
 }
@@ -94,11 +96,15 @@ export class Axes {
   }
 
   private drawBelow(border: Border, width: number, height: number): void {
+    const { name, offset } = border;
+    const shown = name && offset ? name.replace(/^\w+/, `$& − ${offset}`) : name;
     const isTooWide = (ticks: readonly { share: number; text: string }[]) =>
       ticks.some(({ share, text }, n) => {
         const apart = n ? Math.abs(share - ticks[n - 1].share) * width : width;
         const letters = Math.max(text.length, ticks[n - 1]?.text.length ?? 0);
-        return apart < letters * LETTER_PX + GAP_PX;
+        // Without its offset nobody knows what the ticks mean.
+        const between = offset && n && n === ticks.length - 1 ? (shown?.length ?? 0) * LETTER_PX + GAP_PX : 0;
+        return apart < letters * LETTER_PX + GAP_PX + between;
       });
     let most = MOST_TICKS;
     let ticks = placedTicks(border, most);
@@ -108,14 +114,16 @@ export class Axes {
       this.text(share * width, height + TICK_PX + 2, text, "below");
     }
     const [before, last] = ticks.slice(-2);
-    const middle = ((before.share + (last ?? before).share) / 2) * width;
-    if (!border.name || !last) return;
+    if (!shown || !last) return;
+    const middle = ((before.share + last.share) / 2) * width;
     const room = (last.share - before.share) * width - LETTER_PX * last.text.length - GAP_PX;
-    this.text(middle, height + TICK_PX + 2, fitting(border.name, room), "below name");
+    this.text(middle, height + TICK_PX + 2, offset ? shown : fitting(shown, room), "below name");
   }
 
   private drawAside(border: Border, height: number): void {
-    const most = Math.min(Math.max(Math.floor(height / ROW_PX), 2), MOST_TICKS);
+    const { name, offset } = border;
+    const row = ROW_PX + (offset ? LINE_PX : 0);
+    const most = Math.min(Math.max(Math.floor(height / row), 2), MOST_TICKS);
     const ticks = placedTicks(border, most);
     for (const { share, text } of ticks) {
       const y = (1 - share) * height;
@@ -123,9 +131,12 @@ export class Axes {
       this.text(-TICK_PX - 3, y, text, "aside");
     }
     const [before, last] = ticks.slice(-2);
-    if (!border.name || !last) return;
+    if (!name || !last) return;
     const middle = (1 - (before.share + last.share) / 2) * height;
-    this.text(-TICK_PX - 3, middle, fitting(border.name, ASIDE_PX), "aside name");
+    const lines = offset ? [name.replace(/( .*)?$/, " −"), offset] : [fitting(name, ASIDE_PX)];
+    lines.forEach((words, n) => {
+      this.text(-TICK_PX - 3, middle + LINE_PX * (n - (lines.length - 1) / 2), words, "aside name");
+    });
   }
 
   private drawBar(header: Header, camera: Camera, width: number, height: number): void {
@@ -202,7 +213,9 @@ function borderOf(host: AxesHost, from: [number, number], to: [number, number]):
   const across = [0, 1, 2].find((n) => n !== axis && n !== normal.indexOf(Math.max(...normal)));
   if (Math.abs(border[across ?? 0]) > 1 - LEAST_SHARE) return null;
   const name = withUnit(COORDINATES[axis], lengthUnit && `(${lengthUnit})`);
-  return { name, values: places.map((place) => place[axis]) };
+  const values = places.map((place) => place[axis]);
+  const offset = offsetOf(Math.min(...values), Math.max(...values), MOST_TICKS);
+  return { name, offset: offset?.text, values: values.map((value) => value - (offset?.value ?? 0)) };
 }
 
 /** Longitudes, or latitudes, at places of a border; NaN beside the map. */

@@ -13,6 +13,9 @@ const BEYOND = 0.004;
 /** Numbers from which on, and below which, texts have a power of ten. */
 const [LARGE, SMALL] = [1e6, 1e-3];
 
+/** Letters of the longest text beside an axis. */
+const LONGEST = 7;
+
 export interface Tick {
   readonly value: number;
   readonly text: string;
@@ -24,6 +27,19 @@ export function ticksOf(low: number, high: number, log = false, most = 5): Tick[
     return Number.isFinite(low) ? [{ value: low, text: textOf(low, Math.abs(low) / 1e3 || 1) }] : [];
   }
   return (log && decades(low, high, most)) || evenly(low, high, most);
+}
+
+/** A round number to take from those of an axis whose texts would be too long; `null` if they are not. */
+export function offsetOf(low: number, high: number, most: number): Tick | null {
+  const isLong = (offset: number) =>
+    ticksOf(low - offset, high - offset, false, most).some(({ text }) => text.length > LONGEST);
+  if (!isLong(0)) return null;
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  for (let power = 10 ** Math.floor(Math.log10(size)); power > high - low; power /= 10) {
+    const value = Math.round((low + high) / 2 / power) * power;
+    if (!isLong(value)) return { value, text: textOf(value, power) };
+  }
+  return null;
 }
 
 function evenly(low: number, high: number, most: number): Tick[] {

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { degreeTicks, ticksOf } from "../src/ticks.ts";
+import { degreeTicks, offsetOf, ticksOf } from "../src/ticks.ts";
 
 const texts = (low: number, high: number, log = false, most = 5) =>
   ticksOf(low, high, log, most).map(({ text }) => text);
@@ -49,4 +49,20 @@ test("degrees have round steps and the letters of their sides", () => {
   assert.deepEqual(east(170, 190), ["170°E", "175°E", "180°", "175°W", "170°W"]);
   assert.deepEqual(east(0.1, 0.9), ["0.2°E", "0.4°E", "0.6°E", "0.8°E"]);
   assert.deepEqual(degreeTicks(-80, 80, "NS").map(({ text }) => text), ["60°S", "30°S", "0°", "30°N", "60°N"]);
+});
+
+test("a round number is taken from coordinates that are large beside their range", () => {
+  for (const [low, high, text] of [
+    [4e6, 4e6 + 2, "4e6"],
+    [4_321_987.1, 4_321_990, "4.3e6"],
+    [-5e5, -5e5 + 0.01, "−500000"],
+    [4e6, 4.05e6, undefined],
+    [0, 2e12, undefined],
+  ] as const) {
+    const offset = offsetOf(low, high, 9);
+    assert.equal(offset?.text, text);
+    const taken = offset?.value ?? 0;
+    const labels = ticksOf(low - taken, high - taken, false, 9).map((tick) => tick.text);
+    assert.ok(labels.every((each) => each.length <= 7), labels.join());
+  }
 });

@@ -495,77 +495,84 @@ start,dates,step},times2,time){if(start===null){if(!dates.length)return null;let
 return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(
 first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:
 19).replace("T"," ")}var STEPS=[1,2,2.5,5],DEGREES2=[1,2,5,10,15,30,60,90],DECADES=[[1],[1,3],[1,2,5]],SAME=1e-9,BEYOND=.004,[LARGE,SMALL]=[1e6,
-.001];function ticksOf(low,high,log=!1,most=5){return high-low>SAME*Math.max(Math.abs(low),Math.abs(high))?log&&decades(
-low,high,most)||evenly(low,high,most):Number.isFinite(low)?[{value:low,text:textOf(low,Math.abs(low)/1e3||1)}]:[]}function evenly(low,high,most){
-let least=10**Math.floor(Math.log10((high-low)/most));for(let power=least;;power*=10)for(let factor of STEPS){let step=factor*
-power,slack=BEYOND*(high-low),[first,last]=[Math.ceil((low-slack)/step),Math.floor((high+slack)/step)];if(!(last-first+1>
-most))return Array.from({length:last-first+1},(_,n)=>{let value=(first+n)*step;return{value,text:textOf(value,step,Math.
-max(Math.abs(low),Math.abs(high)))}})}}function degreeTicks(low,high,letters,most=5){let step=DEGREES2.find(each=>Math.floor(
-high/each)-Math.ceil(low/each)<most);return(high-low<3*DEGREES2[0]||step===void 0?ticksOf(low,high,!1,most):Array.from({
-length:Math.floor(high/step)-Math.ceil(low/step)+1},(_,n)=>{let value=(Math.ceil(low/step)+n)*step;return{value,text:String(
-value)}})).map(({value,text})=>{let turned=value-360*Math.round(value/360),digits=text.split(".")[1]?.length??0,side=turned===
-0||Math.abs(turned)===180?"":letters[+(turned<0)];return{value,text:`${Math.abs(turned).toFixed(digits)}°${side}`}})}function decades(low,high,most){
-let[first,last]=[Math.floor(Math.log10(low)),Math.ceil(Math.log10(high))],powers=Array.from({length:last-first+1},(_,n)=>first+
-n),isInside=value=>value>=low*(1-SAME)&&value<=high*(1+SAME),valuesOf=(factors,every)=>powers.filter(power=>power%every===
-0).flatMap(power=>factors.map(factor=>+`${factor}e${power}`)).filter(isInside),finer=[...DECADES].reverse().map(factors=>valuesOf(
-factors,1)),coarser=powers.slice(1).map((_,n)=>valuesOf([1],n+2)),chosen=[...finer,...coarser].find(values=>values.length<=
-most);if(!(!chosen||chosen.length<3))return chosen.map(value=>({value,text:textOf(value,value,value)}))}function textOf(value,step,size=Math.
-abs(value)){if(value===0)return"0";let digits=-Math.floor(Math.log10(step)+SAME),isHalf=Math.abs(step*10**digits-2.5)<SAME?
-1:0;if(size>=LARGE||size<SMALL){let mantissa=Math.max(Math.floor(Math.log10(Math.abs(value))+SAME)+digits+isHalf,0),[number,
-power]=value.toExponential(Math.min(mantissa,15)).split("e");return`${minus(number)}e${Number(power)}`}return minus(value.
-toFixed(Math.max(digits+isHalf,0)))}var minus=text=>text.replace("-","−");var SVG="http://www.w3.org/2000/svg",PARTS=48,LEAST_SHARE=.999,SAME_LATITUDE=.1,[POLE_SHARE,HALF_TURN]=[1/64,180.1],MOST_BACK=.02,
-[LETTER_PX,GAP_PX,ROW_PX]=[6.5,14,34],TICK_PX=4,ASIDE_PX=42,[MOST_TICKS,BAR_PX,BAR_SHARE]=[9,140,.3],MIDDLE_SHARE=.02,COORDINATES=[
-"x","y","z"],fitting=(name,room)=>name.length*LETTER_PX>room?name.replace(/ .*/,""):name;function placedTicks({values,letters},most){
-let finite=values.filter(Number.isFinite);if(finite.length<2)return[];let[low,high]=[Math.min(...finite),Math.max(...finite)];
-return(letters?degreeTicks(low,high,letters,most):ticksOf(low,high,!1,most)).flatMap(tick=>{let n=values.findIndex((value,at)=>isBetween(
-tick.value,value,values[at+1]));if(n<0)return[];let part=(tick.value-values[n])/(values[n+1]-values[n]||1);return[{...tick,
-share:(n+part)/(values.length-1)}]})}var isBetween=(value,a,b)=>Math.min(a,b)<=value&&value<=Math.max(a,b);function hasTicks({
-geometry,earth}){return geometry.planar&&(!earth||earth.map!==null)}var Axes=class{element=document.createElementNS(SVG,
-"svg");host;constructor(host){this.host=host,this.element.setAttribute("class","axes"),this.element.setAttribute("aria-h\
-idden","true")}draw(kind){let{header,camera,stage}=this.host;this.element.replaceChildren();let[width,height]=[stage.clientWidth,
-stage.clientHeight];if(kind==="none"||!header||!camera||!width||!height)return;if(this.element.style.cssText=`width: ${width}\
-px; height: ${height}px`,kind==="scale")return this.drawBar(header,camera,width,height);let below=borderOf(this.host,[-1,
--1],[1,-1]),aside=borderOf(this.host,[-1,-1],[-1,1]);below&&this.drawBelow(below,width,height),aside&&this.drawAside(aside,
-height)}drawBelow(border,width,height){let isTooWide=ticks2=>ticks2.some(({share,text},n)=>{let apart=n?Math.abs(share-ticks2[n-
-1].share)*width:width,letters=Math.max(text.length,ticks2[n-1]?.text.length??0);return apart<letters*LETTER_PX+GAP_PX}),
-most=MOST_TICKS,ticks=placedTicks(border,most);for(;most>2&&ticks.length&&isTooWide(ticks);)ticks=placedTicks(border,most-=
-1);for(let{share,text}of ticks)this.line(share*width,height,share*width,height+TICK_PX),this.text(share*width,height+TICK_PX+
-2,text,"below");let[before,last]=ticks.slice(-2),middle=(before.share+(last??before).share)/2*width;if(!border.name||!last)
-return;let room=(last.share-before.share)*width-LETTER_PX*last.text.length-GAP_PX;this.text(middle,height+TICK_PX+2,fitting(
-border.name,room),"below name")}drawAside(border,height){let most=Math.min(Math.max(Math.floor(height/ROW_PX),2),MOST_TICKS),
-ticks=placedTicks(border,most);for(let{share,text}of ticks){let y=(1-share)*height;this.line(-TICK_PX,y,0,y),this.text(-TICK_PX-
-3,y,text,"aside")}let[before,last]=ticks.slice(-2);if(!border.name||!last)return;let middle=(1-(before.share+last.share)/
-2)*height;this.text(-TICK_PX-3,middle,fitting(border.name,ASIDE_PX),"aside name")}drawBar(header,camera,width,height){let{
-earth,lengthUnit}=header,pixel=2*camera.height/height*scaleOf(this.host,header,camera),most=Math.min(BAR_PX,BAR_SHARE*width)*
-pixel,power=10**Math.floor(Math.log10(most)),size=power*([5,2].find(factor=>factor*power<=most)??1),[x,y]=[size/pixel,height+
-TICK_PX+4];this.line(0,y,x,y);for(let end of[0,x])this.line(end,y-TICK_PX,end,y+TICK_PX);let isLong=(earth!==null||lengthUnit===
-"m")&&size>=1e3,text=withUnit(String(Number((isLong?size/1e3:size).toPrecision(3))),isLong?"km":lengthUnit);this.text(x+
-8,y-5,text,"beside")}line(x1,y1,x2,y2){let line=document.createElementNS(SVG,"line");for(let[name,value]of Object.entries(
-{x1,y1,x2,y2}))line.setAttribute(name,value.toFixed(1));this.element.append(line)}text(x,y,words,kind){let text=document.
-createElementNS(SVG,"text");text.setAttribute("x",x.toFixed(1)),text.setAttribute("y",y.toFixed(1)),text.setAttribute("c\
-lass",kind),text.textContent=words,this.element.append(text)}};function scaleOf({parts},header,camera){let{earth}=header;
-if(!earth?.map)return 1;let[a,b]=[-1,1].map(x=>pointInPlane(header.geometry,camera,MIDDLE_SHARE*x,0)),[from,to]=[a,b].map(
-place=>lonLatOf(earth,place,parts.get("lonlat")));if(!from||!to)return 1;let[east,north]=[to[0]-from[0],to[1]-from[1]].map(
-degrees=>degrees*Math.PI/180),middle=(from[1]+to[1])/2*Math.PI/180;return Math.hypot(Math.sin(east/2)*2*Math.cos(middle),
-north)*earth.radius/length2(subtract2(b,a))||1}function borderOf(host,from,to){let{header,camera,parts}=host;if(!header||
-!camera||!hasTicks(header))return null;let places=Array.from({length:PARTS+1},(_,n)=>pointInPlane(header.geometry,camera,
-from[0]+(to[0]-from[0])*n/PARTS,from[1]+(to[1]-from[1])*n/PARTS)),{earth,lengthUnit}=header;if(earth?.map){let along2=from[1]===
-to[1]?0:1,degrees=degreesAlong({...earth,map:earth.map},places,along2,parts.get("lonlat")),values=unwrapped(degrees);return goesOneWay(
-values)?{letters:along2?"NS":"EW",values}:null}let way=subtract2(places[PARTS],places[0]),axis=way.map(Math.abs).indexOf(
-Math.max(...way.map(Math.abs)));if(Math.abs(way[axis])<LEAST_SHARE*length2(way))return null;let[right,up]=camera.axes,border=from[1]===
-to[1]?right:up,normal=header.geometry.frame.slice(6).map(Math.abs),across=[0,1,2].find(n=>n!==axis&&n!==normal.indexOf(Math.
-max(...normal)));return Math.abs(border[across??0])>1-LEAST_SHARE?null:{name:withUnit(COORDINATES[axis],lengthUnit&&`(${lengthUnit}\
-)`),values:places.map(place=>place[axis])}}function degreesAlong(earth,places,along2,lonlat){let[low,high]=[earth.map.slice(
-0,2),earth.map.slice(2)],[width,height]=low.map((c,n)=>high[n]-c),read=(x,y)=>lonLatOf(earth,[x,y,0],lonlat)??[NaN,NaN],
-middle=low[0]+width/2,[one,other]=[middle,low[0]+width/4].map(x=>read(x,low[1]+height/4)[1]),isStraight=Math.abs(one-other)<
-SAME_LATITUDE;return places.map(([x,y])=>{if(along2?y<low[1]||y>high[1]:x<low[0]||x>high[0])return NaN;if(!isStraight)return read(
-clamp(x,low[0],high[0]),clamp(y,low[1],high[1]))[along2];if(along2)return read(middle,y)[1];let row2=clamp(y,low[1]+POLE_SHARE*
-height,high[1]-POLE_SHARE*height),[from,to]=[0,1/64].map(share=>read(middle+share*width,row2)[0]),away=64*((to-from+540)%
-360-180)*(x-middle)/width;return Math.abs(away)<HALF_TURN?from+away:NaN})}function goesOneWay(values){let finite=values.
-filter(Number.isFinite),steps=finite.slice(1).map((value,n)=>value-finite[n]),[rise,fall]=[1,-1].map(sign=>steps.reduce(
-(sum,step)=>sum+Math.max(sign*step,0),0));return Math.min(rise,fall)<MOST_BACK*Math.max(rise,fall)}function unwrapped(degrees){
-let turns=0;return degrees.map((value,n)=>(n&&Number.isFinite(value-degrees[n-1])&&(turns-=Math.round((value-degrees[n-1])/
-360)),value+360*turns))}var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},labelled=(name,input)=>dom("label",{
+.001],LONGEST=7;function ticksOf(low,high,log=!1,most=5){return high-low>SAME*Math.max(Math.abs(low),Math.abs(high))?log&&
+decades(low,high,most)||evenly(low,high,most):Number.isFinite(low)?[{value:low,text:textOf(low,Math.abs(low)/1e3||1)}]:[]}
+function offsetOf(low,high,most){let isLong=offset=>ticksOf(low-offset,high-offset,!1,most).some(({text})=>text.length>LONGEST);
+if(!isLong(0))return null;let size=Math.max(Math.abs(low),Math.abs(high));for(let power=10**Math.floor(Math.log10(size));power>
+high-low;power/=10){let value=Math.round((low+high)/2/power)*power;if(!isLong(value))return{value,text:textOf(value,power)}}
+return null}function evenly(low,high,most){let least=10**Math.floor(Math.log10((high-low)/most));for(let power=least;;power*=
+10)for(let factor of STEPS){let step=factor*power,slack=BEYOND*(high-low),[first,last]=[Math.ceil((low-slack)/step),Math.
+floor((high+slack)/step)];if(!(last-first+1>most))return Array.from({length:last-first+1},(_,n)=>{let value=(first+n)*step;
+return{value,text:textOf(value,step,Math.max(Math.abs(low),Math.abs(high)))}})}}function degreeTicks(low,high,letters,most=5){
+let step=DEGREES2.find(each=>Math.floor(high/each)-Math.ceil(low/each)<most);return(high-low<3*DEGREES2[0]||step===void 0?
+ticksOf(low,high,!1,most):Array.from({length:Math.floor(high/step)-Math.ceil(low/step)+1},(_,n)=>{let value=(Math.ceil(low/
+step)+n)*step;return{value,text:String(value)}})).map(({value,text})=>{let turned=value-360*Math.round(value/360),digits=text.
+split(".")[1]?.length??0,side=turned===0||Math.abs(turned)===180?"":letters[+(turned<0)];return{value,text:`${Math.abs(turned).
+toFixed(digits)}°${side}`}})}function decades(low,high,most){let[first,last]=[Math.floor(Math.log10(low)),Math.ceil(Math.
+log10(high))],powers=Array.from({length:last-first+1},(_,n)=>first+n),isInside=value=>value>=low*(1-SAME)&&value<=high*(1+
+SAME),valuesOf=(factors,every)=>powers.filter(power=>power%every===0).flatMap(power=>factors.map(factor=>+`${factor}e${power}`)).
+filter(isInside),finer=[...DECADES].reverse().map(factors=>valuesOf(factors,1)),coarser=powers.slice(1).map((_,n)=>valuesOf(
+[1],n+2)),chosen=[...finer,...coarser].find(values=>values.length<=most);if(!(!chosen||chosen.length<3))return chosen.map(
+value=>({value,text:textOf(value,value,value)}))}function textOf(value,step,size=Math.abs(value)){if(value===0)return"0";
+let digits=-Math.floor(Math.log10(step)+SAME),isHalf=Math.abs(step*10**digits-2.5)<SAME?1:0;if(size>=LARGE||size<SMALL){
+let mantissa=Math.max(Math.floor(Math.log10(Math.abs(value))+SAME)+digits+isHalf,0),[number,power]=value.toExponential(Math.
+min(mantissa,15)).split("e");return`${minus(number)}e${Number(power)}`}return minus(value.toFixed(Math.max(digits+isHalf,
+0)))}var minus=text=>text.replace("-","−");var SVG="http://www.w3.org/2000/svg",PARTS=48,LEAST_SHARE=.999,SAME_LATITUDE=.1,[POLE_SHARE,HALF_TURN]=[1/64,180.1],MOST_BACK=.02,
+[LETTER_PX,GAP_PX,ROW_PX]=[6.5,14,34],[TICK_PX,LINE_PX]=[4,13],ASIDE_PX=42,[MOST_TICKS,BAR_PX,BAR_SHARE]=[9,140,.3],MIDDLE_SHARE=.02,
+COORDINATES=["x","y","z"],fitting=(name,room)=>name.length*LETTER_PX>room?name.replace(/ .*/,""):name;function placedTicks({
+values,letters},most){let finite=values.filter(Number.isFinite);if(finite.length<2)return[];let[low,high]=[Math.min(...finite),
+Math.max(...finite)];return(letters?degreeTicks(low,high,letters,most):ticksOf(low,high,!1,most)).flatMap(tick=>{let n=values.
+findIndex((value,at)=>isBetween(tick.value,value,values[at+1]));if(n<0)return[];let part=(tick.value-values[n])/(values[n+
+1]-values[n]||1);return[{...tick,share:(n+part)/(values.length-1)}]})}var isBetween=(value,a,b)=>Math.min(a,b)<=value&&value<=
+Math.max(a,b);function hasTicks({geometry,earth}){return geometry.planar&&(!earth||earth.map!==null)}var Axes=class{element=document.
+createElementNS(SVG,"svg");host;constructor(host){this.host=host,this.element.setAttribute("class","axes"),this.element.
+setAttribute("aria-hidden","true")}draw(kind){let{header,camera,stage}=this.host;this.element.replaceChildren();let[width,
+height]=[stage.clientWidth,stage.clientHeight];if(kind==="none"||!header||!camera||!width||!height)return;if(this.element.
+style.cssText=`width: ${width}px; height: ${height}px`,kind==="scale")return this.drawBar(header,camera,width,height);let below=borderOf(
+this.host,[-1,-1],[1,-1]),aside=borderOf(this.host,[-1,-1],[-1,1]);below&&this.drawBelow(below,width,height),aside&&this.
+drawAside(aside,height)}drawBelow(border,width,height){let{name,offset}=border,shown=name&&offset?name.replace(/^\w+/,`$\
+& − ${offset}`):name,isTooWide=ticks2=>ticks2.some(({share,text},n)=>{let apart=n?Math.abs(share-ticks2[n-1].share)*width:
+width,letters=Math.max(text.length,ticks2[n-1]?.text.length??0),between3=offset&&n&&n===ticks2.length-1?(shown?.length??
+0)*LETTER_PX+GAP_PX:0;return apart<letters*LETTER_PX+GAP_PX+between3}),most=MOST_TICKS,ticks=placedTicks(border,most);for(;most>
+2&&ticks.length&&isTooWide(ticks);)ticks=placedTicks(border,most-=1);for(let{share,text}of ticks)this.line(share*width,height,
+share*width,height+TICK_PX),this.text(share*width,height+TICK_PX+2,text,"below");let[before,last]=ticks.slice(-2);if(!shown||
+!last)return;let middle=(before.share+last.share)/2*width,room=(last.share-before.share)*width-LETTER_PX*last.text.length-
+GAP_PX;this.text(middle,height+TICK_PX+2,offset?shown:fitting(shown,room),"below name")}drawAside(border,height){let{name,
+offset}=border,row2=ROW_PX+(offset?LINE_PX:0),most=Math.min(Math.max(Math.floor(height/row2),2),MOST_TICKS),ticks=placedTicks(
+border,most);for(let{share,text}of ticks){let y=(1-share)*height;this.line(-TICK_PX,y,0,y),this.text(-TICK_PX-3,y,text,"\
+aside")}let[before,last]=ticks.slice(-2);if(!name||!last)return;let middle=(1-(before.share+last.share)/2)*height,lines=offset?
+[name.replace(/( .*)?$/," −"),offset]:[fitting(name,ASIDE_PX)];lines.forEach((words,n)=>{this.text(-TICK_PX-3,middle+LINE_PX*
+(n-(lines.length-1)/2),words,"aside name")})}drawBar(header,camera,width,height){let{earth,lengthUnit}=header,pixel=2*camera.
+height/height*scaleOf(this.host,header,camera),most=Math.min(BAR_PX,BAR_SHARE*width)*pixel,power=10**Math.floor(Math.log10(
+most)),size=power*([5,2].find(factor=>factor*power<=most)??1),[x,y]=[size/pixel,height+TICK_PX+4];this.line(0,y,x,y);for(let end of[
+0,x])this.line(end,y-TICK_PX,end,y+TICK_PX);let isLong=(earth!==null||lengthUnit==="m")&&size>=1e3,text=withUnit(String(
+Number((isLong?size/1e3:size).toPrecision(3))),isLong?"km":lengthUnit);this.text(x+8,y-5,text,"beside")}line(x1,y1,x2,y2){
+let line=document.createElementNS(SVG,"line");for(let[name,value]of Object.entries({x1,y1,x2,y2}))line.setAttribute(name,
+value.toFixed(1));this.element.append(line)}text(x,y,words,kind){let text=document.createElementNS(SVG,"text");text.setAttribute(
+"x",x.toFixed(1)),text.setAttribute("y",y.toFixed(1)),text.setAttribute("class",kind),text.textContent=words,this.element.
+append(text)}};function scaleOf({parts},header,camera){let{earth}=header;if(!earth?.map)return 1;let[a,b]=[-1,1].map(x=>pointInPlane(
+header.geometry,camera,MIDDLE_SHARE*x,0)),[from,to]=[a,b].map(place=>lonLatOf(earth,place,parts.get("lonlat")));if(!from||
+!to)return 1;let[east,north]=[to[0]-from[0],to[1]-from[1]].map(degrees=>degrees*Math.PI/180),middle=(from[1]+to[1])/2*Math.
+PI/180;return Math.hypot(Math.sin(east/2)*2*Math.cos(middle),north)*earth.radius/length2(subtract2(b,a))||1}function borderOf(host,from,to){
+let{header,camera,parts}=host;if(!header||!camera||!hasTicks(header))return null;let places=Array.from({length:PARTS+1},
+(_,n)=>pointInPlane(header.geometry,camera,from[0]+(to[0]-from[0])*n/PARTS,from[1]+(to[1]-from[1])*n/PARTS)),{earth,lengthUnit}=header;
+if(earth?.map){let along2=from[1]===to[1]?0:1,degrees=degreesAlong({...earth,map:earth.map},places,along2,parts.get("lon\
+lat")),values2=unwrapped(degrees);return goesOneWay(values2)?{letters:along2?"NS":"EW",values:values2}:null}let way=subtract2(
+places[PARTS],places[0]),axis=way.map(Math.abs).indexOf(Math.max(...way.map(Math.abs)));if(Math.abs(way[axis])<LEAST_SHARE*
+length2(way))return null;let[right,up]=camera.axes,border=from[1]===to[1]?right:up,normal=header.geometry.frame.slice(6).
+map(Math.abs),across=[0,1,2].find(n=>n!==axis&&n!==normal.indexOf(Math.max(...normal)));if(Math.abs(border[across??0])>1-
+LEAST_SHARE)return null;let name=withUnit(COORDINATES[axis],lengthUnit&&`(${lengthUnit})`),values=places.map(place=>place[axis]),
+offset=offsetOf(Math.min(...values),Math.max(...values),MOST_TICKS);return{name,offset:offset?.text,values:values.map(value=>value-
+(offset?.value??0))}}function degreesAlong(earth,places,along2,lonlat){let[low,high]=[earth.map.slice(0,2),earth.map.slice(
+2)],[width,height]=low.map((c,n)=>high[n]-c),read=(x,y)=>lonLatOf(earth,[x,y,0],lonlat)??[NaN,NaN],middle=low[0]+width/2,
+[one,other]=[middle,low[0]+width/4].map(x=>read(x,low[1]+height/4)[1]),isStraight=Math.abs(one-other)<SAME_LATITUDE;return places.
+map(([x,y])=>{if(along2?y<low[1]||y>high[1]:x<low[0]||x>high[0])return NaN;if(!isStraight)return read(clamp(x,low[0],high[0]),
+clamp(y,low[1],high[1]))[along2];if(along2)return read(middle,y)[1];let row2=clamp(y,low[1]+POLE_SHARE*height,high[1]-POLE_SHARE*
+height),[from,to]=[0,1/64].map(share=>read(middle+share*width,row2)[0]),away=64*((to-from+540)%360-180)*(x-middle)/width;
+return Math.abs(away)<HALF_TURN?from+away:NaN})}function goesOneWay(values){let finite=values.filter(Number.isFinite),steps=finite.
+slice(1).map((value,n)=>value-finite[n]),[rise,fall]=[1,-1].map(sign=>steps.reduce((sum,step)=>sum+Math.max(sign*step,0),
+0));return Math.min(rise,fall)<MOST_BACK*Math.max(rise,fall)}function unwrapped(degrees){let turns=0;return degrees.map(
+(value,n)=>(n&&Number.isFinite(value-degrees[n-1])&&(turns-=Math.round((value-degrees[n-1])/360)),value+360*turns))}var STOPS=9,PLAIN="none",LINE_NAMES={coastlines:"Coastlines",graticule:"Graticule"},labelled=(name,input)=>dom("label",{
 class:"row"},[dom("span",{class:"name"},[name]),input]),ColourControls=class{element=dom("div",{class:"colours"});viewer;scalars=dom(
 "select",{"aria-label":"Colour by"});swatches=dom("div",{class:"swatches",role:"group"});ends=["Lowest value","Highest v\
 alue"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto=dom("button",{type:"button",class:"link"},
