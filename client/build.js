@@ -4,6 +4,7 @@
 // tells whether they are what the sources give. Identifiers stay as they are, for the debugger; --plain
 // keeps statements as well, for coverage.
 import { readFile } from "node:fs/promises";
+import { parse } from "node:path";
 import { fileURLToPath } from "node:url";
 import * as esbuild from "esbuild";
 
@@ -19,11 +20,32 @@ const COMMON = {
   external: ["numcodecs/*"],
   legalComments: "inline",
   lineLimit: 120,
-  loader: { ".css": "text" },
+  loader: { ".css": "text", ".glsl": "text" },
   minifySyntax: minified,
   minifyWhitespace: minified,
   target: "es2022",
 };
+
+/** What a web map never asks for: flows from formulas, and packings that no store of ours has. */
+const UNUSED = {
+  formula: "export const placesOf = () => null; export class FormulaSource {}",
+  bitround: "export class BitroundCodec {}",
+  cast_value: "export class CastValueCodec {}",
+  delta: "export class DeltaCodec {}",
+  json2: "export class JsonCodec {}",
+  scale_offset: "export class ScaleOffsetCodec {}",
+  shuffle: "export class ShuffleCodec {}",
+  transpose: "export class TransposeCodec {}",
+};
+const LESS = {
+  name: "less",
+  setup: ({ onLoad }) =>
+    onLoad({ filter: new RegExp(`/(${Object.keys(UNUSED).join("|")})\\.[jt]s$`) }, ({ path }) => ({
+      contents: UNUSED[parse(path).name],
+    })),
+};
+/** A module for web maps, which is to be small. */
+const MODULE = { format: "esm", minifyIdentifiers: minified, plugins: [LESS] };
 
 const ORIGIN = "// Built from client/src by client/build.js; change that instead.";
 const NOTICE = await noticeOf("gl-matrix", "LICENSE.md");
@@ -38,12 +60,14 @@ export const BUILDS = [
   ["src/core.ts", `${WEB}/core.js`, "flowtex", NOTICE],
   ["src/store.ts", `${WEB}/store.js`, "flowtexStore", STORE_NOTICE],
   ["src/app/app.ts", `${STATIC}/flowtex.js`, undefined, ""],
-].map(([entry, outfile, globalName, notice]) => ({
+  ["src/maplibre.ts", `${WEB}/maplibre.js`, undefined, `${NOTICE}\n${STORE_NOTICE}`, MODULE],
+].map(([entry, outfile, globalName, notice, own = {}]) => ({
   ...COMMON,
   entryPoints: [entry],
   outfile,
   format: "iife",
   globalName,
+  ...own,
   banner: { js: `${ORIGIN}\n${notice}`.trim() },
 }));
 

@@ -6,6 +6,12 @@ declare module "*.css" {
   export default text;
 }
 
+// And a shader.
+declare module "*.glsl" {
+  const text: string;
+  export default text;
+}
+
 declare module "gl-matrix/esm/mat2d.js" {
   import { mat2d } from "gl-matrix";
   export = mat2d;

@@ -22,7 +22,13 @@ const SMOOTH_ROWS = 256;
 
 type Pen = CanvasRenderingContext2D | null;
 
-const penOf = (canvas: HTMLCanvasElement): Pen => canvas.getContext("2d", { alpha: false });
+/** Put a picture where another one is, of which nothing is to be seen through it. */
+function replace(pen: Pen, picture: HTMLCanvasElement): void {
+  pen?.clearRect(0, 0, picture.width, picture.height);
+  pen?.drawImage(picture, 0, 0);
+}
+
+const penOf = (canvas: HTMLCanvasElement, alpha: boolean): Pen => canvas.getContext("2d", { alpha });
 
 /** The view that is drawn. */
 export interface DrawContext {
@@ -30,6 +36,8 @@ export interface DrawContext {
   readonly canvas: HTMLCanvasElement;
   readonly settings: Settings;
   readonly camera: Camera | null;
+  /** Whether the picture is clear beside the surface. */
+  readonly isClear?: boolean;
   readonly player: { varies: boolean; playing: boolean };
   /** Whether the user is moving the view or a control. */
   readonly isHeld: boolean;
@@ -66,14 +74,14 @@ export class ProgressiveRenderer {
   private readonly pen: Pen;
   /** The full picture while it is drawn. */
   private readonly back = document.createElement("canvas");
-  private readonly backPen = penOf(this.back);
+  private readonly backPen: Pen;
   /** The last full picture, with the camera that it shows. */
   private readonly last = document.createElement("canvas");
-  private readonly lastPen = penOf(this.last);
+  private readonly lastPen: Pen;
   private lastCamera: Camera | null = null;
   /** A picture of few pixels. */
   private readonly coarse = document.createElement("canvas");
-  private readonly coarsePen = penOf(this.coarse);
+  private readonly coarsePen: Pen;
   /** Lines above the flow, what they show, and the pixels of the page's for the picture's. */
   private readonly front = document.createElement("canvas");
   private readonly frontPen = this.front.getContext("2d");
@@ -96,7 +104,9 @@ export class ProgressiveRenderer {
     this.content = content;
     this.graphics = viewer.graphics;
     this.canvas = viewer.canvas;
-    this.pen = penOf(this.canvas);
+    const { canvas, back, last, coarse } = this;
+    const pens = [canvas, back, last, coarse].map((each) => penOf(each, viewer.isClear ?? false));
+    [this.pen, this.backPen, this.lastPen, this.coarsePen] = pens;
   }
 
   /** Begin another picture, of the same things where only the camera has changed. */
@@ -181,7 +191,7 @@ export class ProgressiveRenderer {
     if (reuse && this.pen) {
       this.pen.imageSmoothingEnabled = !reuse.shifts;
       this.pen.setTransform(...reuse.matrix);
-      this.pen.drawImage(this.last, 0, 0);
+      replace(this.pen, this.last);
       this.pen.setTransform(1, 0, 0, 1, 0, 0);
     }
     this.isCoarse = best.scale < 1 || best.samples < samples;
@@ -216,7 +226,7 @@ export class ProgressiveRenderer {
     });
     this.rowsDone += rows;
     if (this.rowsDone < height) return false;
-    this.pen?.drawImage(this.back, 0, 0);
+    replace(this.pen, this.back);
     this.complete();
     this.drawLines(shown);
     return true;
@@ -255,7 +265,7 @@ export class ProgressiveRenderer {
     this.rowsDone = this.canvas.height;
     this.isCoarse = false;
     this.draftVersion = this.version;
-    this.lastPen?.drawImage(this.canvas, 0, 0);
+    replace(this.lastPen, this.canvas);
     if (camera && !player.playing) {
       this.lastCamera = new Camera(camera.state, camera.limits, camera.flat, camera.aspect);
     }
@@ -338,7 +348,7 @@ export class ProgressiveRenderer {
     gl.disable(gl.BLEND);
     gl.disable(gl.CULL_FACE);
     const [r, g, b] = scene.header.background ?? [1, 1, 1];
-    gl.clearColor(r, g, b, 1);
+    gl.clearColor(r, g, b, viewer.isClear ? 0 : 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const draft = samples !== viewer.settings.samples || height !== this.canvas.height;
     const around: EarthView = { camera, anchor: view.anchor, width, height, ratio: viewer.ratio };
@@ -424,6 +434,7 @@ export class ProgressiveRenderer {
       coarsePen?.drawImage(canvas, 0, first, w, rows, 0, 0, w, rows);
       [canvas, first] = [coarse, 0];
     }
+    pen.clearRect(0, to, width, (rows * height) / h);
     pen.drawImage(canvas, 0, first, w, rows, 0, to, width, (rows * height) / h);
   }
 }

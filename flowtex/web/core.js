@@ -1495,50 +1495,52 @@ m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(now),inverse(toPixels(befor
 if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]=inverse(matrix),isInside=([x,y])=>Math.
 abs((a*x+c*y+e)/w-1)<1+ROUNDING&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING,covers=[[0,0],[width,0],[0,height],[width,height]].
 every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING;if(shifts)for(let n of[
-4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_LEAST_MS=14,STRIP_MS=40,ALIKE=1.3,FEW_TRIANGLES=5e4,SMOOTH_ROWS=256,penOf=canvas=>canvas.getContext("2d",{alpha:!1}),
-ProgressiveRenderer=class{viewer;content;graphics;canvas;pen;back=document.createElement("canvas");backPen=penOf(this.back);last=document.
-createElement("canvas");lastPen=penOf(this.last);lastCamera=null;coarse=document.createElement("canvas");coarsePen=penOf(
-this.coarse);front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed={
+4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var MOVING_LEAST_MS=14,STRIP_MS=40,ALIKE=1.3,FEW_TRIANGLES=5e4,SMOOTH_ROWS=256;function replace(pen,picture){pen?.clearRect(
+0,0,picture.width,picture.height),pen?.drawImage(picture,0,0)}var penOf=(canvas,alpha)=>canvas.getContext("2d",{alpha}),
+ProgressiveRenderer=class{viewer;content;graphics;canvas;pen;back=document.createElement("canvas");backPen;last=document.
+createElement("canvas");lastPen;lastCamera=null;coarse=document.createElement("canvas");coarsePen;front=document.createElement(
+"canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed={
 strip:4,draft:4};triangles=0;isCoarse=!1;constructor(viewer,content){this.viewer=viewer,this.content=content,this.graphics=
-viewer.graphics,this.canvas=viewer.canvas,this.pen=penOf(this.canvas)}restart(cameraOnly=!1){cameraOnly||(this.lastCamera=
-null),this.version+=1,this.rowsDone=0}refine(){(this.rowsDone>=this.canvas.height||!this.content.isComing)&&(this.rowsDone=
-0),this.isRefined=!0}resize(width,height){let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.height,this.
-backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.height=height,back.width>1&&this.pen?.drawImage(
-back,0,0,width,height),back.width=width,back.height=height}dispose(){for(let canvas of[this.back,this.last,this.coarse,this.
-front])canvas.width=canvas.height=0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==this.version)
-return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&!this.
-isRefined;while(!complete&&performance.now()<until);return complete}get isMoving(){return this.viewer.player.playing||this.
-viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.content.
-arrange(shown)}draft(program,shown,moving){let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),crowd=moving?
-this.graphics.waiting.size+1:1;this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(samples),
-isPlaying=this.viewer.player.playing&&!this.viewer.isHeld,time=movingTime(price,this.fixed.draft,width*height,samples,isPlaying),
-budget=Math.max(time/crowd,MOVING_LEAST_MS),best=quality(price,this.fixed.draft,width*height,samples,budget),w=Math.max(
-Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.
+viewer.graphics,this.canvas=viewer.canvas;let{canvas,back,last,coarse}=this,pens=[canvas,back,last,coarse].map(each=>penOf(
+each,viewer.isClear??!1));[this.pen,this.backPen,this.lastPen,this.coarsePen]=pens}restart(cameraOnly=!1){cameraOnly||(this.
+lastCamera=null),this.version+=1,this.rowsDone=0}refine(){(this.rowsDone>=this.canvas.height||!this.content.isComing)&&(this.
+rowsDone=0),this.isRefined=!0}resize(width,height){let{canvas,back,last}=this;back.width=canvas.width,back.height=canvas.
+height,this.backPen?.drawImage(canvas,0,0),canvas.width=last.width=width,canvas.height=last.height=height,back.width>1&&
+this.pen?.drawImage(back,0,0,width,height),back.width=width,back.height=height}dispose(){for(let canvas of[this.back,this.
+last,this.coarse,this.front])canvas.width=canvas.height=0}draw(program,shown,until){let moving=this.isMoving;if(this.draftVersion!==
+this.version)return this.draft(program,shown,moving);if(moving)return!1;let complete=!1;do complete=this.strip(program,shown)&&
+!this.isRefined;while(!complete&&performance.now()<until);return complete}get isMoving(){return this.viewer.player.playing||
+this.viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(shown){this.isRefined=!1,this.layers=this.
+content.arrange(shown)}draft(program,shown,moving){let{width,height}=this.canvas,samples=Number(this.viewer.settings.samples),
+crowd=moving?this.graphics.waiting.size+1:1;this.arrange(shown),this.warm(program,shown);let price=program.price*this.factor(
+samples),isPlaying=this.viewer.player.playing&&!this.viewer.isHeld,time=movingTime(price,this.fixed.draft,width*height,samples,
+isPlaying),budget=Math.max(time/crowd,MOVING_LEAST_MS),best=quality(price,this.fixed.draft,width*height,samples,budget),
+w=Math.max(Math.round(width*best.scale),1),h=Math.max(Math.round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.
 scale<1?this.reuse():null;if(!reuse?.covers){let region={width:w,height:h,top:0,rows:h};this.timed(program,region,best.samples,
 ()=>{this.render(program,shown,region,best.samples),this.copy(this.pen,region,height,0)})}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=
-!reuse.shifts,this.pen.setTransform(...reuse.matrix),this.pen.drawImage(this.last,0,0),this.pen.setTransform(1,0,0,1,0,0)),
-this.isCoarse=best.scale<1||best.samples<samples;let isWhole=!this.isCoarse&&!this.content.smooth;return isWhole&&this.complete(),
+!reuse.shifts,this.pen.setTransform(...reuse.matrix),replace(this.pen,this.last),this.pen.setTransform(1,0,0,1,0,0)),this.
+isCoarse=best.scale<1||best.samples<samples;let isWhole=!this.isCoarse&&!this.content.smooth;return isWhole&&this.complete(),
 this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){let{width,height}=this.canvas,{settings}=this.viewer,
 {smooth}=this.content,samples=Number(settings.samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.
 arrange(shown),this.isRefined))return!1;this.warm(program,shown);let price=program.price*this.factor(samples),most=Math.
 min(height-this.rowsDone,smooth?SMOOTH_ROWS:height),rows=Math.min(rowsIn(STRIP_MS,price,this.fixed.strip,width,samples),
 most),region={width,height,top:this.rowsDone,rows};return this.timed(program,region,samples,()=>{this.render(program,shown,
 region,samples,smooth);let drawn=smooth?{...region,height:rows,top:0}:region;this.copy(this.backPen,drawn,drawn.height,this.
-rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(this.pen?.drawImage(this.back,0,0),this.complete(),this.drawLines(
-shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,{camera,ratio}=this.viewer,{scene}=this.content,{width,height}=this.
+rowsDone)}),this.rowsDone+=rows,this.rowsDone<height?!1:(replace(this.pen,this.back),this.complete(),this.drawLines(shown),
+!0)}drawLines(shown){let{front,frontPen,graphics}=this,{camera,ratio}=this.viewer,{scene}=this.content,{width,height}=this.
 canvas;if(!scene||!camera||!frontPen)return;let{earth,bodies}=scene;if(!earth.lines.length&&!bodies.labels.length)return;
 let{state,aspect}=camera,look=JSON.stringify([state,aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){
 let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&
 (canvas.height=height),front.width=width,front.height=height,earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.
 height-height;frontPen.drawImage(canvas,0,top,width,height,0,0,width,height)}),bodies.drawLabels(frontPen,{camera,anchor,
 width,height,ratio}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=
-this.canvas.height,this.isCoarse=!1,this.draftVersion=this.version,this.lastPen?.drawImage(this.canvas,0,0),camera&&!player.
-playing&&(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,
-{camera}=this.viewer,{scene}=this.content;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||
-!lastCamera.state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),
-anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(
-before,now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!==
-"off"||player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
+this.canvas.height,this.isCoarse=!1,this.draftVersion=this.version,replace(this.lastPen,this.canvas),camera&&!player.playing&&
+(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{camera}=this.
+viewer,{scene}=this.content;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.
+state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(
+geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,
+now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||
+player.varies?motionFactor(samples):1}timed(program,region,samples,draw){let started=performance.now();draw();let spent=performance.
 now()-started,pixels=region.width*region.rows,factor=this.factor(samples),fixed=region.rows<region.height?this.fixed.strip:
 this.fixed.draft;program.price=learnedPrice(program.price,spent,fixed,pixels,samples,factor)}warm(program,shown){let triangles=this.
 layers.reduce((sum,layer)=>sum+layer.triangles,0),share=(triangles+FEW_TRIANGLES)/(this.triangles+FEW_TRIANGLES);if(program.
@@ -1551,18 +1553,18 @@ height,top,rows}=region,view=viewer.view(shown,viewer.ratio*height/this.canvas.h
 (canvas.width=width),canvas.height<height&&(canvas.height=height);let bottom=height-top-rows;smooth?graphics.bindSmooth(
 width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(0,smooth?-bottom:0,width,height),gl.enable(gl.SCISSOR_TEST),
 gl.scissor(0,smooth?0:bottom,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(
-gl.CULL_FACE);let[r,g,b]=scene.header.background??[1,1,1];gl.clearColor(r,g,b,1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);
-let draft=samples!==viewer.settings.samples||height!==this.canvas.height,around2={camera,anchor:view.anchor,width,height,
-ratio:viewer.ratio};scene.earth.drawGround(around2);let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{
-for(let layer of this.layers)graphics.programs.use(program,this.values(layer,scene,camera,view,samples,draft)),layer.draw(
-shown[0],shown[1],view.anchor,!0)}),this.drawArrows(shown,view,region,layer=>this.values(layer,scene,camera,view,samples,
-draft)),bodies.draw(around2,"clear"),scene.marks.draw({...around2,ratio:view.density},viewer.settings,shown),smooth&&graphics.
-copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(shown,view,{width,height},values){
-let{camera,settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={
-...camera.sight(height/view.density),planes:camera.planes};for(let[layer,placed]of scene.arrows.share(seen,settings,this.
-layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));if(!program||!placed.length)
-continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.scalarParts(shown[0],shown[1]);arrows.draw(program,placed,
-painted,view.anchor,{...values(layer),u_picture:[width,height]})}}values({header,parts},{bodies},camera,view,samples,draft){
+gl.CULL_FACE);let[r,g,b]=scene.header.background??[1,1,1];gl.clearColor(r,g,b,viewer.isClear?0:1),gl.clear(gl.COLOR_BUFFER_BIT|
+gl.DEPTH_BUFFER_BIT);let draft=samples!==viewer.settings.samples||height!==this.canvas.height,around2={camera,anchor:view.
+anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);let{bodies}=scene;bodies.draw(around2,"opaque"),
+bodies.seeThrough(()=>{for(let layer of this.layers)graphics.programs.use(program,this.values(layer,scene,camera,view,samples,
+draft)),layer.draw(shown[0],shown[1],view.anchor,!0)}),this.drawArrows(shown,view,region,layer=>this.values(layer,scene,
+camera,view,samples,draft)),bodies.draw(around2,"clear"),scene.marks.draw({...around2,ratio:view.density},viewer.settings,
+shown),smooth&&graphics.copySmooth(width,rows),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4))}drawArrows(shown,view,{
+width,height},values){let{camera,settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,
+settings))return;let seen={...camera.sight(height/view.density),planes:camera.planes};for(let[layer,placed]of scene.arrows.
+share(seen,settings,this.layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));
+if(!program||!placed.length)continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.scalarParts(shown[0],shown[1]);
+arrows.draw(program,placed,painted,view.anchor,{...values(layer),u_picture:[width,height]})}}values({header,parts},{bodies},camera,view,samples,draft){
 let{settings}=this.viewer,{columns,rows}=header.geometry,noise=parts.get("noise")?.shape??null,plain=header.scalars.name!==
 null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{...uniforms(header,{...settings,samples},view,
 noise),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,camera,view.anchor),
@@ -1571,7 +1573,8 @@ u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBe
 geometry.frame,scale2(camera.axes[2],-1))}}copy(pen,region,height,to){if(!pen)return;let{width:w,height:h,top,rows}=region,
 {width}=this.canvas,{canvas}=this.graphics,first=canvas.height-h+top;if(pen.imageSmoothingEnabled=w!==width||h!==height,
 pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=w,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,
-w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.drawImage(canvas,0,first,w,rows,0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+w,rows,0,0,w,rows),[canvas,first]=[coarse,0]}pen.clearRect(0,to,width,rows*height/h),pen.drawImage(canvas,0,first,w,rows,
+0,to,width,rows*height/h)}};var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(

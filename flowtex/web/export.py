@@ -48,8 +48,8 @@ HEADER_BYTES = 30_000
 TILE_BYTES = 40_000_000
 #: Endings of the names of modules.
 MODULES = (".mjs", ".js")
-#: Suffixes of pages and modules.
-SUFFIXES = (".html", ".htm", *MODULES)
+#: Suffixes of pages, modules and scenes.
+SUFFIXES = (".html", ".htm", *MODULES, ".json")
 #: Size of the preview picture.
 PREVIEW = (480, 300)
 
@@ -98,7 +98,9 @@ def export(
 
     The file is an HTML page or, if its name ends in ``.mjs`` or ``.js``, a module that other pages
     import. The module exports ``mount(element, settings, height)``, and the ``render`` of an
-    anywidget module, which MyST's directive ``{{anywidget}}`` calls.
+    anywidget module, which MyST's directive ``{{anywidget}}`` calls. A name that ends in ``.json``
+    gives the scene alone, without a client: what ``flowtex-maplibre`` shows as a layer of a web map
+    (``projection="mercator"``).
 
     With ``store`` the file contains only the coarsest level of a pyramid, and reads tiles and time
     steps from the pyramid in a bucket or on any web server.
@@ -110,8 +112,8 @@ def export(
         file, or a plotter with a flow texture, whose page also shows its other meshes and its
         labels.
     path
-        File to write, such as ``"page.html"`` or ``"flow.mjs"``; an existing file is replaced when
-        the new one is complete.
+        File to write, such as ``"page.html"``, ``"flow.mjs"`` or ``"flow.json"``; an existing file
+        is replaced when the new one is complete.
     steps
         Number of time steps to keep, evenly spaced, including the first and the last; all by
         default. A single step is drawn as a steady flow.
@@ -119,7 +121,7 @@ def export(
         Title of the page; the name of the field by default.
     store
         Address at which browsers find the store ``mesh``, such as
-        ``"https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"``, or relative to the page,
+        ``"https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"``, or relative to the file,
         ``"./flow.zarr"``. Everybody who opens the page must have permission to read it.
     announce
         Called with the estimated size in bytes and the number of steps before the work begins.
@@ -175,7 +177,8 @@ def write_page(
     estimated = estimate(scenes, linked=link is not None)
     if announce is not None:
         announce(estimated, scenes[0].steps)
-    pieces = module_pieces if path.suffix.lower() in MODULES else page_pieces
+    suffix = path.suffix.lower()
+    pieces = {".json": scene_pieces}.get(suffix, module_pieces if suffix in MODULES else page_pieces)
     with whole_file(path) as file:
         file.writelines(text.encode() for text in pieces(views, scenes, link=link, **options))
     return Page(path, path.stat().st_size, estimated, scenes[0].steps)
@@ -302,6 +305,23 @@ def module_pieces(
     for packed in _packed(scenes, link, time):
         yield json_text(packed) + ",\n"
     yield string.Template(after).substitute(values)
+
+
+def scene_pieces(
+    views: Sequence[WebView],
+    scenes: Sequence[ClientData],
+    *,
+    time: float | None = None,
+    title: str | None = None,
+    link: StoreLink | None = None,
+    **shown: Any,
+) -> Iterator[str]:
+    """Give the JSON text of a scene piece by piece; the arguments are those of `page_pieces`."""
+    headers = _headers(views, scenes, link, title, time=time, **shown)
+    yield f'{{"headers": {_headers_text(headers)}, "parts": ['
+    for n, packed in enumerate(_packed(scenes, link, time)):
+        yield (",\n" if n else "") + json_text(packed)
+    yield "]}\n"
 
 
 def _headers(

@@ -1,0 +1,144 @@
+// How a flow on a Mercator map lies on a web map, and the camera that sees of it what that shows.
+//
+// Places of the web map are from 0 to 1, from west to east and from north to south.
+
+import type { CameraState } from "./camera.ts";
+import type { Earth, Part } from "./protocol.ts";
+import { clamp } from "./vectors.ts";
+
+/** Difference of places, as a share of the map, that counts as none. */
+const NEAR = 1e-5;
+/** Latitude at which a web map ends. */
+const LAST_LATITUDE = (Math.atan(Math.sinh(Math.PI)) * 180) / Math.PI;
+const RADIANS = Math.PI / 180;
+/** Angle from below of a ray that meets the map far beyond all that is to be seen. */
+const STEEPEST = 88 * RADIANS;
+const REMEDY = 'export it with projection="mercator"';
+
+export type Place = [x: number, y: number];
+
+/** What a web map shows: its middle, pixels of the page, zoom, and degrees. */
+export interface MapLook {
+  center: { lng: number; lat: number };
+  width: number;
+  height: number;
+  zoom: number;
+  bearing: number;
+  pitch: number;
+  fov: number;
+  /** Whether it is drawn as a globe. */
+  globe: boolean;
+}
+
+/** A picture of the flow: what sees it, and its pixels of the page. */
+export interface FlowLook {
+  state: CameraState;
+  width: number;
+  height: number;
+}
+
+/** Place of a longitude and latitude on the web map. */
+export function placeOn({ lng, lat }: { lng: number; lat: number }): Place {
+  const sine = Math.sin(clamp(lat, -LAST_LATITUDE, LAST_LATITUDE) * RADIANS);
+  return [lng / 360 + 0.5, 0.5 - Math.atanh(sine) / (2 * Math.PI)];
+}
+
+/** The linear mapping between positions of a flow and places of the web map. */
+export class Mercator {
+  /** Place of the position 0, and the change of a place with a position. */
+  readonly origin: Place;
+  readonly slope: Place;
+  /** Least and greatest position. */
+  readonly box: readonly number[];
+
+  constructor(earth: Earth | null, lonLat: Part | undefined) {
+    const map = earth?.map;
+    if (!map || !lonLat) throw new Error(`the flow is not on a map; ${REMEDY}`);
+    this.box = map;
+    const [rows, columns] = lonLat.shape;
+    const at = (j: number, i: number) => {
+      const [x, y, z] = lonLat.data.subarray(3 * (j * columns + i));
+      const place = placeOn({ lng: Math.atan2(y, x) / RADIANS, lat: Math.asin(z / Math.hypot(x, y, z)) / RADIANS });
+      const position = [map[0] + ((map[2] - map[0]) * i) / (columns - 1), map[1] + ((map[3] - map[1]) * j) / (rows - 1)];
+      return { place, position };
+    };
+    // Beside the edges, where a longitude might be that of the other side.
+    const [first, middle, last] = [at(1, 1), at(rows >> 1, columns >> 1), at(rows - 2, columns - 2)];
+    const turned = (x: number) => x + Math.ceil(first.place[0] - x);
+    const span = [turned(last.place[0]) - first.place[0], last.place[1] - first.place[1]];
+    this.slope = [0, 1].map((k) => span[k] / (last.position[k] - first.position[k])) as Place;
+    this.origin = [0, 1].map((k) => first.place[k] - this.slope[k] * first.position[k]) as Place;
+    const [x, y] = this.placeOf(middle.position);
+    const isNear = Math.abs(x - turned(middle.place[0])) < NEAR && Math.abs(y - middle.place[1]) < NEAR;
+    if (!isNear) throw new Error(`the flow is on another map; ${REMEDY}`);
+  }
+
+  placeOf(position: readonly number[]): Place {
+    return [0, 1].map((k) => this.origin[k] + this.slope[k] * position[k]) as Place;
+  }
+
+  lngLatOf(position: readonly number[]): [lng: number, lat: number] {
+    const [x, y] = this.placeOf(position);
+    return [360 * (x - 0.5), Math.atan(Math.sinh(2 * Math.PI * (0.5 - y))) / RADIANS];
+  }
+
+  /** Position of a place, on that side of the Earth where the middle of the flow is. */
+  positionOf(place: Place): Place {
+    const [x, y] = place.map((p, k) => (p - this.origin[k]) / this.slope[k]);
+    const turn = 1 / this.slope[0];
+    return [x + turn * Math.round((0.5 * (this.box[0] + this.box[2]) - x) / turn), y];
+  }
+
+  /** What sees of the flow, at a height, what a map shows. */
+  look(map: MapLook, z: number): FlowLook {
+    const unit = 1 / (512 * 2 ** map.zoom * this.slope[0]);
+    if (map.globe) return this.globeLook(map, unit, z);
+    const { width, height, bearing, pitch, fov } = map;
+    const [x, y] = this.positionOf(placeOn(map.center));
+    const [b, p] = [bearing * RADIANS, pitch * RADIANS];
+    const half = 0.5 * height * unit;
+    const away = half / Math.tan(0.5 * fov * RADIANS);
+    const state = {
+      position: [x - away * Math.sin(p) * Math.sin(b), y - away * Math.sin(p) * Math.cos(b), z + away * Math.cos(p)],
+      focal_point: [x, y, z],
+      up: [Math.sin(b), Math.cos(b), 0],
+      parallel: pitch === 0,
+      parallel_scale: half,
+      view_angle: fov,
+    };
+    return { state, width, height };
+  }
+
+  /** The part of the map that is seen of a globe, from straight above and at the scale of its middle. */
+  private globeLook(map: MapLook, unit: number, z: number): FlowLook {
+    const world = 1 / (unit * this.slope[0]);
+    const lat = clamp(map.center.lat, -LAST_LATITUDE, LAST_LATITUDE) * RADIANS;
+    const radius = world / (2 * Math.PI * Math.cos(lat));
+    const seen = Math.asin(Math.min(farthest(map) / radius, 1));
+    const [south, north] = [lat - seen, lat + seen].map((end) => placeOn({ lng: 0, lat: end / RADIANS })[1]);
+    // Around a pole all longitudes are.
+    const aside = Math.abs(lat) + seen < Math.PI / 2 ? Math.asin(Math.sin(seen) / Math.cos(lat)) : Math.PI;
+    const [x] = this.positionOf(placeOn(map.center));
+    const y = (0.5 * (south + north) - this.origin[1]) / this.slope[1];
+    const [wide, high] = [aside / Math.PI, south - north];
+    const state = {
+      position: [x, y, z + 1 / this.slope[0]],
+      focal_point: [x, y, z],
+      up: [0, 1, 0],
+      parallel: true,
+      parallel_scale: (0.5 * high) / this.slope[0],
+      view_angle: map.fov,
+    };
+    return { state, width: wide * world, height: high * world };
+  }
+}
+
+/** Pixels from the middle of a map to the farthest corner that is seen, in its plane. */
+function farthest({ width, height, pitch, fov }: MapLook): number {
+  const [tilt, half] = [pitch * RADIANS, 0.5 * fov * RADIANS];
+  const top = tilt + half;
+  if (top > STEEPEST) return Infinity;
+  const away = (0.5 * height) / Math.tan(half);
+  const ahead = away * Math.cos(tilt) * (Math.tan(top) - Math.tan(tilt));
+  return Math.hypot(ahead, (0.5 * width * Math.cos(tilt) * Math.cos(half)) / Math.cos(top));
+}
