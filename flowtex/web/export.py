@@ -178,7 +178,9 @@ def write_page(
     if announce is not None:
         announce(estimated, scenes[0].steps)
     suffix = path.suffix.lower()
-    pieces = {".json": scene_pieces}.get(suffix, module_pieces if suffix in MODULES else page_pieces)
+    pieces = {".json": scene_pieces}.get(
+        suffix, module_pieces if suffix in MODULES else page_pieces
+    )
     with whole_file(path) as file:
         file.writelines(text.encode() for text in pieces(views, scenes, link=link, **options))
     return Page(path, path.stat().st_size, estimated, scenes[0].steps)
