@@ -240,7 +240,7 @@ class _Pixel:
     def probe(self) -> Probe:
         """Draw the pixel, and return how."""
         values, recorder = self._values, self._lookup
-        value = self._summing.texture(self._fragments.place, self._level)[0]
+        value = self._summing.texture(self._fragments.place, self._level, self._fragments.by)[0]
         sides = list(self._sides(1))
         lags = -np.concatenate(recorder.length) / float(sides[0].scale[0])
         order = np.argsort(-lags)

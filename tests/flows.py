@@ -23,6 +23,25 @@ def gyre(columns: int = 61, rows: int = 31) -> FlowField:
 
 
 @cache
+def fountain() -> FlowField:
+    """Flow out of a point at (0.3125, 0.25) around which it turns, on a bent grid."""
+    y, x = np.mgrid[-1:1:32j, -1:1:32j]
+    points = np.rint(np.stack([x + 0.1 * np.sin(3 * y), y], axis=-1) * 1024) / 1024
+    x, y = points[..., 0] - 0.3125, points[..., 1] - 0.25
+    velocity = np.stack([x - y, x + y], axis=-1)
+    return FlowField.from_arrays(points, velocity)
+
+
+@cache
+def scattered_fountain() -> FlowField:
+    """Flow out of (0.3125, 0.25) on triangles."""
+    points, triangles = random_plane(np.random.default_rng(5), 700)
+    points = np.rint((2 * points - [1, 1, 0]) * 1024) / 1024
+    x, y, _ = (points - [0.3125, 0.25, 0]).T
+    return FlowField.from_triangles(points, triangles, np.stack([x, y, 0 * x], axis=-1))
+
+
+@cache
 def dense_gyre() -> FlowField:
     """The same with many cells in a pixel."""
     return gyre(201, 101)

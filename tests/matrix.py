@@ -19,10 +19,12 @@ import numpy as np
 from flows import (
     dense_gyre,
     folded,
+    fountain,
     gyre,
     holed,
     lines,
     rippled,
+    scattered_fountain,
     scattered_gyre,
     scattered_holed,
     scattered_swinging,
@@ -56,6 +58,7 @@ def straight(zoom: float, focus: tuple[float, float] = (0.63, 0.37)) -> Camera:
 
 
 WHOLE, MIDDLE = straight(1, (1.0, 0.5)), straight(1, (0.0, 0.0))
+SOURCE = straight(1.6, (0.3, 0.25))
 TILTED = Camera((1.9, -0.9, 1.1), (0.9, 0.45, 0.0), (0, 0, 1))
 GRAZING = Camera((1.0, -0.3, 0.2), (1.0, 0.5, 0.0), (0, 0, 1))
 ASIDE = Camera((2.4, -1.9, 1.5), (0.0, 0.0, 0.0), (0, 0, 1))
@@ -124,6 +127,12 @@ VIEWS: dict[str, View] = {
     "streaklets": View(camera=straight(4), settings=STREAKLETS),
     "streaklets, curved": View(torus, ASIDE, STREAKLETS),
     "streaklets, streaming": View(camera=straight(2), settings=STREAKLETS | MOTION, clock=1.7),
+    "streaklets, source": View(fountain, SOURCE, STREAKLETS),
+    "streaklets, near a source": View(
+        fountain, straight(16, (0.3, 0.25)), STREAKLETS | MOTION, clock=1.7
+    ),
+    "streaklets, triangles": View(scattered_fountain, SOURCE, STREAKLETS),
+    "streaklets, near triangles": View(scattered_fountain, straight(16, (0.3, 0.25)), STREAKLETS),
     "between two steps": View(swinging, MIDDLE, {"lines": "pathlines"}, time=0.55),
     "streamlines": View(swinging, MIDDLE, {"lines": "streamlines"}, time=0.55),
     "without a sign": View(lines, MIDDLE),

@@ -5,20 +5,11 @@
 // shorter than a cell. It then follows the velocity between the nodes of the cell, where these do not
 // agree on the direction.
 
-#ifdef FLOWTEX_CELLS
-// Basis functions of the velocity, for a point x, y cells away: 1, x, y and x y between four
-// nodes; between the three of a triangle x and y are shares of its corners, and there is no x y.
-#ifdef FLOWTEX_TRIANGLES
-const int FLOWTEX_CELL_NODES = 3;
-#define FLOWTEX_FACTORS vec3
-#define FLOWTEX_VELOCITY mat3
-#define FLOWTEX_RATE mat3x2
-#define flowtexFactors(at) vec3(1.0, at)
-mat3x2 flowtexSharesBy; // change of the shares by a vector in space
-vec3 flowtexNormal;     // of the triangle
+mat3x2 flowtexBy;   // change of the fragment's coordinate by a vector in space
+vec3 flowtexNormal; // of the cell
 
 // Sets both from derivatives on the screen.
-void flowtexSetSharesBy(vec3 dx, vec3 dy, vec2 byX, vec2 byY)
+void flowtexSetBy(vec3 dx, vec3 dy, vec2 byX, vec2 byY)
 {
   // In pixels, so that no square is too small for single precision.
   float size = max(max(length(dx), length(dy)), FLOWTEX_LEAST_SQUARE);
@@ -28,9 +19,19 @@ void flowtexSetSharesBy(vec3 dx, vec3 dy, vec2 byX, vec2 byY)
   float square = max(dot(normal, normal), FLOWTEX_LEAST_SQUARE);
   flowtexNormal = normal * inversesqrt(square);
   vec3 across = normal / square;
-  flowtexSharesBy = (outerProduct(byX, cross(dy, across)) + outerProduct(byY, cross(across, dx)))
+  flowtexBy = (outerProduct(byX, cross(dy, across)) + outerProduct(byY, cross(across, dx)))
     * (1.0 / size);
 }
+
+#ifdef FLOWTEX_CELLS
+// Basis functions of the velocity, for a point x, y cells away: 1, x, y and x y between four
+// nodes; between the three of a triangle x and y are shares of its corners, and there is no x y.
+#ifdef FLOWTEX_TRIANGLES
+const int FLOWTEX_CELL_NODES = 3;
+#define FLOWTEX_FACTORS vec3
+#define FLOWTEX_VELOCITY mat3
+#define FLOWTEX_RATE mat3x2
+#define flowtexFactors(at) vec3(1.0, at)
 #else
 const int FLOWTEX_CELL_NODES = 4;
 #define FLOWTEX_FACTORS vec4
@@ -70,7 +71,7 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
   {
 #ifdef FLOWTEX_TRIANGLES
     vec3 moved = flowtexFetch(n, 0).xyz * flowtexFetch(n, u_rateLayer).w;
-    rate[n] = flowtexSharesBy * moved;
+    rate[n] = flowtexBy * moved;
     // One along any side of the triangle.
     float cells = sqrt(dot(rate[n], rate[n]) + rate[n].x * rate[n].y);
     float speed = length(moved);

@@ -23,8 +23,8 @@ float flowtexValue(vec2 coordinate, vec3 position, vec3 normal)
 #ifdef FLOWTEX_PLACED
   flowtexPlace(coordinate, position, normal, dx, dy, byX, byY);
 #endif
-#if defined(FLOWTEX_TRIANGLES) && defined(FLOWTEX_CELLS)
-  flowtexSetSharesBy(dx, dy, byX, byY);
+#if defined(FLOWTEX_TRIANGLES) && defined(FLOWTEX_CELLS) || defined(FLOWTEX_SPARSE)
+  flowtexSetBy(dx, dy, byX, byY);
 #endif
 #ifndef FLOWTEX_PLANAR
   dx = flowtexOnSurface(dx, position, normal);

@@ -28,6 +28,12 @@ vec2 flowtexShared(vec2 apart, float near)
   return total;
 }
 
+// A vector of length 1 with the direction of another, or none.
+vec3 flowtexUnit(vec3 vector)
+{
+  return vector * inversesqrt(max(dot(vector, vector), FLOWTEX_LEAST_SQUARE));
+}
+
 // Footprint of a pixel: the longest and the shortest side of what it covers.
 vec2 flowtexFootprint(float aa, float bb, float determinant)
 {
@@ -37,15 +43,57 @@ vec2 flowtexFootprint(float aa, float bb, float determinant)
   return vec2(longest, abs(determinant) / longest);
 }
 
+#ifdef FLOWTEX_SPARSE
+// How the paths part over a side of the fragment's: from -1 where they meet to 1 where they begin.
+float flowtexParting = 0.0;
+
+// Direction of the flow beside a fragment, by so much in its coordinate.
+vec3 flowtexWay(vec2 coordinate, vec2 to, float level, bool inCell)
+{
+  vec3 way = flowtexUnit(flowtexLayer(coordinate + to, 0, level).xyz);
+#if defined(FLOWTEX_CELLS) && defined(FLOWTEX_TRIANGLES)
+  vec3 own = flowtexCell.velocity * flowtexFactors(to);
+#elif defined(FLOWTEX_CELLS)
+  vec2 cells = to * u_slicesSize;
+  vec3 own = flowtexCell.velocity * flowtexFactors(cells);
+#endif
+#ifdef FLOWTEX_CELLS
+  if (inCell)
+    way = mix(way, flowtexUnit(own), flowtexCell.share);
+#endif
+  return way;
+}
+
+// Sets it from the directions at both sides of a path whose sides are so long.
+//
+// A grain from which paths part, as in a source, is in all of them: it would be as wide a spot as a
+// streak is long. So streaks lie before the grain there, and beyond it where paths meet.
+void flowtexSetParting(vec2 coordinate, float level, float reach, bool inCell)
+{
+  vec3 across = flowtexUnit(cross(flowtexNormal, flowtexWay(coordinate, vec2(0.0), level, inCell)));
+  vec2 to = flowtexBy * (0.5 * reach * across);
+  vec3 change = flowtexWay(coordinate, to, level, inCell) - flowtexWay(coordinate, -to, level, inCell);
+  flowtexParting = clamp(dot(across, change), -1.0, 1.0);
+}
+#else
+const float flowtexParting = 0.0;
+#endif
+
 // Weights along a side of the path are x + y * cos(pi * t) + z * t, with t from 0 at the particle to 1
 // beyond the last sample. Kernels: 0 Hann, 1 box, 2 ramp, which falls behind the particle.
 vec3 flowtexKernel(float side)
 {
   if (u_kernel == FLOWTEX_KERNEL_BOX)
     return vec3(1.0, 0.0, 0.0);
-  if (u_kernel == FLOWTEX_KERNEL_RAMP)
-    return u_sides == 2 ? vec3(0.5, 0.0, -0.5 * side) : vec3(1.0, 0.0, -1.0);
-  return vec3(0.5, 0.5, 0.0);
+  if (u_kernel != FLOWTEX_KERNEL_RAMP)
+    return vec3(0.5, 0.5, 0.0);
+  if (u_sides == 1)
+    return vec3(1.0, 0.0, -1.0);
+  float first = 0.5 + 0.5 * flowtexParting;
+  if (side > 0.0)
+    return vec3(first, 0.0, -first);
+  first = min(first, 0.5);
+  return vec3(first, 0.0, 1.0 - first) * min(1.0 - flowtexParting, 1.0);
 }
 
 // Sums along a path: of the weighted noise in both octaves, of the squared weights, and of the
@@ -163,22 +211,29 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 #ifdef FLOWTEX_MOVING
   flowtexMove(speed, flowtexLayer(coordinate, 2, sliceLevel).w);
 #endif
-  vec3 kernel = flowtexKernel(-1.0);
-  flowtexAdd(sums, vec3(0.0), 0.0, max(kernel.x + kernel.y, FLOWTEX_LEAST_WEIGHT), 0.0);
   float count = float(u_sides == 2 ? u_samples / 2 : u_samples - 1);
 #ifdef FLOWTEX_UNCERTAIN
   float known = flowtexKnown(coordinate, sliceLevel);
   count *= known;
 #endif
-  if (speed > FLOWTEX_LEAST_SPEED && count > 0.0)
-  {
+  bool goes = speed > FLOWTEX_LEAST_SPEED && count > 0.0;
 #ifdef FLOWTEX_PAPER
-    float scale = 1.0;
-    spacing *= speed;
+  float scale = 1.0;
+  spacing *= speed;
 #else
-    float scale = base.w * u_unit;
+  float scale = base.w * u_unit;
 #endif
-    if (flowtexEnterCell(coordinate, count * spacing))
+  bool inCell = goes && flowtexEnterCell(coordinate, count * spacing);
+#if defined(FLOWTEX_SPARSE) && !defined(FLOWTEX_SIGNFREE)
+  if (goes && u_sides == 2)
+    flowtexSetParting(coordinate, sliceLevel, count * spacing, inCell);
+#endif
+  vec3 kernel = flowtexKernel(1.0);
+  flowtexAdd(sums, vec3(0.0), 0.0, max(kernel.x + kernel.y, FLOWTEX_LEAST_WEIGHT), 0.0);
+  if (goes)
+  {
+    // Apart: what is no loop over paths in a cell costs less.
+    if (inCell)
       flowtexSides(sums, coordinate, sliceLevel, base.xyz, spacing, scale, count, true);
     else
       flowtexSides(sums, coordinate, sliceLevel, base.xyz, spacing, scale, count, false);

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from flows import gyre, lines, swinging
+from flows import fountain, gyre, lines, swinging
 from scipy import ndimage
 
 from flowtex import FlowField, quality
@@ -118,3 +118,13 @@ def test_a_field_without_a_sign_has_strokes_without_a_head() -> None:
     drawn = picture(field, 1)
     share = sense(drawn, velocity_of(field, drawn))
     assert 0.2 < share < 0.8
+
+
+@pytest.mark.parametrize("seed", [41, 51, 64])  # whose grain at the source itself is bright
+def test_a_bright_grain_in_a_source_makes_no_disc(seed: int) -> None:
+    scene = Scene(fountain(), Settings(texture="streaklets", seed=seed))
+    camera = Camera((0.3125, 0.25, 5), (0.3125, 0.25, 0), (0, 1, 0), True, 0.15)
+    value = render(scene.textures, scene.settings, camera, (40, 40)).value
+    away = np.hypot(*(np.indices(value.shape) - 19.5))
+    # All paths pass it, of two sides as long as twelve samples.
+    assert (value[(away > 5) & (away < 12)] > 1).mean() < 0.3

@@ -68,6 +68,12 @@ class CellPath:
         """Displacements (N, 3) with those of these paths mixed in."""
         return self._mix(displacement, self._at[:, :3])
 
+    def way(self, way: Floats, to: Floats) -> Floats:
+        """Ways (N, 3) with those of these paths, cells (N, 2) from the fragments, mixed in."""
+        at = np.zeros_like(self._at)
+        at[:, 3:] = to[self._some]
+        return self._mix(way, unit(self._velocity(at)[:, :3]))
+
     def _mix(self, values: Floats, own: Floats) -> Floats:
         result, share = values.copy(), self.share[self._some]
         result[self._some] += (share * (own - result[self._some]).T).T
@@ -141,6 +147,13 @@ def _triangle(
 def _dot(a: Floats, b: Floats) -> Floats:
     """Products of velocities in space, (n,)."""
     return np.asarray(np.einsum("nc,nc->n", a[:, :3], b[:, :3]))
+
+
+def unit(vector: Floats) -> Floats:
+    """Vectors (n, 3) of length 1, or of none."""
+    return np.asarray(
+        vector / np.sqrt(np.maximum(_dot(vector, vector), const.LEAST_SQUARE))[:, None]
+    )
 
 
 def _smoothstep(low: float, high: float, x: Floats) -> Floats:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.triangles.topology import normals_at_corners
-from flowtex.rendering.cpu.places import Places, TrianglePlaces, shares_by
+from flowtex.rendering.cpu.places import Places, TrianglePlaces, coordinates_by
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.textures import TextureSet, TriangleGeometry
 
@@ -68,11 +68,17 @@ class Fragments:
     @property
     def place(self) -> Places:
         """Where the slices are looked up."""
-        at, position = self.coordinate, self.position
+        at = self.coordinate.value
         if self.nodes is None:
-            return at.value
-        shares = np.concatenate([1 - at.value.sum(axis=1, keepdims=True), at.value], axis=1)
-        return TrianglePlaces(shares, self.nodes, shares_by(position.dx, position.dy, at.dx, at.dy))
+            return at
+        shares = np.concatenate([1 - at.sum(axis=1, keepdims=True), at], axis=1)
+        return TrianglePlaces(shares, self.nodes, self.by)
+
+    @property
+    def by(self) -> Floats:
+        """Change of the coordinates by a vector in the surface's frame, (N, 2, 3)."""
+        at, position = self.coordinate, self.position
+        return coordinates_by(position.dx, position.dy, at.dx, at.dy)
 
     def __len__(self) -> int:
         """Count the fragments."""

@@ -34,10 +34,18 @@ class TrianglePlaces:
 Places: TypeAlias = Floats | TrianglePlaces
 
 
-def shares_by(dx: Floats, dy: Floats, by_x: Floats, by_y: Floats) -> Floats:
-    """Return the change of shares by a vector, (N, 2, 3), from derivatives on the screen.
+def moved(places: Places, by: Floats) -> Places:
+    """Return the places where coordinates, or the last two shares, are larger by (N, 2)."""
+    if not isinstance(places, TrianglePlaces):
+        return np.asarray(places + by)
+    shares = places.shares + np.concatenate([-by.sum(axis=1, keepdims=True), by], axis=1)
+    return TrianglePlaces(shares, places.nodes, places.by)
 
-    They are those of positions, (N, 3), and of the shares, (N, 2).
+
+def coordinates_by(dx: Floats, dy: Floats, by_x: Floats, by_y: Floats) -> Floats:
+    """Return the change of coordinates by a vector, (N, 2, 3), from derivatives on the screen.
+
+    They are those of positions, (N, 3), and of the coordinates, (N, 2).
     """
     normal = np.cross(dx, dy)
     square = np.einsum("nc,nc->n", normal, normal)[:, None]

@@ -96,7 +96,7 @@ def render(
     for some, part in fragments.parts(PART):
         part_lookup = make(part, values)
         summing = Summing(slices, values, part_lookup, paper=textures.paper is not None)
-        value.append(summing.texture(part.place, level[some]))
+        value.append(summing.texture(part.place, level[some], part.by))
         noise_level.append(part_lookup.level)
     image = partial(_image, pixel=coverage.pixel, size=size)
     geometry = textures.geometry

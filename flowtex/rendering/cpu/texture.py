@@ -10,10 +10,10 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex.rendering import constants as const
-from flowtex.rendering.cpu.cell import CellPath
+from flowtex.rendering.cpu.cell import CellPath, unit
 from flowtex.rendering.cpu.fragments import Fragments
-from flowtex.rendering.cpu.path import Path, Slices
-from flowtex.rendering.cpu.places import Places
+from flowtex.rendering.cpu.path import AxisSlices, Path, Slices
+from flowtex.rendering.cpu.places import Places, TrianglePlaces, moved
 
 Values = Mapping[str, Any]
 
@@ -66,13 +66,23 @@ class Side:
 LookupMaker = Callable[[Fragments, Values], Lookup]
 
 
-def weight(x: Any, values: Values) -> Any:
-    """Weight at x in -1 ... 1, negative behind the particle."""
+def weight(side: float, t: float | Floats, parting: Floats, values: Values) -> Floats:
+    """Weights (N,) on a side, -1 behind the particle, at t from 0 there to 1 past the last sample.
+
+    ``parting`` (N,) is how paths part, from -1 where they meet to 1 where they begin.
+    """
+    none = 0.0 * parting
     if values["u_kernel"] == const.KERNEL_BOX:
-        return 1.0
-    if values["u_kernel"] == const.KERNEL_RAMP:
-        return 0.5 * (1.0 - x) if values["u_sides"] == 2 else 1.0 - abs(x)
-    return 0.5 + 0.5 * np.cos(const.PI * x)
+        return none + 1.0
+    if values["u_kernel"] != const.KERNEL_RAMP:
+        return np.asarray(none + 0.5 + 0.5 * np.cos(const.PI * t))
+    if values["u_sides"] == 1:
+        return np.asarray(none + 1.0 - t)
+    first = 0.5 + 0.5 * parting
+    if side > 0:
+        return np.asarray(first * (1.0 - t))
+    first = np.minimum(first, 0.5)
+    return np.asarray(np.minimum(1.0 - parting, 1.0) * (first + (1.0 - first) * t))
 
 
 def shared(apart: Floats, near: Floats) -> Floats:
@@ -100,22 +110,46 @@ class Summing:
         self._slices, self._values, self._lookup, self._paper = slices, values, lookup, paper
         self._lags = np.asarray(values["u_lags"])
 
-    def texture(self, coordinate: Places, level: Floats) -> Floats:
-        """Texture of the fragments at places in the slices and mip levels (N,)."""
+    def texture(self, coordinate: Places, level: Floats, by: Floats) -> Floats:
+        """Texture of the fragments at places in the slices and mip levels (N,).
+
+        ``by`` is the change of their coordinates by a vector, (N, 2, 3).
+        """
         values, lookup = self._values, self._lookup
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
         known = self.known(coordinate, level)
         moving = values["moving"]
         lookup.move(speed, self._slices.layer(coordinate, 2, level)[:, 3] if moving else speed)
-        sums = self._first(len(base))
         cell = self.cell(coordinate, known)
+        self._parting = np.zeros(len(base))
+        if values["sparse"] and not isinstance(self._slices, AxisSlices):
+            half = 0.5 * self._count * known * lookup.spacing
+            self._parting = self._parted(coordinate, level, by, half, cell)
+        sums = self._first(len(base))
         for side in self.sides(coordinate, level, base):
             self._add(sums, side, cell, self._count * known)
         value = lookup.blend(sums)
         if value.ndim > 1:  # a picture keeps its colours
             return value
         return np.asarray(value * self.faded(coordinate, level, known))
+
+    def _parted(
+        self, coordinate: Places, level: Floats, by: Floats, half: Floats, cell: CellPath | None
+    ) -> Floats:
+        """How paths part over half a side's length, (N,), from the directions beside them."""
+        whole = isinstance(coordinate, TrianglePlaces)
+        cells = np.ones(2) if whole else np.asarray(self._values["u_slicesSize"])
+
+        def way(to: Floats) -> Floats:
+            found = unit(self._slices.layer(moved(coordinate, to), 0, level)[:, :3])
+            return found if cell is None else cell.way(found, to * cells)
+
+        normal = unit(np.cross(*np.moveaxis(by, 1, 0)))
+        across = unit(np.cross(normal, way(np.zeros((len(level), 2)))))
+        to = np.einsum("nkc,nc->nk", by, half[:, None] * across)
+        change = np.einsum("nc,nc->n", across, way(to) - way(-to))
+        return np.asarray(np.clip(change, -1.0, 1.0))
 
     def faded(self, coordinate: Places, level: Floats, known: Floats) -> Floats:
         """Share of the texture where its direction is not known or the flow is slow, (N,)."""
@@ -158,9 +192,9 @@ class Summing:
 
     def _first(self, count: int) -> Sums:
         """Start with the sample at the fragments themselves."""
-        middle = max(weight(0.0, self._values), const.LEAST_WEIGHT)
+        middle = np.maximum(weight(1.0, 0.0, self._parting, self._values), const.LEAST_WEIGHT)
         values = self._lookup.lookup(np.zeros((count, 3)), np.zeros(count))
-        return Sums(middle * values, np.full(count, middle**2), np.zeros(count))
+        return Sums(middle[:, None] * values, middle**2, np.zeros(count))
 
     @property
     def _count(self) -> int:
@@ -176,7 +210,7 @@ class Summing:
         if cell is not None:
             cell.leave()
         step = one.step(lag)
-        before = np.full(len(scale), weight(0.0, values))
+        before = weight(side, 0.0, self._parting, values)
         for k in range(1, int(np.ceil(count.max(initial=0))) + 1):
             lag = np.where(live, lag + step, lag)
             alive = np.clip((last - lag) / step + 1.0, 0.0, 1.0)
@@ -192,7 +226,7 @@ class Summing:
             displacement = path.follow(lag) * (side * scale)[:, None]
             if cell is not None:
                 displacement = cell.mixed(displacement)
-            weights = alive * weight(side * k / (count + 1), values)
+            weights = alive * weight(side, k / (count + 1), self._parting, values)
             sums.values += weights[:, None] * self._lookup.lookup(displacement, side * lag * scale)
             sums.squares += weights**2
             sums.neighbours += weights * before
