@@ -3,8 +3,8 @@
 
 import type { Camera } from "./camera.ts";
 import { constantsOf, noiseAround, type Constants } from "./noise.ts";
-import { grainAt, layersAt, mover, type PathPlace } from "./pointpath.ts";
-import type { Settings } from "./protocol.ts";
+import { grainAt, layersAt, mover, partingAt, type PathPlace } from "./pointpath.ts";
+import { isSignFree, type Settings } from "./protocol.ts";
 import { isMoving, isSparse, uniforms, type Uniform } from "./uniforms.ts";
 import { clamp, length, scale, subtract, toFrame, type Vector } from "./vectors.ts";
 
@@ -47,11 +47,21 @@ interface Step {
   weight: number;
 }
 
-/** Weight at x from -1 to 1, negative behind the point. */
-function kernelAt(x: number, u: Uniforms, c: Constants): number {
+/** Weight on a side, -1 behind the point, at t from 0 there to 1 beyond the last sample. */
+function kernelAt(side: number, t: number, parting: number, u: Uniforms, c: Constants): number {
   if (u.u_kernel === c.KERNEL_BOX[0]) return 1;
-  if (u.u_kernel === c.KERNEL_RAMP[0]) return u.u_sides === 2 ? 0.5 * (1 - x) : 1 - Math.abs(x);
-  return 0.5 + 0.5 * Math.cos(Math.PI * x);
+  if (u.u_kernel !== c.KERNEL_RAMP[0]) return 0.5 + 0.5 * Math.cos(Math.PI * t);
+  if (u.u_sides === 1) return 1 - t;
+  const first = 0.5 + 0.5 * parting;
+  if (side > 0) return first * (1 - t);
+  const low = Math.min(first, 0.5);
+  return Math.min(1 - parting, 1) * (low + (1 - low) * t);
+}
+
+/** Number of samples on a side. */
+function countOf(u: Uniforms): number {
+  const set = Number(u.u_samples);
+  return u.u_sides === 2 ? Math.floor(set / 2) : set - 1;
 }
 
 /** Samples of a side, from the point outward; `spacing` is that between two. */
@@ -59,6 +69,7 @@ function sideSteps(
   layers: (layer: number) => number[],
   side: number,
   spacing: number,
+  parting: number,
   u: Uniforms,
   c: Constants,
 ): Step[] {
@@ -68,8 +79,7 @@ function sideSteps(
   const first = side * lags.length;
   const end = Math.min(layers(first + 1)[3], lags[lags.length - 1]);
   const sign = side ? 1 : -1;
-  const set = Number(u.u_samples);
-  const count = u.u_sides === 2 ? Math.floor(set / 2) : set - 1;
+  const count = countOf(u);
   const stepAt = (along: Vector) => spacing / by / Math.max(length(along), c.LEAST_SPEED[0]);
   let [before, after] = [slope(0), slope(first + 1)];
   let [from, m] = [0, 0];
@@ -85,7 +95,7 @@ function sideSteps(
     }
     const bend = scale(subtract(after, before), 1 / (lags[m] - from));
     const at = (lateness: number) => before.map((x, n) => x + bend[n] * lateness) as Vector;
-    const weight = alive * kernelAt((sign * k) / (count + 1), u, c);
+    const weight = alive * kernelAt(sign, k / (count + 1), parting, u, c);
     result.push({ displacement: scale(at(lag - from), lag * sign * by), weight });
     // Evenly spaced along the path where the particle is faster or slower there.
     step = stepAt(at(2 * lag - from));
@@ -126,15 +136,17 @@ export function pixelSum({ at, settings, camera, rows }: PixelPlace): PixelSum |
   const layers = layersAt(at);
   const moves = length(layers(0).slice(0, 3)) > c.LEAST_SPEED[0];
   const sides = moves ? [...Array(Number(u.u_sides)).keys()] : [];
-  const [back = [], ahead = []] = sides.map((side) => sideSteps(layers, side, spacing, u, c));
-  const own = Math.max(kernelAt(0, u, c), c.LEAST_WEIGHT[0]);
+  const sparse = isSparse(header, settings);
+  const parting = sparse && !isSignFree(header) ? partingAt(at, countOf(u) * spacing) : 0;
+  const [back = [], ahead = []] = sides.map((side) => sideSteps(layers, side, spacing, parting, u, c));
+  const own = Math.max(kernelAt(1, 0, parting, u, c), c.LEAST_WEIGHT[0]);
   const steps = [...back.reverse(), { displacement: [0, 0, 0] as Vector, weight: own }, ...ahead];
 
   const octaves = clamp(2 * Math.log2(grain / Number(u.u_noiseFinest)), 0, c.LAST_OCTAVE[0]);
   const octave = Math.floor(octaves);
   const late = octaves - octave;
   const local = toFrame(geometry.frame, subtract(at.position, geometry.center));
-  const noise = noiseAround(local, octave, geometry.planar, isSparse(header, settings), u, c);
+  const noise = noiseAround(local, octave, geometry.planar, sparse, u, c);
   const weights = steps.map(({ weight }) => weight);
   const squares = total(weights.map((weight) => weight ** 2));
   const pairs = weights.slice(1).map((weight, n) => weight * weights[n]);

@@ -42,12 +42,19 @@ export interface PathPlace {
 }
 
 type Layers = (layer: number) => Four;
+type Beside = [number, number];
 
-/** The texels around a place, and their shares: four, or those of a triangle's nodes. */
-function texelsAt({ scene, place }: PathPlace): Corners {
+/**
+ * The texels around a place, and their shares: four, or those of a triangle's nodes. The place may be
+ * one beside it, by so many cells, or so much in the shares of the second and the third node.
+ */
+function texelsAt({ scene, place }: PathPlace, [di, dj]: Beside): Corners {
   const { rows, columns, triangles } = scene.header.geometry;
-  if (triangles) return scene.cornersAt(place);
-  const [x, y] = [place[0] + columns.before, place[1] + rows.before];
+  if (triangles) {
+    const more = [-di - dj, di, dj];
+    return scene.cornersAt(place).map(([node, share], n) => [node, share + more[n]]);
+  }
+  const [x, y] = [place[0] + di + columns.before, place[1] + dj + rows.before];
   const [left, low] = [Math.floor(x), Math.floor(y)];
   const [s, t] = [x - left, y - low];
   return [(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t].map((share, n) => {
@@ -56,11 +63,11 @@ function texelsAt({ scene, place }: PathPlace): Corners {
   });
 }
 
-/** Layers between the nodes and the time steps. */
-export function layersAt(at: PathPlace): Layers {
+/** Layers between the nodes and the time steps, at a place or beside it. */
+export function layersAt(at: PathPlace, beside: Beside = [0, 0]): Layers {
   const { scene, moment } = at;
   const { slices } = scene.header;
-  const texels = texelsAt(at);
+  const texels = texelsAt(at, beside);
   const [before, after, late] = moment;
   const numbers = texels.map(([texel]) => texel);
   const steps = (before === after ? [before] : [before, after]).map((step) => scene.texels(step, numbers));
@@ -137,17 +144,34 @@ function pointAt(scene: Scene, place: [number, number]): Vector {
   return fromFrame(scene.header.geometry.frame, local);
 }
 
-/** Normal of the surface at a place, as long as the cell there is large, or two of the triangle. */
-function normalAt(scene: Scene, place: [number, number]): Vector {
+/** Sides of the cell at a place, or two of the triangle. */
+function sidesAt(scene: Scene, place: [number, number]): [Vector, Vector] {
   const { shape, triangles } = scene.header.geometry;
   if (triangles) {
     const corner = (second: number, third: number) =>
       pointAt(scene, placeIn(Math.floor(place[1]), second, third));
-    return cross(subtract(corner(1, 0), corner(0, 0)), subtract(corner(0, 1), corner(0, 0)));
+    return [subtract(corner(1, 0), corner(0, 0)), subtract(corner(0, 1), corner(0, 0))];
   }
   const [i, j] = place.map((n, axis) => clamp(n, 0.5, shape[1 - axis] - 1.5));
   const at = (di: number, dj: number) => pointAt(scene, [i + di, j + dj]);
-  return cross(subtract(at(0.5, 0), at(-0.5, 0)), subtract(at(0, 0.5), at(0, -0.5)));
+  return [subtract(at(0.5, 0), at(-0.5, 0)), subtract(at(0, 0.5), at(0, -0.5))];
+}
+
+/**
+ * How paths part over a length, half of it to either side of a place: from -1 where they meet to 1 where
+ * they begin.
+ */
+export function partingAt(at: PathPlace, reach: number): number {
+  const { scene, place } = at;
+  const [first, second] = sidesAt(scene, place);
+  const normal = cross(first, second);
+  const wayAt = (beside: Beside) =>
+    unit(fromFrame(scene.header.geometry.frame, layersAt(at, beside)(0).slice(0, 3)));
+  const across = unit(cross(normal, wayAt([0, 0])));
+  const by = (0.5 * reach) / dot(normal, normal);
+  const [di, dj] = [cross(second, normal), cross(normal, first)].map((side) => by * dot(across, side));
+  const change = subtract(wayAt([di, dj]), wayAt([-di, -dj]));
+  return clamp(dot(across, change), -1, 1);
 }
 
 function between(values: number[], at: number): number {
@@ -169,7 +193,7 @@ function indexOf(values: number[], value: number): number {
  */
 export function grainAt({ scene, place, position }: PathPlace, settings: Settings, camera: Camera, rows: number) {
   const { geometry, paper } = scene.header;
-  const normal = normalAt(scene, place);
+  const normal = cross(...sidesAt(scene, place));
   const { height, ray } = camera.at(position);
   const facing = Math.max(Math.abs(dot(unit(normal), ray)), LEAST_FACING);
   const pixel = (2 * height) / rows;
