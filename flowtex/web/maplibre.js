@@ -898,24 +898,24 @@ h=Math.abs(s)+o<Math.PI/2?Math.asin(Math.sin(o)/Math.cos(s)):Math.PI,[m]=this.po
 origin[1])/this.slope[1],[f,p]=[h/Math.PI,c-l];return{state:{position:[m,u,r+1/this.slope[0]],focal_point:[m,u,r],up:[0,
 1,0],parallel:!0,parallel_scale:.5*p/this.slope[0],view_angle:e.fov},width:f*n,height:p*n}}};function no({width:a,height:e,
 pitch:t,fov:r}){let[n,s]=[t*q,.5*r*q],i=n+s;if(i>ro)return 1/0;let c=.5*e/Math.tan(s)*Math.cos(n)*(Math.tan(i)-Math.tan(
-n));return Math.hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var Os=8,so=4,ao=10,io=.05,Ns=1e-6,oo=.001;function co({scene:a,place:e}){let{rows:t,columns:r,triangles:n}=a.header.geometry;
-if(n)return a.cornersAt(e);let[s,i]=[e[0]+r.before,e[1]+t.before],[o,c]=[Math.floor(s),Math.floor(i)],[l,h]=[s-o,i-c];return[
-(1-l)*(1-h),l*(1-h),(1-l)*h,l*h].map((m,u)=>{let f=R(o+(u&1),0,r.size-1);return[R(c+(u>>1),0,t.size-1)*r.size+f,m]})}function lo(a){
-let{scene:e,moment:t}=a,{slices:r}=e.header,n=co(a),[s,i,o]=t,c=n.map(([u])=>u),l=(s===i?[s]:[s,i]).map(u=>e.texels(u,c)),
-h=s===i?[1]:[1-o,o],m=pe(e.header)?ho(n.map((u,f)=>l[0](0,f))):n.map(()=>1);return u=>{let f=[0,0,0,0];return n.forEach(
-([,p],d)=>{let b=u+(u>r.lags.length?-1:1)*r.lags.length,y=m[d]<0&&u>0?b:u;l.forEach((g,v)=>{h[v]&&g(y,d).forEach((x,w)=>{
-f[w]+=p*h[v]*x*(w<3?m[d]:1)})})}),f}}function ho(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=N(e,[t,r,n])<0?-1:1;return e=
-P(e,[t,r,n],s),s})}function mo(a,e,t,r,n){let[s,i]=[a(0).slice(0,3),0],o=a(t+1)[3],c=Math.min(o,e[e.length-1]),l=[];for(let h=0;h<
-e.length&&i<c;h+=1){let m=a(t+h+1).slice(0,3);for(let u=1;u<=Os;u+=1){let f=u/Os,p=Math.min(i+f*(e[h]-i),c),d=(p-i)/(e[h]-
-i),b=s.map((y,g)=>y+d*(m[g]-y));if(l.push(O(b,r*p*n)),p===c)break}[s,i]=[m,e[h]]}return l}function uo({scene:a,place:e,position:t}){
-let{paper:r,geometry:n}=a.header;if(!r)return l=>P(t,Z(n.frame,l));let{alongI:s,alongJ:i}=r,o=[Fs(s,e[0]),Fs(i,e[1])],c=It(
-a,e);return([l,h])=>{let m=[Is(s,o[0]+l),Is(i,o[1]+h)];return m.some(Number.isNaN)?null:P(t,T(It(a,m),c))}}function It(a,e){
-let{data:t}=a.part("position"),r=a.cornersAt(e),n=[0,1,2].map(s=>Oe(r,i=>t[3*i+s]));return Z(a.header.geometry.frame,n)}
-function fo(a,e){let{shape:t,triangles:r}=a.header.geometry;if(r){let o=(c,l)=>It(a,dt(Math.floor(e[1]),c,l));return C(T(
-o(1,0),o(0,0)),T(o(0,1),o(0,0)))}let[n,s]=e.map((o,c)=>R(o,.5,t[1-c]-1.5)),i=(o,c)=>It(a,[n+o,s+c]);return C(T(i(.5,0),i(
--.5,0)),T(i(0,.5),i(0,-.5)))}function Fs(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function Is(a,e){
-let t=a.findIndex(r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function po({scene:a,place:e,position:t},r,n,s){
-let{geometry:i,paper:o}=a.header,c=fo(a,e),{height:l,ray:h}=n.at(t),m=Math.max(Math.abs(N(V(c),h)),io),u=2*l/s;if(o){let[
+n));return Math.hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var Os=8,so=4,ao=10,io=.05,Ns=1e-6,oo=.001;function co({scene:a,place:e},[t,r]){let{rows:n,columns:s,triangles:i}=a.header.
+geometry;if(i){let f=[-t-r,t,r];return a.cornersAt(e).map(([p,d],b)=>[p,d+f[b]])}let[o,c]=[e[0]+t+s.before,e[1]+r+n.before],
+[l,h]=[Math.floor(o),Math.floor(c)],[m,u]=[o-l,c-h];return[(1-m)*(1-u),m*(1-u),(1-m)*u,m*u].map((f,p)=>{let d=R(l+(p&1),
+0,s.size-1);return[R(h+(p>>1),0,n.size-1)*s.size+d,f]})}function lo(a,e=[0,0]){let{scene:t,moment:r}=a,{slices:n}=t.header,
+s=co(a,e),[i,o,c]=r,l=s.map(([f])=>f),h=(i===o?[i]:[i,o]).map(f=>t.texels(f,l)),m=i===o?[1]:[1-c,c],u=pe(t.header)?ho(s.
+map((f,p)=>h[0](0,p))):s.map(()=>1);return f=>{let p=[0,0,0,0];return s.forEach(([,d],b)=>{let y=f+(f>n.lags.length?-1:1)*
+n.lags.length,g=u[b]<0&&f>0?y:f;h.forEach((v,x)=>{m[x]&&v(g,b).forEach((w,M)=>{p[M]+=d*m[x]*w*(M<3?u[b]:1)})})}),p}}function ho(a){
+let e=[0,0,0];return a.map(([t,r,n])=>{let s=N(e,[t,r,n])<0?-1:1;return e=P(e,[t,r,n],s),s})}function mo(a,e,t,r,n){let[
+s,i]=[a(0).slice(0,3),0],o=a(t+1)[3],c=Math.min(o,e[e.length-1]),l=[];for(let h=0;h<e.length&&i<c;h+=1){let m=a(t+h+1).slice(
+0,3);for(let u=1;u<=Os;u+=1){let f=u/Os,p=Math.min(i+f*(e[h]-i),c),d=(p-i)/(e[h]-i),b=s.map((y,g)=>y+d*(m[g]-y));if(l.push(
+O(b,r*p*n)),p===c)break}[s,i]=[m,e[h]]}return l}function uo({scene:a,place:e,position:t}){let{paper:r,geometry:n}=a.header;
+if(!r)return l=>P(t,Z(n.frame,l));let{alongI:s,alongJ:i}=r,o=[Fs(s,e[0]),Fs(i,e[1])],c=It(a,e);return([l,h])=>{let m=[Is(
+s,o[0]+l),Is(i,o[1]+h)];return m.some(Number.isNaN)?null:P(t,T(It(a,m),c))}}function It(a,e){let{data:t}=a.part("positio\
+n"),r=a.cornersAt(e),n=[0,1,2].map(s=>Oe(r,i=>t[3*i+s]));return Z(a.header.geometry.frame,n)}function fo(a,e){let{shape:t,
+triangles:r}=a.header.geometry;if(r){let o=(c,l)=>It(a,dt(Math.floor(e[1]),c,l));return[T(o(1,0),o(0,0)),T(o(0,1),o(0,0))]}
+let[n,s]=e.map((o,c)=>R(o,.5,t[1-c]-1.5)),i=(o,c)=>It(a,[n+o,s+c]);return[T(i(.5,0),i(-.5,0)),T(i(0,.5),i(0,-.5))]}function Fs(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function Is(a,e){let t=a.findIndex(
+r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function po({scene:a,place:e,position:t},r,n,s){let{
+geometry:i,paper:o}=a.header,c=C(...fo(a,e)),{height:l,ray:h}=n.at(t),m=Math.max(Math.abs(N(V(c),h)),io),u=2*l/s;if(o){let[
 d,b]=[o.alongI,o.alongJ].map((g,v)=>{let x=Math.min(Math.floor(e[v]),g.length-2);return(g[x+1]-g[x])*o.size[v]}),y=Math.
 sqrt(k(c)/(d*b));return o.grain*(r.lod?Math.max(u/Math.sqrt(m),y):y)}let f=i.extent/Number(r.resolution),p=u/m*Number(r.
 grain);return r.lod?r.fixed_grain?Math.max(p,f):p:f}function bo(a,e,t){let r=[],[n,s]=[a,t];for(let i of e){let o=k(T(i,
