@@ -80,10 +80,15 @@ function sideSteps(
   const end = Math.min(layers(first + 1)[3], lags[lags.length - 1]);
   const sign = side ? 1 : -1;
   const count = countOf(u);
-  const stepAt = (along: Vector) => spacing / by / Math.max(length(along), c.LEAST_SPEED[0]);
   let [before, after] = [slope(0), slope(first + 1)];
   let [from, m] = [0, 0];
-  let [lag, step] = [0, stepAt(before)];
+  const bendAt = () => scale(subtract(after, before), 1 / (lags[m] - from));
+  // From a point nearly at rest the path does not jump: it is at least as fast as it will soon be.
+  const stepAt = (along: Vector, bend: Vector) => {
+    const least = Math.max(Math.sqrt((length(bend) * spacing) / by), c.LEAST_SPEED[0]);
+    return spacing / by / Math.max(length(along), least);
+  };
+  let [lag, step] = [0, stepAt(before, bendAt())];
   const result: Step[] = [];
   for (let k = 1; k <= count; k += 1) {
     lag += step;
@@ -93,12 +98,12 @@ function sideSteps(
       [before, from] = [after, lags[m]];
       after = slope(first + m + 2);
     }
-    const bend = scale(subtract(after, before), 1 / (lags[m] - from));
+    const bend = bendAt();
     const at = (lateness: number) => before.map((x, n) => x + bend[n] * lateness) as Vector;
     const weight = alive * kernelAt(sign, k / (count + 1), parting, u, c);
     result.push({ displacement: scale(at(lag - from), lag * sign * by), weight });
     // Evenly spaced along the path where the particle is faster or slower there.
-    step = stepAt(at(2 * lag - from));
+    step = stepAt(at(2 * lag - from), bend);
   }
   return result;
 }

@@ -2124,12 +2124,13 @@ octaveAt(coarse,displacement,c,axes,isSparse2)]}function kernelAt(side,t,parting
 first,.5);return Math.min(1-parting,1)*(low+(1-low)*t)}function countOf(u){let set=Number(u.u_samples);return u.u_sides===
 2?Math.floor(set/2):set-1}function sideSteps(layers,side,spacing,parting,u,c){let lags=u.u_lags,slope=layer=>layers(layer).
 slice(0,3),by=layers(0)[3]*Number(u.u_unit),first=side*lags.length,end=Math.min(layers(first+1)[3],lags[lags.length-1]),
-sign=side?1:-1,count2=countOf(u),stepAt=along2=>spacing/by/Math.max(length2(along2),c.LEAST_SPEED[0]),[before,after]=[slope(
-0),slope(first+1)],[from,m]=[0,0],[lag,step]=[0,stepAt(before)],result2=[];for(let k=1;k<=count2;k+=1){lag+=step;let alive=clamp(
-(end-lag)/step+1,0,1);if(!alive)break;for(;lag>lags[m]&&m<lags.length-1;m+=1)[before,from]=[after,lags[m]],after=slope(first+
-m+2);let bend=scale2(subtract2(after,before),1/(lags[m]-from)),at=lateness=>before.map((x,n)=>x+bend[n]*lateness),weight=alive*
+sign=side?1:-1,count2=countOf(u),[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],bendAt=()=>scale2(subtract2(after,
+before),1/(lags[m]-from)),stepAt=(along2,bend)=>{let least=Math.max(Math.sqrt(length2(bend)*spacing/by),c.LEAST_SPEED[0]);
+return spacing/by/Math.max(length2(along2),least)},[lag,step]=[0,stepAt(before,bendAt())],result2=[];for(let k=1;k<=count2;k+=
+1){lag+=step;let alive=clamp((end-lag)/step+1,0,1);if(!alive)break;for(;lag>lags[m]&&m<lags.length-1;m+=1)[before,from]=
+[after,lags[m]],after=slope(first+m+2);let bend=bendAt(),at=lateness=>before.map((x,n)=>x+bend[n]*lateness),weight=alive*
 kernelAt(sign,k/(count2+1),parting,u,c);result2.push({displacement:scale2(at(lag-from),lag*sign*by),weight}),step=stepAt(
-at(2*lag-from))}return result2}function shared(apart,near,c){let total2=1;for(let m=1;m<=c.SHARED_TERMS[0];m+=1){let d=m*
+at(2*lag-from),bend)}return result2}function shared(apart,near,c){let total2=1;for(let m=1;m<=c.SHARED_TERMS[0];m+=1){let d=m*
 m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*(c.BELL[0]+c.BELL_BEND[0]*d))}return total2}var total=values=>values.
 reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+Math.exp(-c.TONE_SLOPE[0]*contrast*value))}
 function pixelSum({at,settings,camera,rows}){let{header}=at.scene,{geometry,slices,shaders}=header;if(header.paper||isMoving(

@@ -6,7 +6,7 @@
 // agree on the direction.
 
 mat3x2 flowtexBy;   // change of the fragment's coordinate by a vector in space
-vec3 flowtexNormal; // of the cell
+vec3 flowtexCellNormal; // of the cell
 
 // Sets both from derivatives on the screen.
 void flowtexSetBy(vec3 dx, vec3 dy, vec2 byX, vec2 byY)
@@ -17,7 +17,7 @@ void flowtexSetBy(vec3 dx, vec3 dy, vec2 byX, vec2 byY)
   dy /= size;
   vec3 normal = cross(dx, dy);
   float square = max(dot(normal, normal), FLOWTEX_LEAST_SQUARE);
-  flowtexNormal = normal * inversesqrt(square);
+  flowtexCellNormal = normal * inversesqrt(square);
   vec3 across = normal / square;
   flowtexBy = (outerProduct(byX, cross(dy, across)) + outerProduct(byY, cross(across, dx)))
     * (1.0 / size);
@@ -76,13 +76,13 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
     float cells = sqrt(dot(rate[n], rate[n]) + rate[n].x * rate[n].y);
     float speed = length(moved);
     // Velocities lie in the tangent planes of the nodes, and the path in that of the triangle.
-    float height = dot(flowtexNormal, moved);
-    velocity[n] = moved - height * flowtexNormal;
+    float height = dot(flowtexCellNormal, moved);
+    velocity[n] = moved - height * flowtexCellNormal;
     off = max(off, abs(height) / max(speed, FLOWTEX_LEAST_SPEED));
     for (int side = 0; side < u_sides; ++side)
     {
       vec3 slope = flowtexFetch(n, 1 + side * u_lagCount).xyz;
-      off = max(off, abs(dot(flowtexNormal, slope)) / max(length(slope), FLOWTEX_LEAST_SPEED));
+      off = max(off, abs(dot(flowtexCellNormal, slope)) / max(length(slope), FLOWTEX_LEAST_SPEED));
     }
 #else
     ivec2 node = clamp(ivec2(floor(at)) + ivec2(n & 1, n >> 1), ivec2(0), ivec2(u_slicesSize) - 1);

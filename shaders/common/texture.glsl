@@ -70,7 +70,7 @@ vec3 flowtexWay(vec2 coordinate, vec2 to, float level, bool inCell)
 // streak is long. So streaks lie before the grain there, and beyond it where paths meet.
 void flowtexSetParting(vec2 coordinate, float level, float reach, bool inCell)
 {
-  vec3 across = flowtexUnit(cross(flowtexNormal, flowtexWay(coordinate, vec2(0.0), level, inCell)));
+  vec3 across = flowtexUnit(cross(flowtexCellNormal, flowtexWay(coordinate, vec2(0.0), level, inCell)));
   vec2 to = flowtexBy * (0.5 * reach * across);
   vec3 change = flowtexWay(coordinate, to, level, inCell) - flowtexWay(coordinate, -to, level, inCell);
   flowtexParting = clamp(dot(across, change), -1.0, 1.0);
@@ -157,6 +157,15 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 afte
     bool final = slice == u_lagCount;
     vec3 bend = (after - before) / (to - from);
     before -= bend * from;
+#ifndef FLOWTEX_PAPER
+    // From a point nearly at rest the path does not jump: it is at least as fast as it will soon be.
+    float least = max(sqrt(length(bend) / per_speed), FLOWTEX_LEAST_SPEED);
+    if (slice == 1)
+    {
+      rate = max(rate, per_speed * least);
+      lag = 1.0 / rate;
+    }
+#endif
     do
     {
       if (final || lag <= to)
@@ -180,7 +189,7 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 afte
         // Points stay evenly spaced along the path where the particle is faster or slower there
         // than it is here: equation 3 at every point of the path, with the derivative of
         // lag * slope.
-        rate = per_speed * max(length(slope + bent), FLOWTEX_LEAST_SPEED);
+        rate = per_speed * max(length(slope + bent), least);
 #endif
         was = lag;
         lag += 1.0 / rate;

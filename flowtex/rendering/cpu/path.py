@@ -130,6 +130,14 @@ class Path:
 
     def speed(self, lag: Floats) -> Floats:
         """Speed of the particles at that lag, (N,): the length of d(lag * slope) / d lag."""
-        bend = (self._after - self.before) / (self._to - self._from)[:, None]
-        along = self.before + bend * (2.0 * lag - self._from)[:, None]
+        along = self.before + self._bends * (2.0 * lag - self._from)[:, None]
         return np.asarray(np.linalg.norm(along, axis=-1))
+
+    @property
+    def bend(self) -> Floats:
+        """Change of the slopes with lag, (N,), where the particles are."""
+        return np.asarray(np.linalg.norm(self._bends, axis=-1))
+
+    @property
+    def _bends(self) -> Floats:
+        return np.asarray((self._after - self.before) / (self._to - self._from)[:, None])

@@ -57,9 +57,14 @@ class Side:
     scale: Floats  #: Nominal length of a unit of lag, (N,).
 
     def step(self, lag: Floats) -> Floats:
-        """Lag to the next sample from lags (N,): equation 3, with the speed at the sample."""
-        speed = np.maximum(self.path.speed(lag), const.LEAST_SPEED)
-        return np.asarray(self.spacing / (self.scale * speed))
+        """Lag to the next sample from lags (N,): equation 3, with the speed at the sample.
+
+        From a point nearly at rest the path does not jump: it is at least as fast as it will soon
+        be.
+        """
+        step = self.spacing / self.scale
+        least = np.maximum(np.sqrt(self.path.bend * step), const.LEAST_SPEED)
+        return np.asarray(step / np.maximum(self.path.speed(lag), least))
 
 
 #: Makes the look-up of some fragments from the uniforms.
