@@ -310,12 +310,7 @@ def _printable(text: str) -> str:
 def _apart(one: Plate, other: Plate, gap: int) -> bool:
     """Return whether there is a gap between two plates."""
     (left, top, right, bottom), (to_left, above, to_right, below) = one.box, other.box
-    return (
-        right + gap <= to_left
-        or to_right + gap <= left
-        or bottom + gap <= above
-        or below + gap <= top
-    )
+    return max(to_left - right, left - to_right, above - bottom, top - below) >= gap
 
 
 def _number_text(value: float, digits: int) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import Formatter, FuncFormatter, Locator, MaxNLocator
+from matplotlib.ticker import FuncFormatter, Locator, MaxNLocator
 
 from flowtex._util.array_types import Floats
 from flowtex.earth import DEGREE, EARTH_RADIUS, Projection
@@ -84,7 +84,7 @@ def label_degrees(ax: Axes, projection: Projection, unit: AxesUnit) -> None:
         if unit == AxesUnit():
             border = _Border(ax, projection, number)
             axis.set_major_locator(_BorderLocator(border))
-            axis.set_major_formatter(_BorderFormatter(border))
+            axis.set_major_formatter(FuncFormatter(border.text))
         else:
             axis.set_major_locator(_DegreeLocator(nbins="auto", steps=DEGREE_STEPS))
             axis.set_major_formatter(FuncFormatter((longitude_text, latitude_text)[number]))
@@ -127,6 +127,12 @@ class _Border:
         axis = (self._ax.xaxis, self._ax.yaxis)[self._number]
         most = _room(axis)
         return self._find((self._ax.get_xlim(), self._ax.get_ylim()), most)
+
+    def text(self, x: float, position: Any = None) -> str:
+        """Return the degrees at the nearest crossing."""
+        del position
+        places, values, text = self.crossings()
+        return text(values[np.argmin(np.abs(places - x))]) if len(places) else ""
 
     def _crossings(
         self, both: tuple[tuple[float, float], tuple[float, float]], most: int
@@ -187,13 +193,3 @@ class _BorderLocator(Locator):
         """Return the ticks of the axes as they are."""
         del vmin, vmax
         return self()
-
-
-class _BorderFormatter(Formatter):
-    def __init__(self, border: _Border) -> None:
-        self._border = border
-
-    def __call__(self, x: float, pos: int | None = None) -> str:
-        del pos
-        places, values, text = self._border.crossings()
-        return text(values[np.argmin(np.abs(places - x))]) if len(places) else ""

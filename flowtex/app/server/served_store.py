@@ -7,6 +7,8 @@ import re
 import secrets
 from pathlib import Path
 
+import numpy as np
+
 from flowtex._util.extras import import_extra
 from flowtex.pyramid.layout import described
 from flowtex.pyramid.levels import Levels
@@ -33,7 +35,7 @@ class ServedStore:
         group = described(levels.about)
         #: How many objects each array has along its axes.
         self._counts: dict[str, tuple[int, ...]] = {
-            name: tuple(map(_quotient, array.shape, array.shards or array.chunks))
+            name: tuple(map(int, np.ceil(np.divide(array.shape, array.shards or array.chunks))))
             for name, array in group.members(max_depth=None)
             if isinstance(array, zarr.Array)
         }
@@ -69,8 +71,3 @@ class ServedStore:
                     raise LookupError(name) from None
                 msg = f"{name} {fault_words(error)}"
                 raise ReadFault(msg) from None
-
-
-def _quotient(size: int, part: int) -> int:
-    """Return how many parts of some size a whole has."""
-    return -(-size // part)

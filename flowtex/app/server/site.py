@@ -164,7 +164,9 @@ class Site:
         try:
             session = await self.sessions.find(token)
         except FullError:
-            return _answer(503, words=FULL.format(pages=_pages(self.sessions.limit)))
+            count = self.sessions.limit
+            pages = "one page" if count == 1 else f"{count} pages"
+            return _answer(503, words=FULL.format(pages=pages))
         except ClosedError:
             return _answer(503, words=ENDS)
         except (FieldError, OSError) as error:
@@ -173,10 +175,6 @@ class Site:
             _log.exception("a page could not be opened")
             return _answer(500, words=FAULT)
         return _answer(200, session=session.token)
-
-
-def _pages(count: int) -> str:
-    return "one page" if count == 1 else f"{count} pages"
 
 
 def _asked(body: bytes) -> tuple[str, str | None]:

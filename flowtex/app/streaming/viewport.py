@@ -215,27 +215,18 @@ class Viewport:
         is coloured by, the time that it shows, and another flow. The panes stay as they are when
         these cannot be shown.
         """
-        changes = dict(changes or {})
-        self._put([self.panes[0], *self._second(self.handle, changes)], changes)
-
-    def _second(self, first: FlowHandle, changes: Mapping[str, Any]) -> list[Pane]:
-        """Return the pane that differs from the first one; none where nothing does."""
-        if not changes:
-            return []
-        own = {name: value for name, value in changes.items() if name not in ("time", "field")}
-        beside = partial(first.scene.beside, field=changes.get("field", first.field))
-        scene = _fitting(first.scene, beside, own)
-        scene.time = _time_beside(first.scene, changes)
-        return [self._pane(scene)]
-
-    def _put(self, panes: list[Pane], changes: Mapping[str, Any]) -> None:
-        """Show other panes, whose second one differs in some changes."""
+        panes, first, changes = self.panes[:1], self.scene, dict(changes or {})
+        if changes:
+            own = {name: value for name, value in changes.items() if name not in ("time", "field")}
+            beside = partial(first.beside, field=changes.get("field", first.field))
+            scene = _fitting(first, beside, own)
+            scene.time = _time_beside(first, changes)
+            panes.append(self._pane(scene))
         self._stop_following()
         self._stop_following = lambda: None
-        for pane in self.panes:
-            if pane not in panes:
-                pane.handle.remove(render=False)
-        self.panes, self._beside = panes, dict(changes)
+        for pane in self.panes[1:]:
+            pane.handle.remove(render=False)
+        self.panes, self._beside = panes, changes
         if len(panes) > 1:
             one, two = (pane.handle for pane in panes)
             self._stop_following = follow(lambda: one.scene, lambda: two.scene, self._beside)

@@ -331,8 +331,7 @@ class FlowLayer:
         eye = (
             np.multiply(camera.GetDirectionOfProjection(), -1) if parallel else camera.GetPosition()
         )
-        matrix = self._actor.GetMatrix()
-        placed = np.array([[matrix.GetElement(r, c) for c in range(4)] for r in range(4)])
+        placed: Floats = np.asarray(pv.array_from_vtkmatrix(self._actor.GetMatrix()))
         points = [(*camera.GetFocalPoint(), 1.0), (*eye, float(not parallel))]
         focus, self.view.eye = np.linalg.solve(placed, np.transpose(points)).T
         self.view.focus = focus[:3]

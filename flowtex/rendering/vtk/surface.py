@@ -303,8 +303,7 @@ class FlowSurface:
     @property
     def _place(self) -> Floats:
         """The actor's matrix, (4, 4)."""
-        matrix = self._actor.GetMatrix()
-        return np.array([[matrix.GetElement(r, c) for c in range(4)] for r in range(4)])
+        return np.asarray(pv.array_from_vtkmatrix(self._actor.GetMatrix()))
 
     def _ready(self, key: TileKey, steps: list[int]) -> bool:
         """Whether a tile can be drawn, making its actor first."""

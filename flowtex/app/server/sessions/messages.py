@@ -62,7 +62,8 @@ class LimitedMessages(UnChunker):
         method, args = message.get("method"), message.get("args")
         first = args[0] if isinstance(args, list) and args else None
         if method == "trame.state.update":
-            known = [change for change in _changes(first) if change["key"] in self._declared]
+            changes = [c for c in first if isinstance(c, dict)] if isinstance(first, list) else []
+            known = [c for c in changes if _is_one_of(c.get("key"), self._declared)]
             return {**message, "args": [known], "kwargs": {}}
         if method == "trame.lifecycle.update":
             return {**message, "kwargs": {}} if _is_one_of(first, EVENTS) else None
@@ -71,12 +72,6 @@ class LimitedMessages(UnChunker):
         if isinstance(method, str) and method.startswith("trame.rca."):
             return {**message, "kwargs": {}} if _is_one_of(first, self._areas) else None
         return message
-
-
-def _changes(changes: Any) -> list[dict[str, Any]]:
-    """Return what has the form of changes of the state."""
-    found = changes if isinstance(changes, list) else []
-    return [c for c in found if isinstance(c, dict) and isinstance(c.get("key"), str)]
 
 
 def _is_one_of(name: Any, names: Container[str]) -> bool:

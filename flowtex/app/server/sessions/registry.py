@@ -260,13 +260,9 @@ class Sessions:
         """End sessions that no page has reopened, as long as the task runs."""
         while True:
             await asyncio.sleep(min(every, max(60 * self.idle / 4, 0.05)))
-            for token in list(self._by_token):
-                if self._is_idle(token):
-                    await self.end(token)
-
-    def _is_idle(self, token: str) -> bool:
-        session = self._by_token.get(token)
-        return session not in (None, self._ready) and session.is_idle(60 * self.idle)
+            for session in self:
+                if session is not self._ready and session.is_idle(60 * self.idle):
+                    await self.end(session.token)
 
     async def close(self) -> None:
         """End all sessions."""
