@@ -105,6 +105,10 @@ class _Handler(BaseHTTPRequestHandler):
                 self.send_header("Content-Range", part)
             if self.path.endswith((".html", "/")):
                 self.send_header("Content-Type", "text/html; charset=utf-8")
+            if kind := {".mjs": "javascript", ".js": "javascript", ".css": "css"}.get(
+                Path(self.path.split("?")[0]).suffix
+            ):
+                self.send_header("Content-Type", f"text/{kind}; charset=utf-8")
             self.send_header("Content-Length", str(len(data)))
             self.end_headers()
             if self.command != "HEAD":

@@ -12,7 +12,7 @@ import { BareView, type BareHost } from "./bareview.ts";
 import { projection, type Camera } from "./camera.ts";
 import type { ColourChoice } from "./colours.ts";
 import { eastNorth } from "./lonlat.ts";
-import { Mercator, placeOn, type Place } from "./mercator.ts";
+import { Mercator, placeOn, type MapLook, type Place } from "./mercator.ts";
 import { pathThrough } from "./pointpath.ts";
 import { Programs } from "./programs.ts";
 import type { Header, Settings } from "./protocol.ts";
@@ -75,7 +75,9 @@ export class FlowtexLayer implements CustomLayerInterface {
   /** What the texture shows, and whether the canvas has another picture. */
   private shown: Shown | null = null;
   private next: Shown | null = null;
+  /** What the map showed when the picture was last asked for, and whether that was a globe. */
   private look = "";
+  private globe = false;
   private shownOpacity = 1;
 
   constructor(options: LayerOptions) {
@@ -213,23 +215,12 @@ export class FlowtexLayer implements CustomLayerInterface {
 
   /** Look at what the map shows now. */
   private follow(map: MapLibreMap, view: BareView, mercator: Mercator, globe: boolean): void {
-    const { clientWidth: width, clientHeight: height } = map.getCanvas();
-    const what = {
-      center: map.unproject([width / 2, height / 2]),
-      width,
-      height,
-      zoom: map.getZoom(),
-      bearing: map.getBearing(),
-      pitch: map.getPitch(),
-      fov: map.getVerticalFieldOfView(),
-      globe,
-    };
-    const ratio = map.getPixelRatio();
-    const look = JSON.stringify([what, ratio]);
-    if (look === this.look) return;
-    this.look = look;
+    const { what, ratio, text } = lookOf(map, globe);
+    if (text === this.look) return;
+    this.look = text;
+    this.globe = globe;
     const { state, width: wide, height: high } = mercator.look(what, view.header.geometry.center[2]);
-    const most = Math.sqrt((MOST_SHARE * width * height) / (wide * high));
+    const most = Math.sqrt((MOST_SHARE * what.width * what.height) / (wide * high));
     view.look(state, wide, high, Math.min(ratio, ratio * most, MOST_PIXELS / Math.max(wide, high)));
   }
 
@@ -294,9 +285,27 @@ export class FlowtexLayer implements CustomLayerInterface {
 
   /** Whether the full picture of what the map shows is on it. */
   get isComplete(): boolean {
-    const { view } = this;
-    return !!view?.sharp && !this.next && !!this.shown?.isComplete && !view.tiles?.pending;
+    const { map, view } = this;
+    if (!map || !view?.sharp || this.next || view.tiles?.pending) return false;
+    return !!this.shown?.isComplete && this.look === lookOf(map, this.globe).text;
   }
+}
+
+/** What a map shows, pixels along one of the page, and all of it as a text. */
+function lookOf(map: MapLibreMap, globe: boolean): { what: MapLook; ratio: number; text: string } {
+  const { clientWidth: width, clientHeight: height } = map.getCanvas();
+  const what = {
+    center: map.unproject([width / 2, height / 2]),
+    width,
+    height,
+    zoom: map.getZoom(),
+    bearing: map.getBearing(),
+    pitch: map.getPitch(),
+    fov: map.getVerticalFieldOfView(),
+    globe,
+  };
+  const ratio = map.getPixelRatio();
+  return { what, ratio, text: JSON.stringify([what, ratio]) };
 }
 
 /** Matrix from a tile, with so much of the map to a unit, to the picture of a camera. */

@@ -117,7 +117,7 @@ export class Mercator {
     const seen = Math.asin(Math.min(farthest(map) / radius, 1));
     const [south, north] = [lat - seen, lat + seen].map((end) => placeOn({ lng: 0, lat: end / RADIANS })[1]);
     // Around a pole all longitudes are.
-    const aside = Math.abs(lat) + seen < Math.PI / 2 ? Math.asin(Math.sin(seen) / Math.cos(lat)) : Math.PI;
+    const aside = Math.abs(lat) + seen <= Math.PI / 2 ? Math.asin(Math.sin(seen) / Math.cos(lat)) : Math.PI;
     const [x] = this.positionOf(placeOn(map.center));
     const y = (0.5 * (south + north) - this.origin[1]) / this.slope[1];
     const [wide, high] = [aside / Math.PI, south - north];

@@ -1,0 +1,321 @@
+"""A flow as a layer of a MapLibre map, whose style asks for nothing from the network."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import re
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from pages import opened_page, painted
+from PIL import Image
+from range_server import RangeServer, range_server
+from scipy.ndimage import map_coordinates
+
+import flowtex
+from flowtex.earth import EARTH_RADIUS
+from flowtex.pyramid import build
+from flowtex.web.assets import asset
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+pytest.importorskip("zarr")
+xr = pytest.importorskip("xarray")
+
+pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("small_tiles")]
+
+ROOT = Path(__file__).parents[2]
+MAPLIBRE = ROOT / "client" / "node_modules" / "maplibre-gl" / "dist"
+#: Bytes that a page may load beside MapLibre.
+MOST_BYTES = 60_000
+WIDTH, HEIGHT = 300, 200
+#: Pixels between those whose places are asked for.
+GRID = 8
+GROUND = (255, 0, 255)
+STYLE: dict[str, Any] = {
+    "version": 8,
+    "sources": {},
+    "layers": [{"id": "g", "type": "background", "paint": {"background-color": "#ff00ff"}}],
+}
+HOME = {"center": [-20.0, 40.0], "zoom": 3.0, "bearing": 0, "pitch": 0}
+COMPLETE = "() => window.flow?.isComplete && !map.isMoving()"
+
+Pixels = NDArray[np.float64]
+
+
+def currents(steps: int = 1) -> Any:
+    """Eddies around an island, on longitudes and latitudes."""
+    lon, lat = np.linspace(-60, 20, 161), np.linspace(10, 65, 111)
+    x, y = np.meshgrid(lon, lat)
+    u = np.stack([0.3 + np.cos(y / 5 + t) for t in range(steps)])
+    v = np.stack([np.sin(x / 4 + t) for t in range(steps)])
+    for each in (u, v):
+        each[:, np.hypot((x + 10) / 8, (y - 40) / 6) < 1] = np.nan
+    dims = ("time", "lat", "lon")
+    data = {
+        "u": (dims, u, {"standard_name": "eastward_sea_water_velocity", "units": "m/s"}),
+        "v": (dims, v, {"standard_name": "northward_sea_water_velocity", "units": "m/s"}),
+    }
+    coords = {
+        "time": np.arange(steps) * np.timedelta64(1, "D") + np.datetime64("2026-01-01", "ns"),
+        "lat": ("lat", lat, {"units": "degrees_north"}),
+        "lon": ("lon", lon, {"units": "degrees_east"}),
+    }
+    return xr.Dataset(data, coords)
+
+
+LOOK: dict[str, Any] = {"samples": 13, "cmap": "viridis"}
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Iterator[RangeServer]:
+    """Return a server of a store, scenes, and the page of the documentation."""
+    folder = tmp_path_factory.mktemp("map")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 3000)
+        build(currents().isel(time=0), folder / "flow.zarr", projection="mercator", progress=False)
+    flowtex.export(str(folder / "flow.zarr"), folder / "flow.json", store="./flow.zarr", **LOOK)
+    series = currents(3).isel(lat=slice(None, None, 4), lon=slice(None, None, 4))
+    flowtex.export(series, folder / "series.json", projection="mercator", samples=9)
+    flowtex.export(series.isel(time=0), folder / "flat.json", samples=9)
+    text = (ROOT / "docs" / "howto" / "webmaps.md").read_text(encoding="utf-8")
+    (page,) = re.findall(r"^```html\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    page = page.replace("https://unpkg.com/maplibre-gl@6/dist/", "./maplibre/")
+    page = page.replace('"https://demotiles.maplibre.org/style.json"', "window.mapStyle")
+    page = page.replace("map.addLayer(flow)", "map.addLayer((window.flow = flow))")
+    page += "<style>.maplibregl-control-container { display: none }</style>"
+    page = page.replace("const map = ", "const map = window.map = ")
+    (folder / "page.html").write_text(page.replace("winds.json", "flow.json"), encoding="utf-8")
+    shutil.copy(asset("maplibre.js"), folder)
+    (folder / "maplibre").symlink_to(MAPLIBRE)
+    with range_server(folder) as started:
+        yield started
+
+
+@dataclass
+class Shown:
+    """A map in a browser, and what it complained of."""
+
+    page: Page
+    errors: list[str] = field(default_factory=list)
+
+    def go(self, **look: Any) -> None:
+        """Look at something else, and wait for its full picture."""
+        self.page.evaluate("(look) => map.jumpTo(look)", look)
+        self.wait()
+
+    def wait(self) -> None:
+        self.page.wait_for_function(COMPLETE)
+        painted(self.page)
+
+    def pixels(self) -> Pixels:
+        with Image.open(io.BytesIO(self.page.screenshot())) as image:
+            return np.asarray(image.convert("RGB")).astype(float)
+
+    def replace(self, scene: str) -> None:
+        """Show another scene."""
+        self.page.evaluate(
+            "(scene) => { map.removeLayer('flow'); "
+            "map.addLayer(window.flow = new flow.constructor({ id: 'flow', scene })); }",
+            scene,
+        )
+
+    def hold(self, held: bool = True) -> None:
+        """Have no more pictures of the flow drawn, or have them drawn again."""
+        self.page.evaluate(
+            "(held) => { const { view } = flow; view.frame = held ? () => {} : "
+            "Object.getPrototypeOf(view).frame; view.request(); }",
+            held,
+        )
+
+    def lng_lats(self) -> NDArray[np.float64]:
+        """Return longitude and latitude of every eighth pixel, (rows, columns, 2)."""
+        script = (
+            "([rows, columns]) => rows.map((y) => columns.map((x) => "
+            "{ const { lng, lat } = map.unproject([x + 0.5, y + 0.5]); return [lng, lat]; }))"
+        )
+        places = [list(range(0, size + GRID, GRID)) for size in (HEIGHT, WIDTH)]
+        return np.array(self.page.evaluate(script, places))
+
+    def places(self, lng_lats: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return row and column of all pixels of those, (2, H, W), where they are seen now."""
+        script = (
+            "(rows) => rows.map((row) => row.map((lngLat) => "
+            "{ const { x, y } = map.project(lngLat); return [y - 0.5, x - 0.5]; }))"
+        )
+        found = np.array(self.page.evaluate(script, lng_lats.tolist()))
+        grid = np.mgrid[0:HEIGHT, 0:WIDTH] / GRID
+        return np.stack([map_coordinates(found[..., k], grid, order=1) for k in range(2)])
+
+
+@pytest.fixture
+def shown(browser: Browser, server: RangeServer) -> Iterator[Shown]:
+    """The page of the documentation, with its map complete."""
+    with opened_page(browser, WIDTH, HEIGHT) as page:
+        shown = Shown(page)
+        page.on("pageerror", lambda error: shown.errors.append(str(error)))
+        page.add_init_script(f"window.mapStyle = {STYLE!r}")
+        page.goto(f"{server.address}page.html")
+        page.wait_for_function("() => window.map?.jumpTo")
+        page.evaluate(
+            "() => { window.told = []; map.on('error', (e) => told.push(e.error.message)); }"
+        )
+        page.evaluate("(look) => { map.jumpTo(look); }", HOME)
+        shown.wait()
+        yield shown
+        assert page.evaluate("() => told") == []
+    assert shown.errors == []
+
+
+def moved(before: Pixels, places: NDArray[np.float64]) -> Pixels:
+    """Return a picture whose pixels are from places of another; NaN beside it."""
+    channels = [map_coordinates(before[..., k], places, order=1, cval=np.nan) for k in range(3)]
+    return np.stack(channels, axis=-1)
+
+
+def correlation(one: Pixels, other: Pixels) -> float:
+    """Return the correlation of brightness where both show the flow, which must be a large part."""
+    seen = np.isfinite(one + other).all(axis=-1)
+    for picture in (one, other):
+        seen &= np.abs(picture - GROUND).sum(axis=-1) > 60
+    assert seen.mean() > 0.15
+    return float(np.corrcoef(one[seen].mean(axis=-1), other[seen].mean(axis=-1))[0, 1])
+
+
+VIEWS: dict[str, dict[str, Any]] = {
+    "pan": {"center": [-24.2, 42.1], "zoom": 3},
+    "zoom": {"center": [-18.0, 41.0], "zoom": 3.6},
+    "turn": {"center": [-20.0, 40.0], "zoom": 3.2, "bearing": 35, "pitch": 40},
+}
+
+
+@pytest.mark.parametrize("projection", ["mercator", "globe"])
+def test_the_layer_sticks_to_the_map(shown: Shown, projection: str) -> None:
+    shown.page.evaluate("(type) => map.setProjection({ type })", projection)
+    painted(shown.page)
+    shown.go(**HOME)
+    before = shown.pixels()
+    for look in VIEWS.values():
+        shown.hold()
+        shown.page.evaluate("(look) => map.jumpTo(look)", look)
+        painted(shown.page)
+        after, lng_lats = shown.pixels(), shown.lng_lats()
+        shown.page.evaluate("(look) => map.jumpTo(look)", HOME)
+        painted(shown.page)
+        expected = moved(before, shown.places(lng_lats))
+        assert correlation(expected, after) > 0.95
+        shown.hold(False)
+        shown.wait()
+    # A new picture goes on where the last one was.
+    shown.go(**VIEWS["pan"])
+    after, lng_lats = shown.pixels(), shown.lng_lats()
+    shown.go(**HOME)
+    assert correlation(moved(before, shown.places(lng_lats)), after) > 0.95
+
+
+def test_the_layer_agrees_with_flowtexs_own_view(shown: Shown, server: RangeServer) -> None:
+    for center, zoom in (([-24.2, 42.1], 3.0), ([-21.3, 44.0], 6.5)):
+        shown.go(center=center, zoom=zoom)
+        lng, lat = np.radians(center)
+        # MapLibre's world has 512 pixels at zoom 0; the map of the field begins at its own middle.
+        pixel = 2 * np.pi * EARTH_RADIUS / (512 * 2**zoom)
+        middle = np.radians(-20.0)
+        x, y = EARTH_RADIUS * (lng - middle), EARTH_RADIUS * np.arctanh(np.sin(lat))
+        camera = {
+            "position": (x, y, 1e7),
+            "focal_point": (x, y, 0.0),
+            "up": (0.0, 1.0, 0.0),
+            "parallel": True,
+            "parallel_scale": 0.5 * HEIGHT * pixel,
+        }
+        own = flowtex.render(
+            str(server.folder / "flow.zarr"),
+            size=(WIDTH, HEIGHT),
+            camera=camera,
+            background="#ff00ff",
+            coastlines=False,
+            show_scalar_bar=False,
+            **LOOK,
+        )
+        assert correlation(own.astype(float), shown.pixels()) > 0.98
+
+
+def test_what_is_shown_can_be_changed(shown: Shown) -> None:
+    shown.page.evaluate("() => { flow.opacity = 1; }")
+    painted(shown.page)
+    whole = shown.pixels()
+    water = np.abs(whole - GROUND).sum(axis=-1) > 60
+    shown.page.evaluate("() => { flow.opacity = 0.5; }")
+    painted(shown.page)
+    np.testing.assert_allclose(shown.pixels(), (whole + GROUND) / 2, atol=1.5)
+    shown.page.evaluate("flow.opacity = 1; flow.setColours({ cmap: 'magma' })")
+    shown.wait()
+    assert np.abs(shown.pixels() - whole)[water].mean() > 20
+    assert np.abs(shown.pixels() - whole)[~water].max() == 0
+    shown.page.evaluate("flow.setColours({ cmap: 'viridis' }); flow.set({ strength: 0 })")
+    shown.wait()
+    grain = [np.abs(np.diff(each, axis=1)).mean() for each in (shown.pixels(), whole)]
+    assert grain[0] < 0.5 * grain[1]
+    shown.page.evaluate("() => flow.play()")
+    shown.page.wait_for_function("() => flow.time > 0.1")
+    shown.page.evaluate("() => flow.pause()")
+    shown.wait()
+    assert shown.page.evaluate("() => [flow.times, flow.time < 5]") == [[0], True]
+
+
+def test_a_click_is_answered_by_the_data(shown: Shown) -> None:
+    shown.page.wait_for_function("() => flow.pointAt({ lng: -30, lat: 42 })")
+    ask = "([lng, lat]) => flow.pointAt({ lng, lat })"
+    found = shown.page.evaluate(ask, [-30.2, 42.3])
+    data = currents().isel(time=0).interp(lon=-30.2, lat=42.3)
+    assert found["eastward"] == pytest.approx(float(data.u), abs=0.02)
+    assert found["northward"] == pytest.approx(float(data.v), abs=0.02)
+    assert found["values"]["speed"] == pytest.approx(float(np.hypot(data.u, data.v)), rel=0.02)
+    away = np.hypot(*(np.array(found["path"]) - [-30.2, 42.3]).T)
+    assert away.min() < 1e-3 and 0.1 < away.max() < 9
+    assert shown.page.evaluate(ask, [-10, 40]) is None  # the island
+
+
+def test_the_map_asks_for_the_tiles_that_it_shows(shown: Shown, server: RangeServer) -> None:
+    server.reset(server.folder)
+    # The first views have shown the others; each tile is one object for the flow.
+    shown.go(center=[12.0, 50.0], zoom=5)
+    assert [path.split("/c/")[1] for path in server.paths if "0/flow/c/" in path] == ["0/1/2/0"]
+    assert len(gzip.compress(asset("maplibre.js").read_bytes())) < MOST_BYTES
+
+
+def test_a_series_goes_on_in_time(shown: Shown) -> None:
+    shown.replace("series.json")
+    shown.wait()
+    first = shown.pixels()
+    times = shown.page.evaluate("() => flow.times")
+    assert np.diff(times) == pytest.approx(86_400)
+    shown.page.evaluate("(time) => { flow.time = time; }", times[1])
+    shown.wait()
+    assert shown.page.evaluate("() => flow.time") == times[1]
+    assert np.abs(shown.pixels() - first).mean() > 5
+    shown.page.evaluate("() => { window.view = flow.view; map.removeLayer('flow'); }")
+    painted(shown.page)
+    assert (shown.pixels() == GROUND).all()
+    assert shown.page.evaluate("() => view.graphics.objects") == 0
+
+
+@pytest.mark.parametrize(
+    ("scene", "said"),
+    [
+        ("flat.json", 'the flow is on another map; export it with projection="mercator"'),
+        ("none.json", "none.json cannot be read: the server answers 404"),
+    ],
+)
+def test_what_cannot_be_shown_is_told_to_the_map(shown: Shown, scene: str, said: str) -> None:
+    shown.replace(scene)
+    shown.page.wait_for_function("() => told.length")
+    assert said in shown.page.evaluate("() => told.splice(0).join()")
