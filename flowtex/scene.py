@@ -316,7 +316,10 @@ class Scene:
         before, after, share = self.moment
         if len(steps) == 1:
             return np.asarray(steps[0])
-        return np.asarray(steps[before] * (1 - share) + steps[after] * share)
+        one, other = steps[before], steps[after]
+        mixed = one * (1 - share) + other * share
+        # Where one step has no value, that of the nearer step is shown.
+        return np.asarray(np.where(np.isnan(mixed), one if share < 0.5 else other, mixed))
 
     def _limits(self, appearance: Appearance) -> tuple[float, float]:
         name, chosen = appearance.scalar_name, appearance.clim

@@ -29,6 +29,7 @@ from flowtex.field.derived import (
     speed_unit,
 )
 from flowtex.field.formula import Formula
+from flowtex.field.gaps import filled_gaps
 from flowtex.field.grids.arrays import grid_nodes
 from flowtex.field.grids.surface import GridSurface
 from flowtex.field.interpolation import every_line
@@ -177,12 +178,12 @@ class FlowField(FieldConstructors):
             (J, I).
         velocity
             Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a time-varying field, in
-            units of length per unit of time. NaN and masked entries blank a node. Steps that are
-            read lazily (``LazySteps``) stay lazy; the first one determines the valid nodes.
+            units of length per unit of time. NaN and masked entries blank a node; one that has data
+            at some times is at rest at the others, without streaks, and the scalar ``"no data"`` is
+            1 there. Steps that are read lazily (``LazySteps``) stay lazy: at most three tell this.
         times
-            Time of each step, (T,), strictly increasing, in any unit of time; 0, 1, 2, ... by
-            default. Dates (``datetime64``, or cftime's) become seconds since the first, with the
-            unit of time ``"s"``; pictures and messages show them as dates.
+            Time of each step, (T,), strictly increasing; 0, 1, 2, ... by default. Dates
+            (``datetime64``, or cftime's) become seconds since the first, and are shown as dates.
         valid
             Nodes that have data, (J, I). All by default.
         periodic
@@ -190,8 +191,7 @@ class FlowField(FieldConstructors):
             detected: first and last lines of nodes that coincide, a ring that ends one cell short,
             and global longitude on a flat map.
         scalars
-            Further nodal arrays, name to (J, I) or (T, J, I), to colour by. Values beyond 1e100
-            become NaN.
+            Further nodal arrays, name to (J, I) or (T, J, I); values beyond 1e100 become NaN.
         name, length_unit, time_unit
             Text for captions.
         sign_free
@@ -236,16 +236,12 @@ class FlowField(FieldConstructors):
         """
         times, time_unit, start = as_seconds(times, time_unit)
         t = None if times is None else with_gaps("times", times)
-        nodes = grid_nodes(
-            points,
-            velocity,
-            t,
-            valid,
-            periodic,
-            {} if scalars is None else scalars,
-            sign_free=sign_free,
-            on_globe=projection is not None and projection.is_globe,
+        given = filled_gaps(
+            velocity, scalars, units, axes=2, unit=speed_unit(length_unit, time_unit)
         )
+        on_globe = projection is not None and projection.is_globe
+        parts = points, given.velocity, t, valid, periodic, given.scalars
+        nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
         flow = cls(
             points=nodes.surface.points,
             velocity=nodes.velocity,
@@ -258,10 +254,11 @@ class FlowField(FieldConstructors):
             time_unit=time_unit,
             has_position=nodes.surface.has_position,
             sign_free=sign_free,
-            units=dict(units or {}),
+            units=dict(given.units),
             long_names=dict(long_names or {}),
             start=start,
             projection=projection,
+            uncertainty=given.uncertainty,
         )
         flow.__dict__["surface"] = nodes.surface  # the same that the property would make again
         if not nodes.moves:
@@ -333,7 +330,10 @@ class FlowField(FieldConstructors):
         """
         times, time_unit, start = as_seconds(times, time_unit)
         t = None if times is None else with_gaps("times", times)
-        arrays = triangle_nodes(points, triangles, velocity, t, valid, scalars or {})
+        given = filled_gaps(
+            velocity, scalars, units, axes=1, unit=speed_unit(length_unit, time_unit)
+        )
+        arrays = triangle_nodes(points, triangles, given.velocity, t, valid, given.scalars)
         count = len(arrays.velocity)
         flow = cls(
             points=arrays.points,
@@ -345,11 +345,12 @@ class FlowField(FieldConstructors):
             name=name,
             length_unit=length_unit,
             time_unit=time_unit,
-            units=dict(units or {}),
+            units=dict(given.units),
             long_names=dict(long_names or {}),
             start=start,
             projection=projection,
             triangles=arrays.triangles,
+            uncertainty=given.uncertainty,
         )
         if not isinstance(arrays.velocity, LazySteps) and not flow.velocity.any():
             notify(ALL_AT_REST, UserWarning)

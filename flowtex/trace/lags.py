@@ -88,8 +88,9 @@ def typical_speed(field: FlowField) -> float:
     """
     some = field.typical
     on_earth = field.projection is not None and "speed" in field.scalars
-    speed = np.asarray(some.scalars["speed"] if on_earth else some.speed)
-    return float(np.sqrt(np.mean(np.square(speed[:, field.valid])))) or 1.0
+    speed = np.asarray(some.scalars["speed"] if on_earth else some.speed)[:, field.valid]
+    known = speed[np.isfinite(speed)]
+    return float(np.sqrt(np.square(known).sum() / max(known.size, 1))) or 1.0
 
 
 def small_cell(field: FlowField) -> float:

@@ -48,7 +48,7 @@ def test_a_field_is_made_of_finite_numbers(arguments: dict[str, Any]) -> None:
         check(field)
 
 
-def damaged(array: Any, value: float, at: tuple[int, ...] = (1, 1, 0)) -> Any:
+def damaged(array: Any, value: float, at: tuple[Any, ...] = (1, 1, 0)) -> Any:
     result = np.array(array, dtype=float)
     result[at] = value
     return result
@@ -101,7 +101,7 @@ def test_numbers_that_cannot_be_drawn_are_named(arguments: dict[str, Any], text:
 def test_what_was_given_is_neither_changed_nor_kept() -> None:
     given: dict[str, Any] = {
         "points": damaged(PLANE, 1e20),
-        "velocity": damaged(np.stack([WIND, WIND]), np.nan, (0, 1, 1, 0)),
+        "velocity": damaged(np.stack([WIND, WIND]), np.nan, (slice(None), 1, 1, 0)),
         "times": np.array([0.0, 1.0]),
         "scalars": {"p": damaged(PLANE[..., 0], 1e300, (1, 1))},
     }

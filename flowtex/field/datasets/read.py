@@ -157,7 +157,7 @@ def read_datasets(
     nodes, more = (
         _on_grid(known, projection)
         if known.mesh is None
-        else _on_mesh_nodes(known, known.mesh, projection, numbers)
+        else _on_mesh_nodes(known, known.mesh, projection)
     )
 
     def later(read: Callable[[int], Floats]) -> LazySteps:
@@ -167,9 +167,7 @@ def read_datasets(
         return nodes.at(read(number))
 
     def vectors(number: int) -> Floats:
-        moved = nodes.vectors(*map(nodes.at, known.turned(*known.steps(number))))
-        # What of a mesh is dry now and was not always is at rest.
-        return moved if known.mesh is None else np.nan_to_num(moved)
+        return nodes.vectors(*map(nodes.at, known.turned(*known.steps(number))))
 
     extra = {key: later(partial(value, scalar.read)) for key, scalar in scalars.items()}
     if nodes.projection is not None and not nodes.projection.is_globe:
@@ -242,22 +240,19 @@ def _on_grid(known: Recognised, projection: str | None) -> tuple[Nodes, dict[str
 
 
 def _on_mesh_nodes(
-    known: Recognised, mesh: Mesh, projection: str | None, numbers: list[int]
+    known: Recognised, mesh: Mesh, projection: str | None
 ) -> tuple[Nodes, dict[str, Any]]:
-    """Return the same of a mesh; nodes are valid that have data at some time."""
-    some = sorted({numbers[0], numbers[len(numbers) // 2], numbers[-1]})
-    valid = np.any([np.isfinite(known.steps(n)).all(axis=0) for n in some], axis=0)
+    """Return the same of a mesh."""
     if not mesh.is_earth:
         more = {"length_unit": known.places.unit or "m", "triangles": mesh.triangles}
-        return PlaneNodes(mesh.positions), {**more, "valid": valid}
+        return PlaneNodes(mesh.positions), more
     nodes = mesh_on_map(mesh, known.places, projection)
     if nodes.lost:
         notify(
             f"{nodes.lost:,} triangles are left out, because the map cuts them, as at a pole; "
             "draw a globe to see all of them: globe=True"
         )
-    is_valid = nodes.at(valid * 1.0) > 1 - 1e-9
-    return nodes, {"length_unit": "m", "triangles": nodes.triangles, "valid": is_valid}
+    return nodes, {"length_unit": "m", "triangles": nodes.triangles}
 
 
 def _regions(

@@ -27,7 +27,7 @@ from flowtex.field.datasets.maps import (
 from flowtex.field.datasets.places import Places
 from flowtex.field.grids.periodic import find_closure
 from flowtex.field.io.inspection.limits import values_in
-from flowtex.field.steps import Nodes
+from flowtex.field.steps import Nodes, typical_steps
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -104,22 +104,27 @@ class Regions:
         return (*self.scalars, "speed") if drawn else tuple(self.scalars)
 
     def nodes(self, step: int, rows: Any, columns: Any, valid: Bools | None = None) -> Nodes:
-        """Read some rows and columns at a time step; ``valid`` is that of the first, if known."""
+        """Read some rows and columns at a time step; ``valid`` is that of all, if known."""
         number = self.numbers[step]
         u, v = self._components(number, rows, columns)
         velocity = self.lines.vectors(u, v, rows, columns)
+        known = np.isfinite(velocity).all(axis=-1)
         if valid is None:
-            first = velocity
-            if step:
-                u_first, v_first = self._components(self.numbers[0], rows, columns)
-                first = self.lines.vectors(u_first, v_first, rows, columns)
-            valid = np.asarray(np.isfinite(first).all(axis=-1))
-        velocity[~valid] = 0.0
+            valid = np.zeros_like(known)
+            for other in typical_steps(len(self.numbers)):
+                if valid.all():  # the others are read only where a step has gaps
+                    break
+                if other != step:
+                    one, two = self._components(self.numbers[other], rows, columns)
+                    valid |= np.isfinite(self.lines.vectors(one, two, rows, columns)).all(axis=-1)
+                else:
+                    valid |= known
+        velocity[~(valid & known)] = 0.0
         scalars = {k: self.read(s, number, rows, columns) for k, s in self.scalars.items()}
         if len(self.names) > len(scalars):
             scalars["speed"] = np.hypot(u, v)
         points = self.lines.points(rows, columns)
-        return Nodes(points, valid, np.nan_to_num(velocity), scalars)
+        return Nodes(points, valid, velocity, scalars)
 
     def _components(self, number: int, rows: Any, columns: Any) -> list[Floats]:
         parts = [self.read(one, number, rows, columns) * self.factor for one in self.components]

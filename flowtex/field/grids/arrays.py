@@ -96,7 +96,7 @@ def grid_nodes(
 
     def moving(step: Floats) -> Floats:
         step = closed_as_nodes(three_components(step))
-        return np.where(ok[..., None], np.nan_to_num(step), 0.0)
+        return np.where((ok & finite_nodes(step))[..., None], step, 0.0)
 
     steps = velocity.map(moving) if isinstance(velocity, LazySteps) else v
     read = {name: scalar.map(closed_as_nodes) for name, scalar in late.items()}

@@ -218,8 +218,8 @@ class FieldConstructors:
         data
             A Dataset, or a list of several that belong together, such as NEMO's files of U, of V
             and of coordinates, or the steps of a series; or a DataTree, of which one group has a
-            velocity. Only coordinates and one step are read at first; further steps are
-            read when they are drawn.
+            velocity. Only coordinates and one step are read at first, or three where data are
+            missing; further steps are read when they are drawn.
         u, v
             Names of the components. By default the only pair that is recognised as the velocity by
             CF standard names, long names or names.

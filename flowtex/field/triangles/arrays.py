@@ -106,7 +106,8 @@ def triangle_nodes(
 
 def _row(ok: Bools, step: Floats) -> Floats:
     """Return a step (1, N, 3) of (N, 2 or 3): nodes that are not in use have NaN."""
-    return np.where(ok[:, None], three_components(np.nan_to_num(step)), np.nan)[None]
+    step = np.where(np.isfinite(step).all(axis=-1, keepdims=True), step, 0.0)
+    return np.where(ok[:, None], three_components(step), np.nan)[None]
 
 
 def _faults(

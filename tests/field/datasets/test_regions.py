@@ -13,6 +13,7 @@ from flowtex._util.array_types import Floats
 from flowtex._util.blocks import even_runs
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
+from flowtex.field.gaps import NO_DATA
 from flowtex.field.io.arrays import GridArrays
 
 xr = pytest.importorskip("xarray")
@@ -71,9 +72,12 @@ def assert_same(field: FlowField, regions: Regions) -> None:
     assert regions.lines.shape == field.shape
     assert (False, regions.lines.closed) == field.periodic
     assert regions.lines.projection == field.projection
-    assert regions.names == tuple(field.scalars)
-    for name in ("name", "length_unit", "start", "units", "long_names"):
+    derived = set() if "speed" in regions.names else {"speed"}
+    assert regions.names == tuple(n for n in field.scalars if n not in {NO_DATA, *derived})
+    for name in ("name", "length_unit", "start", "long_names"):
         assert getattr(regions.words, name) == getattr(field, name)
+    units = {name: unit for name, unit in field.units.items() if name not in derived}
+    assert regions.words.units == units
     np.testing.assert_array_equal(regions.words.times, field.times)
     some: list[tuple[Any, Any]] = [
         (slice(0, 20), slice(0, 30)),

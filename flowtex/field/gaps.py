@@ -1,0 +1,81 @@
+"""Nodes that have data at some times only, as of a radar, or of a level below the ground.
+
+A field has one mask for all times, so such nodes are at rest while they have no data. They are
+drawn without streaks, as the uncertainty of their direction is 1, and in the colour of NaN.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flowtex._util.array_types import Bools, Floats
+from flowtex.errors import FieldError
+from flowtex.field.steps import LazySteps, map_steps, typical_steps
+from flowtex.field.validation import with_gaps
+
+#: The scalar that is 1 where there are no data, 0 elsewhere.
+NO_DATA = "no data"
+
+
+class Filled(NamedTuple):
+    """Arguments of a field, and the name of the uncertainty; empty without gaps in time."""
+
+    velocity: Any
+    scalars: Mapping[str, Any]
+    units: Mapping[str, str]
+    uncertainty: str
+
+
+def filled_gaps(
+    velocity: Any,
+    scalars: Mapping[str, Any] | None,
+    units: Mapping[str, str] | None,
+    *,
+    axes: int,
+    unit: str,
+) -> Filled:
+    """Return a velocity (T, ..., 2 or 3) that is zero where only some times have no data.
+
+    There are so many ``axes`` of nodes, and ``unit`` is that of the speed. Of late steps the first,
+    the middle and the last one are compared, if nodes of the first one have no data.
+    """
+    unchanged = Filled(velocity, {} if scalars is None else scalars, units or {}, "")
+    if isinstance(velocity, LazySteps):
+        some = typical_steps(len(velocity)) if not _known(velocity[0]).all() else []
+        each: Any = [_known(velocity[number]) for number in some]
+    else:
+        try:
+            velocity = with_gaps("velocity", velocity)
+        except FieldError:  # which says later what else is wrong
+            return unchanged
+        each = _known(velocity) if velocity.ndim == axes + 2 else []
+    if len(each) < 2 or not isinstance(unchanged.scalars, Mapping):
+        return unchanged
+    sometimes: Bools = np.any(each, axis=0)
+    if np.array_equal(sometimes, np.all(each, axis=0)):
+        return unchanged
+
+    def filled(step: Floats) -> Floats:
+        return np.where((sometimes & ~_known(step))[..., None], 0.0, step)
+
+    def lacking(step: Floats) -> Floats:
+        return np.where(_known(step), 0.0, 1.0)
+
+    def speed(step: Floats) -> Floats:
+        with np.errstate(over="ignore", invalid="ignore"):  # which the field refuses later
+            return np.where(_known(step), np.linalg.norm(step, axis=-1), np.nan)
+
+    more = {NO_DATA: map_steps(velocity, lacking), "speed": map_steps(velocity, speed)}
+    return Filled(
+        map_steps(velocity, filled),
+        {**unchanged.scalars, **{k: v for k, v in more.items() if k not in unchanged.scalars}},
+        {"speed": unit, **(units or {})},
+        NO_DATA,
+    )
+
+
+def _known(step: Floats) -> Bools:
+    return np.asarray(np.isfinite(step).all(axis=-1))
