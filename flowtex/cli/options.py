@@ -172,7 +172,7 @@ class AddressFlags:
             negative=(),
         ),
     ] = ()
-    browser: Annotated[
+    open_browser: Annotated[
         bool,
         Parameter(group=PAGE, name=["--browser", "--open"], help="Open the page in the browser."),
     ] = True

@@ -68,7 +68,7 @@ def serve_processes(page: ServeFlags | None) -> bool:
             announcer(first["description"], page.host)(address)
 
         open_session = process_opener(ENTRY, PRELOAD, request, first.update)
-        serve_sessions(open_session, secret, **_place(page), announce=announce)
+        serve_sessions(open_session, secret, **vars(page), announce=announce)
     return True
 
 
@@ -88,19 +88,8 @@ def serve_library(library: Library, page: ServeFlags | None, options: dict[str, 
         return 0
     with waiting(f"Tracing {describe(field)}") as end_waiting:
         announce = announcer(describe(field), page.host, end_waiting)
-        serve(library, **_place(page), announce=announce, **options)
+        serve(library, **vars(page), announce=announce, **options)
     return 0
-
-
-def _place(page: ServeFlags) -> dict[str, Any]:
-    return {
-        "host": page.host,
-        "port": page.port,
-        "allow_host": page.allow_host,
-        "limit": page.limit,
-        "idle": page.idle,
-        "open_browser": page.browser,
-    }
 
 
 def open_site(

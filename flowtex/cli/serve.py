@@ -79,7 +79,7 @@ def serve(
             token=token or new_secret(),
             hosts=known_hosts(at.host, at.allow_host),
             announce=announcer(describe(field), at.host, end_waiting),
-            open_browser=at.browser and has_display(),
+            open_browser=at.open_browser and has_display(),
         )
         with suppress(KeyboardInterrupt, asyncio.CancelledError):
             asyncio.run(serving)

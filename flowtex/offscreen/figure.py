@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from contextlib import closing
 from dataclasses import replace
 from typing import Any
 
@@ -368,16 +369,14 @@ class FlowImage(AxesImage):
             camera=self._camera(corners.mean(axis=0), float(spans[1])),
             background=self.axes.get_facecolor(),
         )
-        with (
-            OffscreenPlotter(
-                self._scene.field,
-                replace(self._options, appearance=look, view=view),
-                size=(width, height),
-                supersampling=self._supersampling,
-                density=density,
-            ) as plotter,
-            warnings.catch_warnings(),
-        ):
+        plotter = OffscreenPlotter(
+            self._scene.field,
+            replace(self._options, appearance=look, view=view),
+            size=(width, height),
+            supersampling=self._supersampling,
+            density=density,
+        )
+        with closing(plotter), warnings.catch_warnings():
             warnings.filterwarnings("ignore", NOTHING_SEEN)  # axes may be elsewhere
             picture = plotter.picture(time=self.time, clock=self.clock)
         across, up = np.sign(corners[1] - corners[0]).astype(int)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator, Iterator
+from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -285,7 +286,7 @@ def _prepare(
 def _draw(
     field: FlowField, options: Options, shown: FrameTimes, **arguments: Any
 ) -> Generator[Bytes, None, None]:
-    with OffscreenPlotter(field, options, **arguments) as plotter:
+    with closing(OffscreenPlotter(field, options, **arguments)) as plotter:
         for time in shown.times:
             yield plotter.picture(time=time)
         for clock in shown.clocks:

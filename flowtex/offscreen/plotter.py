@@ -133,12 +133,6 @@ class OffscreenPlotter:
             handle.remove(render=False)
         self._plotter.close()
 
-    def __enter__(self) -> OffscreenPlotter:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
 
 def new_plotter(size: tuple[int, int], *, two_views: bool, **options: Any) -> Any:
     """Return a PyVista plotter with one view, or with two side by side."""

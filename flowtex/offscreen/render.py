@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from typing import Any, NamedTuple
 
 from flowtex._util.array_types import Bytes
@@ -82,7 +83,7 @@ def render(
     >>> flowtex.render(field, size=(160, 120), zoom=4, samples=9).shape
     (120, 160, 3)
     """
-    with OffscreenPlotter(
+    plotter = OffscreenPlotter(
         mesh,
         Options.split(**options),
         size=size,
@@ -90,7 +91,8 @@ def render(
         margin=margin,
         annotations=annotations,
         scalar_bar_args=scalar_bar_args,
-    ) as plotter:
+    )
+    with closing(plotter):
         scene = plotter.handles[0].scene
         if clock and scene.settings.motion == "off":
             notify(f"clock is {clock!r}, but motion is 'off', and nothing moves")

@@ -109,11 +109,9 @@ class MapOverlay(Overlay):
     def _include_globe(self, camera: Any, radius: float) -> None:
         """Let the camera see the globe, which is farther than the flow and has no bounds."""
         near, far = camera.GetClippingRange()
-        matrix = self._actor.GetMatrix()
-        middle = np.array([matrix.GetElement(k, 3) for k in range(3)])
-        view = read_camera(camera)
-        depth = float((middle - view.position) @ view.axes[2])
-        radius *= float(np.linalg.norm([matrix.GetElement(k, 0) for k in range(3)]))
+        matrix, view = pv.array_from_vtkmatrix(self._actor.GetMatrix()), read_camera(camera)
+        depth = float(np.subtract(matrix[:3, 3], view.position) @ view.axes[2])
+        radius *= float(np.linalg.norm(matrix[:3, 0]))
         far = max(far, depth + radius)
         near = min(near, max(depth - radius, NEAREST * far))
         camera.SetClippingRange(near, far)

@@ -51,8 +51,7 @@ class Structure:
         """Return the critical points of a step, the strongest first."""
         with self._lock:
             if step not in self._points:
-                self._points[step] = self._every_point(step).strongest(MOST_POINTS)
-                _trim(self._points)
+                _keep(self._points, step, self._every_point(step).strongest(MOST_POINTS))
             return self._points[step]
 
     def _every_point(self, step: int) -> CriticalPoints:
@@ -69,8 +68,7 @@ class Structure:
                 length = DRAWN_EXTENTS * self._field.surface.extent
                 field, points = self._field.at_step(step), self._every_point(step)
                 lines = separatrices_between(field, points, length, saddles, most=DRAWN_POINTS)
-                self._lines[step] = saddles, lines
-                _trim(self._lines)
+                _keep(self._lines, step, (saddles, lines))
             kept = {id(saddle) for saddle in _saddles(lines)[:saddles]}
             return Separatrices(line for line in lines if id(line.saddle) in kept)
 
@@ -79,8 +77,7 @@ class Structure:
         with self._lock:
             if step not in self._orbits:
                 points = self._every_point(step)
-                self._orbits[step] = orbits_around(self._field.at_step(step), points)
-                _trim(self._orbits)
+                _keep(self._orbits, step, orbits_around(self._field.at_step(step), points))
             return self._orbits[step]
 
     def paths(self, step: int, saddles: int) -> dict[str, list[Floats]]:
@@ -121,8 +118,9 @@ def _saddles(lines: Separatrices) -> CriticalPoints:
     return CriticalPoints(list(found.values())).strongest(len(found))
 
 
-def _trim(steps: OrderedDict[int, Any]) -> None:
-    while len(steps) > KEPT_STEPS:
+def _keep(steps: OrderedDict[int, Any], step: int, found: Any) -> None:
+    steps[step] = found
+    if len(steps) > KEPT_STEPS:
         steps.popitem(last=False)
 
 

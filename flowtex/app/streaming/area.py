@@ -30,7 +30,6 @@ from flowtex.app.streaming.viewport import Viewport
 from flowtex.field import FlowField
 from flowtex.options import AppearanceAttributes, FieldOptions, ViewOptions
 from flowtex.scene import Change, Scene
-from flowtex.settings import Settings
 
 
 class FlowArea(AppearanceAttributes):
@@ -116,11 +115,6 @@ class FlowArea(AppearanceAttributes):
     def field(self, mesh: Any) -> None:
         reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
         self.show(reading.field(mesh), keep_view=True, keep_range=True)
-
-    @property
-    def settings(self) -> Settings:
-        """All settings, which can be changed."""
-        return self.viewport.settings
 
     def ui(self, **attributes: Any) -> Any:
         """Add the view to the open layout; ``attributes`` are those of the element."""

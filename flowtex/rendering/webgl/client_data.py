@@ -217,23 +217,21 @@ class ClientData:
             "lengthUnit": self.field.length_unit,
             "speed": self._speed(),
             "scalars": {
-                "name": colours.name,
+                **{
+                    n: getattr(colours, n)
+                    for n in ("name", "unit", "number", "cmap", "auto", "bar")
+                },
                 "label": colours.label or colours.name or "",
                 "low": float(colours.low),
                 "high": float(colours.high),
-                "log": bool(colours.log_scale),
+                "log": colours.log_scale,
                 "steps": 1 if colours.values is None or len(colours.values) == 1 else self.steps,
-                "unit": colours.unit,
-                "number": colours.number,
                 "choices": [
                     {**choice, "steps": self.steps if choice["steps"] > 1 else 1}
                     for choice in colours.choices
                 ],
-                "cmap": colours.cmap,
-                "auto": bool(colours.auto),
                 "maps": list(CMAPS),
                 "diverging": list(filter(is_diverging, CMAPS)),
-                "bar": bool(colours.bar),
             },
             "colour": plain_list(colours.plain),
             "background": colours.background and plain_list(colours.background),
