@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from flowtex.camera import Camera
     from flowtex.display import show
     from flowtex.field.formula.make import formula
+    from flowtex.offscreen.dynamic import dynamic_map
     from flowtex.offscreen.figure import axes, extent
     from flowtex.offscreen.movie import movie
     from flowtex.offscreen.render import render
@@ -47,6 +48,7 @@ __all__ = [
     "axes",
     "closed_orbits",
     "critical_points",
+    "dynamic_map",
     "examples",
     "export",
     "extent",
@@ -70,6 +72,7 @@ _LAZY = {
     "axes": "offscreen.figure",
     "closed_orbits": "trace.structure",
     "critical_points": "trace.structure",
+    "dynamic_map": "offscreen.dynamic",
     "export": "web.export",
     "extent": "offscreen.figure",
     "formula": "field.formula.make",
@@ -79,7 +82,7 @@ _LAZY = {
     "show": "display",
 }
 #: Those that need OpenGL: it is tried while they are imported.
-_DRAWS = ("axes", "movie", "render", "show")
+_DRAWS = ("axes", "dynamic_map", "movie", "render", "show")
 
 
 def __getattr__(name: str) -> Any:

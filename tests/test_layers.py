@@ -79,7 +79,7 @@ LIBRARIES = (
     Library(
         ("matplotlib",),
         on_load=("offscreen.figure", "offscreen.earth_axes"),
-        in_functions=("_util.colours", "offscreen.annotations", "xarray"),
+        in_functions=("_util.colours", "offscreen.annotations", "offscreen.dynamic", "xarray"),
     ),
     Library(
         (

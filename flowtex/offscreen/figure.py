@@ -258,6 +258,11 @@ class FlowImage(AxesImage):
         self._frame = _frame(self._scene.whole.surface)
 
     @property
+    def flow(self) -> FlowField:
+        """The field that is drawn."""
+        return self._scene.field
+
+    @property
     def colour_label(self) -> str:
         """Name and unit of the scalars, for a colour bar; empty if the flow has one colour."""
         name = self._scene.scalar_name
@@ -358,7 +363,10 @@ class FlowImage(AxesImage):
         return self._picture, float(left), float(bottom), None
 
     def _draw(self, corners: Floats, size: tuple[int, int], density: float) -> Bytes:
-        """Draw what lies between two corners, (2, 2), opaque, row 0 at the bottom."""
+        """Draw what lies between two corners, (2, 2), row 0 at the bottom.
+
+        It is opaque, except on axes without a ground.
+        """
         spans = np.abs(corners[1] - corners[0])
         scale = min(float(np.max(size / spans)), LONGEST_SIDE_PX / float(spans.max()))
         width, height = (max(round(float(n)), 1) for n in spans * scale)
@@ -378,7 +386,12 @@ class FlowImage(AxesImage):
         )
         with closing(plotter), warnings.catch_warnings():
             warnings.filterwarnings("ignore", NOTHING_SEEN)  # axes may be elsewhere
-            picture = plotter.picture(time=self.time, clock=self.clock)
+            clear = view.background[-1] == 0
+            picture = plotter.picture(time=self.time, clock=self.clock, clear=clear)
+        if clear:  # pixels of an edge have the share of the ground, which is black
+            shares = np.maximum(picture[..., 3:], 1) / 255
+            picture = np.concatenate([picture[..., :3] / shares, picture[..., 3:]], axis=-1)
+            picture = picture.clip(0, 255).astype(np.uint8)
         across, up = np.sign(corners[1] - corners[0]).astype(int)
         shot = Image.fromarray(picture[::-up, ::across]).convert("RGBA").resize(size)
         return np.array(shot)  # matplotlib wants one that can be written

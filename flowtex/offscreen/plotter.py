@@ -93,8 +93,13 @@ class OffscreenPlotter:
             self._plotter.close()
             raise
 
-    def picture(self, *, time: float | str | None = None, clock: float = 0.0) -> Bytes:
-        """Return a picture (height, width, 3), row 0 at the top; by default of the present time."""
+    def picture(
+        self, *, time: float | str | None = None, clock: float = 0.0, clear: bool = False
+    ) -> Bytes:
+        """Return a picture (height, width, 3), row 0 at the top; by default of the present time.
+
+        A ``clear`` one has a fourth channel, which is 0 beside the flow.
+        """
         # One picture for all that changes.
         self._plotter.suppress_rendering = True
         for handle in self.handles:
@@ -103,10 +108,10 @@ class OffscreenPlotter:
             handle.clock = clock
         self._plotter.suppress_rendering = False
         self._plotter.render()
-        shot: Any = self._plotter.screenshot(return_img=True)
-        pixels = np.asarray(shot[..., :3], dtype=np.uint8)
+        shot: Any = self._plotter.screenshot(return_img=True, transparent_background=clear)
+        pixels = np.asarray(shot[..., : 4 if clear else 3], dtype=np.uint8)
         visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
-        if visible and (pixels == self._plotter.background_color.int_rgb).all():
+        if visible and (pixels[..., :3] == self._plotter.background_color.int_rgb).all():
             notify(NOTHING_SEEN, UserWarning)
         picture = averaged(pixels, self._supersampling)
         return self._annotated(picture) if self._annotations else picture

@@ -48,6 +48,12 @@ def Page():
 PANEL = """import panel
 panel.pane.HTML(flow().as_html()).servable()
 """
+HOLOVIEWS = """import holoviews, panel
+holoviews.extension("bokeh")
+field = flowtex.examples.vortex_field().downsample(8).at_steps([0, 1])
+flow = flowtex.dynamic_map(field, samples=5)
+panel.panel(flow.opts(width=300, height=300, active_tools=["wheel_zoom"])).servable()
+"""
 STREAMLIT = """import streamlit
 streamlit.components.v1.html(flow().to_html(), width=300, height=160)
 """
@@ -66,13 +72,16 @@ HOSTS = {
     "shiny": (SHINY, ("shiny", "run", "app.py", "--port={port}")),
     "solara": (SOLARA, ("solara", "run", "app.py", "--port={port}", "--no-open")),
     "panel": (PANEL, ("panel", "serve", "app.py", "--port={port}")),
+    "holoviews": (HOLOVIEWS, ("panel", "serve", "app.py", "--port={port}")),
     "streamlit": (
         STREAMLIT,
         ("streamlit", "run", "app.py", "--server.port={port}", "--server.headless=true"),
     ),
 }
 #: Where a host has its page, if that is not the root.
-PAGES = {"notebook": "notebooks/app.ipynb", "panel": "app"}
+PAGES = {"notebook": "notebooks/app.ipynb", "panel": "app", "holoviews": "app"}
+#: Hosts that show the widget.
+WIDGETS = [host for host in HOSTS if host != "holoviews"]
 #: Hosts that show a frame, from which Python hears nothing.
 FRAMED = ("panel", "streamlit")
 
@@ -114,7 +123,7 @@ def served(host: str, folder: Path) -> Iterator[str]:
         process.wait(PATIENCE_S)
 
 
-@pytest.mark.parametrize("host", HOSTS)
+@pytest.mark.parametrize("host", WIDGETS)
 def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: Path) -> None:
     if find_spec(host) is None:
         pytest.skip(f"{host} is not installed: make integrations")
@@ -146,3 +155,21 @@ def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: 
                 return False
 
             wait_until(moved)
+
+
+#: Width of what Bokeh's picture shows; null before there is one.
+SHOWN = (
+    "() => [...(globalThis.Bokeh?.documents ?? [])].flatMap((d) => [...d.all_models])"
+    ".find((model) => model.glyph?.type === 'ImageRGBA')?.data_source.data.dw[0] ?? null"
+)
+
+
+def test_a_plot_of_holoviews_is_drawn_again_for_what_it_shows(page: Page, tmp_path: Path) -> None:
+    pytest.importorskip("holoviews", reason="make integrations")
+    with served("holoviews", tmp_path) as address:
+        page.goto(address)
+        page.wait_for_function(f"({SHOWN})() !== null")
+        before = page.evaluate(SHOWN)
+        page.mouse.move(150, 150)
+        page.mouse.wheel(0, -400)
+        page.wait_for_function(f"(width) => ({SHOWN})() < 0.9 * width", arg=before)

@@ -179,6 +179,18 @@ def test_axes_elsewhere_are_empty_and_other_scales_are_stretched(figure: Figure)
     assert x == pytest.approx(EDGE_X, abs=0.01) and y == pytest.approx(EDGE_Y, abs=0.02)
 
 
+def test_axes_without_a_ground_are_clear_beside_a_flow(figure: Figure) -> None:
+    ax = figure.add_axes((0, 0, 1, 1), facecolor="none")
+    image = flowtex.axes(ax, edge(), scalars=False, color="white", strength=0, lighting=False)
+    left, right, bottom, top = image.get_extent()
+    ax.set(xlim=(2 * left - right, right), ylim=(2 * bottom - top, top))
+    picture = image.make_image(None)[0].astype(int)
+    clear = picture[..., 3] == 0
+    assert 0.5 < clear.mean() < 0.95
+    # Where the outline is smooth its colour is that of the flow.
+    assert (picture[picture[..., 3] > 30][:, :3] > 200).all()
+
+
 def test_a_colour_bar_has_the_range_and_the_colours(figure: Figure) -> None:
     ax = figure.add_subplot()
     image = flowtex.axes(ax, edge(), scalars="edge", clim=(1, 100), log_scale=True)
