@@ -374,9 +374,8 @@ class Scene:
 
     def _range_of(self, name: str, *, robust: bool) -> tuple[float, float]:
         known = {} if self.pyramid is None else self.pyramid.ranges
-        return widened(
-            known.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
-        )
+        ends = known.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
+        return widened(ends, self.field, name)
 
     def _range_values(self, name: str) -> Floats:
         """Values of the valid nodes at all times."""

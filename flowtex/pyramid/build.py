@@ -112,7 +112,8 @@ def build(
     Parameters
     ----------
     source
-        A field, an xarray dataset, or a file as for :meth:`flowtex.FlowField.from_file`.
+        A field, a PyVista mesh, an xarray dataset, or a file as for
+        :meth:`flowtex.FlowField.from_file`.
     store
         A local folder such as ``"flow.zarr"``, or a URL such as ``"s3://bucket/flow.zarr"``;
         endpoint and credentials come from the environment.
@@ -129,8 +130,8 @@ def build(
     progress
         Whether to show a progress bar.
     **options
-        Arguments of :meth:`flowtex.FlowField.from_xarray` or :meth:`flowtex.FlowField.from_file`,
-        such as ``u``, ``v``, ``globe`` or ``level``.
+        Arguments of :meth:`flowtex.FlowField.from_xarray`, ``from_pyvista`` or ``from_file``, such
+        as ``u``, ``v``, ``globe`` or ``level``.
 
     Returns
     -------

@@ -133,4 +133,4 @@ def _colours(pyramid: StoredPyramid, field: FlowField) -> Colours:
 
 def _ranges(pyramid: StoredPyramid) -> dict[str, tuple[float, float]]:
     names = value_names(pyramid.about)
-    return {name: widened(pyramid.ranges.get((name, False))) for name in names}
+    return {name: widened(pyramid.ranges.get((name, False)), pyramid.field, name) for name in names}

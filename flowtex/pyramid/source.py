@@ -24,7 +24,7 @@ from flowtex.field.datasets.pairs import find_pairs
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
 from flowtex.field.io.arrays import FieldArrays
-from flowtex.field.io.files import errors_of, read_files
+from flowtex.field.io.files import OF_MESHES, errors_of, read_files, refuse
 from flowtex.field.io.inspection.zarr_folder import check_zarr
 from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.places import (
@@ -211,17 +211,21 @@ class RegionSource(Source):
 
 
 def source_of(given: Any, **options: Any) -> Source:
-    """Return what a pyramid is built from: a field, a dataset, or files with such options."""
+    """Return what a pyramid is built from: a field, a mesh, a dataset, or files, with options."""
     if isinstance(given, (FlowField, Source)):
-        if options:
-            msg = f"{', '.join(options)} applies to the data of a field; omit it"
-            raise FieldError(msg)
+        refuse(options, "the data of a field")
         return given if isinstance(given, Source) else FieldSource(given)
     if is_store(given):
         msg = f"{given} is already a pyramid; give the data from which one is built"
         raise FieldError(msg)
     if is_dataset(given):
         return _source_from(read_datasets(given, regions=True, **options))
+    several = given if isinstance(given, (list, tuple)) else [given]
+    if not all(isinstance(each, (str, Path)) for each in several):
+        known = (*OF_MESHES, "vectors", "times", "name")
+        others = {name: value for name, value in options.items() if name not in known}
+        refuse(others, "data of the Earth, but this is a mesh")
+        return FieldSource(FlowField.from_pyvista(given, **options))
     one: str | Path | Sequence[str | Path] = given
     if isinstance(one, (str, Path)) and has_parts(one):
         place = place_text(one)

@@ -23,6 +23,8 @@ LONG_TAIL = 1.0
 LEAST_SHARE = 1e-9
 #: Values that differ by less than this share of the greatest are the same.
 SAME_VALUE_SHARE = 1e-9
+#: The same for speeds of stored velocities, which have half precision.
+SAME_HALVES_SHARE = 2.0**-9
 #: Share of such a value by which its range is widened.
 WIDENED_SHARE = 0.05
 #: What makes the pyramids of fields that do not hold all their levels.
@@ -75,13 +77,15 @@ def usual_ends(whole: tuple[float, float], robust: tuple[float, float]) -> tuple
     return low if low - least > tail else least, high if most - high > tail else most
 
 
-def widened(ends: tuple[float, float] | None) -> tuple[float, float]:
+def widened(ends: tuple[float, float] | None, field: FlowField, name: str) -> tuple[float, float]:
     """Return a range to colour by, where all values may be the same up to rounding, or none."""
+    halves = name == "speed" and name not in field.scalars and has_pyramid(field)
+    same = SAME_HALVES_SHARE if halves else SAME_VALUE_SHARE
     if ends is None:
         return 0.0, 1.0
     low, high = ends
     size = max(abs(low), abs(high))
-    if high - low > SAME_VALUE_SHARE * size:
+    if high - low > same * size:
         return low, high
     return (low - WIDENED_SHARE * size, high + WIDENED_SHARE * size) if size > 0 else (0.0, 1.0)
 

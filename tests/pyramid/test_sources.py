@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
 from store_contents import contents
 
 from flowtex import FlowField
@@ -23,6 +24,7 @@ from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import ChangedError
 from flowtex.pyramid.source import RegionSource, source_of
 from flowtex.pyramid.workers import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
+from flowtex.scene import Scene
 
 zarr = pytest.importorskip("zarr")
 xr = pytest.importorskip("xarray")
@@ -255,6 +257,23 @@ def test_robust_ranges_of_large_data_are_those_of_a_sample(
         assert whole == [values.min(), values.max()]
         away = np.abs(np.percentile(values, (2, 98)) - robust).max()
         assert 0 < away < 0.02 * np.ptp(values)
+
+
+def test_a_mesh_makes_the_pyramid_of_its_field(tmp_path: Path) -> None:
+    x, y = np.meshgrid(np.linspace(0, 3, 40), np.linspace(0, 2, 30))
+    angle = np.sin(2 * x)
+    mesh = pv.StructuredGrid(x, y, 0 * x)
+    # Its speed is the same everywhere, and stored with half precision.
+    both = np.stack([10 * np.cos(angle), 10 * np.sin(angle), 0 * x], axis=-1)
+    mesh["wind"] = both.reshape(-1, 3, order="F")
+    build(mesh, tmp_path / "a.zarr", progress=False, vectors="wind")
+    build(FlowField.from_pyvista(mesh), tmp_path / "b.zarr", progress=False)
+    one, other = (open_store(tmp_path / name) for name in ("a.zarr", "b.zarr"))
+    np.testing.assert_array_equal(one.velocity, other.velocity)
+    assert np.ptp(one.speed) > 0
+    assert Scene(one).scalar_limits == pytest.approx((9.5, 10.5), abs=0.01)
+    with pytest.raises(FieldError, match="level applies to data of the Earth"):
+        build(mesh, tmp_path / "c.zarr", progress=False, level=500)
 
 
 def test_what_cannot_be_built_is_told(tmp_path: Path) -> None:

@@ -209,12 +209,12 @@ def read_files(
     of_meshes = {name: options.pop(name) for name in OF_MESHES if name in options}
     chosen = {name: value for name, value in options.items() if value is not None}
     if paths:
-        _refuse(of_meshes, "meshes, but this is data of the Earth")
+        refuse(of_meshes, "meshes, but this is data of the Earth")
         if time is not None:
             chosen["sel"] = {**chosen.get("sel", {}), "time": time}
         chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
         return read_datasets(open_datasets(paths), uncertainty=uncertainty, **chosen)
-    _refuse(chosen, "data of the Earth, but this is a mesh")
+    refuse(chosen, "data of the Earth, but this is a mesh")
     if not isinstance(path, (str, Path)):
         msg = (
             f"{len(path)} files are given, but several are read only as data of the Earth; for the "
@@ -234,7 +234,8 @@ def errors_of(path: str | Path | Sequence[str | Path]) -> AbstractContextManager
     return errors_of_file(first if isinstance(first, (str, Path)) else "several files")
 
 
-def _refuse(choices: Mapping[str, Any], what: str) -> None:
+def refuse(choices: Mapping[str, Any], what: str) -> None:
+    """Refuse options that apply to something else."""
     if given := [name for name, value in choices.items() if value not in (None, False)]:
         msg = f"{', '.join(given)} applies to {what}; omit it"
         raise FieldError(msg)
