@@ -46,14 +46,15 @@ class Surface(ABC):
         """Greatest position (j, i)."""
 
     @cached_property
-    @abstractmethod
     def cells(self) -> Bools:
-        """Cells whose nodes are all valid, one number for each cell."""
+        """Cells whose nodes are all valid: (J - 1, I - 1), or triangles (M,)."""
+        return np.asarray(np.logical_and.reduce([self.valid[at] for at in self.cell_corners]))
 
     @property
-    @abstractmethod
     def placed_cells(self) -> Bools:
         """Cells whose nodes have their own positions, in the shape of :attr:`cells`."""
+        known = [self.has_position[at] for at in self.cell_corners]
+        return np.asarray(np.logical_and.reduce(known))
 
     @abstractmethod
     def nodes_of(self, cells: Bools) -> Indices:

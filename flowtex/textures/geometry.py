@@ -176,21 +176,9 @@ class DrawnSurface:
         raise NotImplementedError
 
     @property
-    def faces(self) -> Indices:
-        """Vertices around each cell that is drawn, (M, 4) or (M, 3)."""
-        raise NotImplementedError
-
-    @property
     def padding(self) -> tuple[int, int]:
         """Texels before the nodes, in rows and in columns."""
         return 0, 0
-
-    def displacements(self, frame: Floats) -> Callable[[AnyArray, float], AnyArray]:
-        """Return what takes displacements of the nodes of textures, (J, I, 2 or 3), to a frame.
-
-        It takes the error that is allowed as well; the result is (C, J, I).
-        """
-        raise NotImplementedError
 
     @cached_property
     def outermost(self) -> Indices:
@@ -314,7 +302,10 @@ class SurfaceGeometry(DrawnSurface):
         return faces_of(self.cells)
 
     def displacements(self, frame: Floats) -> Callable[[AnyArray, float], AnyArray]:
-        """Return what takes displacements (J, I, 2) in cells to a frame, (C, J, I)."""
+        """Return what takes displacements (J, I, 2) in cells to a frame, (C, J, I).
+
+        It takes the error that is allowed as well.
+        """
         return NodeDisplacements(self.surface, frame, self.texels)
 
     @property

@@ -74,16 +74,6 @@ class GridSurface(Surface):
         """Greatest position (j, i) in index space."""
         return self.shape[0] - 1, self.shape[1] - 1
 
-    @cached_property
-    def cells(self) -> Bools:
-        """Cells whose four nodes are valid, (J - 1, I - 1)."""
-        return np.asarray(np.logical_and.reduce([self.valid[at] for at in CELL_CORNERS]))
-
-    @property
-    def placed_cells(self) -> Bools:
-        """Cells whose four nodes have their own positions, (J - 1, I - 1)."""
-        return np.asarray(np.logical_and.reduce([self.has_position[at] for at in CELL_CORNERS]))
-
     def nodes_of(self, cells: Bools) -> Indices:
         """Return the nodes around some cells, (M, 4), counted row by row."""
         return faces_of(cells)

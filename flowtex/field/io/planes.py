@@ -28,7 +28,6 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex._util.notices import notify
-from flowtex.errors import FieldError
 
 _PLANE = re.compile(r"\s*([ijk])\s*=\s*([+-]?\d+)\s*", re.IGNORECASE)
 
@@ -105,12 +104,9 @@ def choose_plane(dimensions: tuple[int, int, int], plane: str | None) -> Plane:
             f'the plane is "{plane}", the middle of {count_nodes(dimensions)}; choose another as '
             f'in plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere as in slice="z"'
         )
-    match = _PLANE.fullmatch(plane)
-    if match is None:
-        msg = f'plane is {plane!r}; expected "i=N", "j=N" or "k=N"'
-        raise FieldError(msg)
-    axis = "ijk".index(match[1].lower())
-    return Plane(dimensions, axis, int(match[2]) % dimensions[axis])
+    letter, _, index = plane.partition("=")
+    axis = "ijk".index(letter.strip().lower())
+    return Plane(dimensions, axis, int(index) % dimensions[axis])
 
 
 def _example(dimensions: tuple[int, int, int]) -> str:

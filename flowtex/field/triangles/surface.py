@@ -48,16 +48,6 @@ class TriangleSurface(Surface):
         """Greatest position (j, i): the last triangle and its second corner, and a third corner."""
         return len(self.triangles) - 1 + MOST_SHARE, 1.0
 
-    @cached_property
-    def cells(self) -> Bools:
-        """Triangles whose three nodes are valid, (M,)."""
-        return np.asarray(self.valid[0][self.triangles].all(axis=1))
-
-    @property
-    def placed_cells(self) -> Bools:
-        """All triangles, (M,): every node has a position."""
-        return np.ones(len(self.triangles), dtype=bool)
-
     def nodes_of(self, cells: Bools) -> Indices:
         """Return the nodes at the corners of some triangles, (M, 3)."""
         return np.asarray(self.triangles[cells])
