@@ -25,16 +25,26 @@ export interface BareHost {
   failed(problem: string, detail: string): void;
 }
 
+/** What several views have in common. */
+interface Shared {
+  header: Header;
+  settings: Settings;
+  player: Player;
+  source: Source;
+  /** Whether parts are still arriving without being requested. */
+  isComing(): boolean;
+}
+
 export class BareView implements View, User, Taker {
   readonly canvas = document.createElement("canvas");
   readonly root = document.createElement("div");
   readonly graphics: Graphics = sharedGraphics();
   readonly lifetime = new Lifetime();
-  readonly player = new Player();
+  readonly player: Player;
   readonly held = new HeldParts(this.graphics);
   readonly parts = this.held.all;
   readonly isClear = true;
-  readonly isVisible = true;
+  isVisible = true;
   readonly panel: View["panel"];
   readonly requests: Requests;
   readonly options: View["options"];
@@ -48,10 +58,11 @@ export class BareView implements View, User, Taker {
   /** Whether nothing has been drawn yet of the picture that is wanted. */
   private isNew = true;
 
-  constructor(host: BareHost, header: Header, source: Source, isComing: () => boolean) {
+  constructor(host: BareHost, { header, settings, player, source, isComing }: Shared) {
     this.host = host;
     this.header = header;
-    this.settings = { ...header.settings, ...header.own };
+    this.settings = settings;
+    this.player = player;
     this.options = { source, isComing };
     this.panel = {
       wait: () => undefined,
@@ -60,7 +71,7 @@ export class BareView implements View, User, Taker {
     };
     this.requests = new Requests(source, this);
     this.graphics.users.add(this);
-    this.player.setHeader(header);
+    player.setHeader(header);
     this.painter = new WebGL2Painter(this);
     this.requests.setHeader(header);
     this.painter.open(header);
@@ -100,28 +111,6 @@ export class BareView implements View, User, Taker {
 
   trim(): void {
     this.held.trim(this.header, this.options.source, this.player.moment.slice(0, 2));
-  }
-
-  set(settings: Settings): void {
-    Object.assign(this.settings, settings);
-    this.change();
-  }
-
-  setTime(time: number): void {
-    this.player.seek(time);
-    this.change();
-  }
-
-  play(): void {
-    const { player, settings } = this;
-    if (!player.varies && settings.motion === "off") settings.motion = "speed";
-    player.start();
-    this.change();
-  }
-
-  pause(): void {
-    this.player.playing = false;
-    this.change();
   }
 
   chooseColours(choice: ColourChoice): void {

@@ -89,12 +89,27 @@ export class Mercator {
     return [x + turn * Math.round((0.5 * (this.box[0] + this.box[2]) - x) / turn), y];
   }
 
-  /** What sees of the flow, at a height, what a map shows. */
-  look(map: MapLook, z: number): FlowLook {
+  /**
+   * What sees of the flow, at a height, what a map shows: once, or twice where the map shows both of its ends and not
+   * all that is between them.
+   */
+  look(map: MapLook, z: number): FlowLook[] {
     const unit = 1 / (512 * 2 ** map.zoom * this.slope[0]);
-    if (map.globe) return this.globeLook(map, unit, z);
-    const { width, height, bearing, pitch, fov } = map;
     const [x, y] = this.positionOf(placeOn(map.center));
+    const from = (at: number) =>
+      map.globe ? this.globeLook(map, unit, [at, y, z]) : this.flatLook(map, unit, [at, y, z]);
+    const looks = [from(x)];
+    const [inside, reach] = map.globe
+      ? [0.5 * unit * looks[0].width, 0.5 * unit * looks[0].width]
+      : [0.5 * unit * Math.min(map.width, map.height), unit * farthest(map)];
+    const [low, , high] = this.box;
+    const other = x + (x < 0.5 * (low + high) ? 1 : -1) / this.slope[0];
+    const isWhole = x - inside <= low && x + inside >= high;
+    if (!isWhole && Math.abs(other - clamp(other, low, high)) < reach) looks.push(from(other));
+    return looks;
+  }
+
+  private flatLook({ width, height, bearing, pitch, fov }: MapLook, unit: number, [x, y, z]: number[]): FlowLook {
     const [b, p] = [bearing * RADIANS, pitch * RADIANS];
     const half = 0.5 * height * unit;
     const away = half / Math.tan(0.5 * fov * RADIANS);
@@ -110,7 +125,7 @@ export class Mercator {
   }
 
   /** The part of the map that is seen of a globe, from straight above and at the scale of its middle. */
-  private globeLook(map: MapLook, unit: number, z: number): FlowLook {
+  private globeLook(map: MapLook, unit: number, [x, , z]: number[]): FlowLook {
     const world = 1 / (unit * this.slope[0]);
     const lat = clamp(map.center.lat, -LAST_LATITUDE, LAST_LATITUDE) * RADIANS;
     const radius = world / (2 * Math.PI * Math.cos(lat));
@@ -118,7 +133,6 @@ export class Mercator {
     const [south, north] = [lat - seen, lat + seen].map((end) => placeOn({ lng: 0, lat: end / RADIANS })[1]);
     // Around a pole all longitudes are.
     const aside = Math.abs(lat) + seen <= Math.PI / 2 ? Math.asin(Math.sin(seen) / Math.cos(lat)) : Math.PI;
-    const [x] = this.positionOf(placeOn(map.center));
     const y = (0.5 * (south + north) - this.origin[1]) / this.slope[1];
     const [wide, high] = [aside / Math.PI, south - north];
     const state = {

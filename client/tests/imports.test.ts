@@ -30,7 +30,7 @@ const LAYERS = [
   "controls colourcontrols pointcard axes",
   "panel pointers",
   "viewer bareview",
-  "element",
+  "element mappicture",
   "packed explanation widget",
   "openpage live",
   "core store maplibre",

@@ -68,11 +68,12 @@ test("other maps are refused, with the remedy", () => {
 test("a flat map is seen as it is, and a tilted one from where its eye is", () => {
   const mercator = new Mercator(...mapAround(0, 90, [-70, 70]));
   const pixel = (2 * Math.PI * RADIUS) / (512 * 4);
-  const flat = mercator.look({ ...LOOK, bearing: 90 }, 0);
+  const [flat, ...others] = mercator.look({ ...LOOK, bearing: 90 }, 0);
   assert.deepEqual([flat.width, flat.height, flat.state.parallel], [600, 400, true]);
+  assert.deepEqual(others, []);
   near([flat.state.parallel_scale / pixel], [200], 1e-3);
   near(flat.state.up, [1, 0, 0], 1e-9);
-  const { state } = mercator.look({ ...LOOK, pitch: 60 }, 0);
+  const [{ state }] = mercator.look({ ...LOOK, pitch: 60 }, 0);
   const away = 200 / Math.tan((36.87 / 2) * DEGREE);
   near(state.position.map((x) => x / pixel), [0, -away * Math.sin(60 * DEGREE), away / 2], 1e-2);
   assert.equal(state.parallel, false);
@@ -82,14 +83,29 @@ test("a globe is seen as far as the window shows it, at most to its horizon", ()
   const mercator = new Mercator(...mapAround(0, 180, [-85, 85]));
   const world = 512 * 8;
   const radius = world / (2 * Math.PI);
-  const close = mercator.look({ ...LOOK, zoom: 3, globe: true }, 0);
+  const [close] = mercator.look({ ...LOOK, zoom: 3, globe: true }, 0);
   const seen = Math.asin(Math.hypot(300, 200) / radius);
   near([close.width / world], [seen / Math.PI], 1e-6);
   near([close.state.parallel_scale / RADIUS], [Math.asinh(Math.tan(seen))], 1e-4);
-  const far = mercator.look({ ...LOOK, zoom: 0, globe: true }, 0);
+  const [far] = mercator.look({ ...LOOK, zoom: 0, globe: true }, 0);
   near([far.width, far.height], [256, 512], 1e-3);
   // Over the pole all longitudes are seen, and tilted the horizon.
-  const polar = mercator.look({ ...LOOK, zoom: 1, center: { lng: 0, lat: 80 }, globe: true }, 0);
+  const [polar] = mercator.look({ ...LOOK, zoom: 1, center: { lng: 0, lat: 80 }, globe: true }, 0);
   near([polar.width], [1024], 1e-6);
-  assert.ok(mercator.look({ ...LOOK, zoom: 5, pitch: 85, globe: true }, 0).height > 16 * 300);
+  assert.ok(mercator.look({ ...LOOK, zoom: 5, pitch: 85, globe: true }, 0)[0].height > 16 * 300);
+});
+
+test("where a map shows both ends of data around the Earth there are two pictures, a world apart", () => {
+  const around = new Mercator(...mapAround(0, 180, [-85, 85]));
+  const world = 2 * Math.PI * RADIUS;
+  const center = { lng: 175, lat: 0 };
+  for (const globe of [false, true]) {
+    const [main, other] = around.look({ ...LOOK, center, zoom: 4, globe }, 0);
+    near([main.state.focal_point[0], other.state.focal_point[0]], [(175 / 360) * world, (-185 / 360) * world], 100);
+    assert.equal(around.look({ ...LOOK, center: { lng: 100, lat: 0 }, zoom: 4, globe }, 0).length, 1);
+  }
+  // All of the data are in one picture, or there are none beyond their end.
+  assert.equal(around.look({ ...LOOK, center, zoom: 0, height: 1200, width: 1200 }, 0).length, 1);
+  const region = new Mercator(...mapAround(0, 40, [-70, 70]));
+  assert.equal(region.look({ ...LOOK, center: { lng: 40, lat: 0 }, zoom: 4 }, 0).length, 1);
 });

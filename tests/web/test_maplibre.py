@@ -72,6 +72,22 @@ def currents(steps: int = 1) -> Any:
     return xr.Dataset(data, coords)
 
 
+def around() -> Any:
+    """Winds around the Earth."""
+    lon, lat = np.arange(-180, 180, 3.0), np.arange(-84, 85, 3.0)
+    x, y = np.meshgrid(np.radians(lon), np.radians(lat))
+    unit = {"units": "m/s"}
+    data = {
+        "u": (("lat", "lon"), 2 + np.cos(5 * y), unit),
+        "v": (("lat", "lon"), np.sin(4 * x), unit),
+    }
+    coords = {
+        "lat": ("lat", lat, {"units": "degrees_north"}),
+        "lon": ("lon", lon, {"units": "degrees_east"}),
+    }
+    return xr.Dataset(data, coords)
+
+
 LOOK: dict[str, Any] = {"samples": 13, "cmap": "viridis"}
 
 
@@ -86,6 +102,7 @@ def server(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Itera
     series = currents(3).isel(lat=slice(None, None, 4), lon=slice(None, None, 4))
     flowtex.export(series, folder / "series.json", projection="mercator", samples=9)
     flowtex.export(series.isel(time=0), folder / "flat.json", samples=9)
+    flowtex.export(around(), folder / "around.json", projection="mercator", **LOOK)
     text = (ROOT / "docs" / "howto" / "webmaps.md").read_text(encoding="utf-8")
     (page,) = re.findall(r"^```html\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
     page = page.replace("https://unpkg.com/maplibre-gl@6/dist/", "./maplibre/")
@@ -131,7 +148,7 @@ class Shown:
     def hold(self, held: bool = True) -> None:
         """Have no more pictures of the flow drawn, or have them drawn again."""
         self.page.evaluate(
-            "(held) => { const { view } = flow; view.frame = held ? () => {} : "
+            "(held) => { const { view } = flow.pictures[0]; view.frame = held ? () => {} : "
             "Object.getPrototypeOf(view).frame; view.request(); }",
             held,
         )
@@ -302,7 +319,7 @@ def test_a_series_goes_on_in_time(shown: Shown) -> None:
     shown.wait()
     assert shown.page.evaluate("() => flow.time") == times[1]
     assert np.abs(shown.pixels() - first).mean() > 5
-    shown.page.evaluate("() => { window.view = flow.view; map.removeLayer('flow'); }")
+    shown.page.evaluate("() => { window.view = flow.pictures[0].view; map.removeLayer('flow'); }")
     painted(shown.page)
     assert (shown.pixels() == GROUND).all()
     assert shown.page.evaluate("() => view.graphics.objects") == 0
@@ -319,3 +336,28 @@ def test_what_cannot_be_shown_is_told_to_the_map(shown: Shown, scene: str, said:
     shown.replace(scene)
     shown.page.wait_for_function("() => told.length")
     assert said in shown.page.evaluate("() => told.splice(0).join()")
+
+
+@pytest.mark.parametrize("projection", ["mercator", "globe"])
+def test_data_around_the_earth_are_shown_across_their_ends(shown: Shown, projection: str) -> None:
+    shown.replace("around.json")
+    shown.page.evaluate("(type) => map.setProjection({ type })", projection)
+    painted(shown.page)
+    pictures = []
+    for lng in (178.0, -178.0):
+        shown.go(center=[lng, 10.0], zoom=3)
+        picture = shown.pixels()
+        assert (np.abs(picture - GROUND).sum(axis=-1) > 60).all()
+        pictures.append(picture)
+        # What moves to the east is the same on both sides.
+        found = [
+            shown.page.evaluate("([lng, lat]) => flow.pointAt({ lng, lat })", [lng + by, 12])
+            for by in (-5, 5)
+        ]
+        expected = [np.sin(4 * np.radians(lng + by)) for by in (-5, 5)]
+        assert [each["northward"] for each in found] == pytest.approx(expected, abs=0.05)
+    # Both show the same part, 4 degrees apart.
+    step = round(4 / 360 * 512 * 8)
+    one, other = pictures[0][:, step:], pictures[1][:, :-step]
+    if projection == "mercator":
+        assert correlation(one, other) > 0.95
