@@ -1172,7 +1172,7 @@ p: 5px; }
   .settings { bottom: 80px; max-height: calc(100% - 90px); }
   .head { flex-direction: column; gap: 0; }
   .head > * { max-width: 100%; padding-right: 2px; overflow: hidden; text-overflow: ellipsis; }
-  :host(.flowtex-framed[data-axes="ticks"]) .stage { margin-left: 50px; margin-right: 8px; }
+  :host(.flowtex-framed[data-axes="ticks"]) .stage { margin-left: 56px; margin-right: 8px; }
 }
 @container (max-width: 420px) { .kinds { display: none; } }
 @container (max-width: 220px) { .legend { display: none; } }
