@@ -33,6 +33,8 @@ export interface LayerOptions {
   opacity?: number;
   /** Settings of the texture, by their names in Python, such as `samples` and `contrast`. */
   settings?: Settings;
+  /** The scene is here, so that its times and bounds are known. */
+  onOpen?: () => void;
   /** The time, or the clock of a steady flow, has gone on. */
   onTime?: (time: number) => void;
 }
@@ -124,6 +126,7 @@ export class FlowtexLayer implements CustomLayerInterface {
     if (this.gl !== gl) return;
     this.scene = { ...shared, add, mercator: new Mercator(header.earth, view.parts.get("lonlat")) };
     view.requests.open();
+    this.options.onOpen?.();
     this.map?.triggerRepaint();
   }
 
@@ -153,6 +156,14 @@ export class FlowtexLayer implements CustomLayerInterface {
   /** Times of the field. */
   get times(): readonly number[] {
     return this.scene?.header.slices.times ?? [];
+  }
+
+  /** Longitudes and latitudes of two corners of the data; null before the scene is here. */
+  get bounds(): [[west: number, south: number], [east: number, north: number]] | null {
+    const { mercator } = this.scene ?? {};
+    if (!mercator) return null;
+    const { box } = mercator;
+    return [mercator.lngLatOf(box.slice(0, 2)), mercator.lngLatOf(box.slice(2))];
   }
 
   get opacity(): number {

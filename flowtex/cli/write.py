@@ -132,7 +132,8 @@ def movie(
 def export(
     *files: FILE,
     output: Annotated[
-        Path, Parameter(name=["--output", "-o"], help="File to write: page.html or flow.mjs.")
+        Path,
+        Parameter(name=["--output", "-o"], help="File to write: page.html, flow.mjs or flow.json."),
     ],
     steps: Annotated[
         int | None,
@@ -144,6 +145,10 @@ def export(
     store: Annotated[
         str | None,
         Parameter(help="Address from which browsers read the pyramid, https://… or ./…"),
+    ] = None,
+    basemap: Annotated[
+        str | None,
+        Parameter(help="Address of a style of MapLibre: the flow is a layer of that web map."),
     ] = None,
     flow: Annotated[FieldFlags | None, FLAT] = None,
     look: Annotated[LookFlags | None, FLAT] = None,
@@ -167,7 +172,7 @@ def export(
         say(f"{describe(field)}{some}: about {size / 1e6:.1f} MB")
 
     with writing(output):
-        own: dict[str, Any] = {"steps": steps, "title": title, "store": store}
+        own: dict[str, Any] = {"steps": steps, "title": title, "store": store, "basemap": basemap}
         page = write_page(field, output, announce=announce, **own, **options)
     seconds = time.perf_counter() - start
     say((str(output), "bold"), "  ", (f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s", "dim"))

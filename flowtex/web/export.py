@@ -16,8 +16,9 @@ import hashlib
 import html
 import json
 import string
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -39,6 +40,7 @@ from flowtex.web.assets import asset, client_script
 from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
 from flowtex.web.source import TileSource
 from flowtex.web.view import WebView, browser_options, web_views
+from flowtex.web.webmap import check_basemap, layer_script, map_pieces
 
 #: Size of slices and of values after packing, over that before, base64 included.
 PACKED_SHARE, VALUES_SHARE = 0.45, 0.75
@@ -91,6 +93,7 @@ def export(
     steps: int | None = None,
     title: str | None = None,
     store: str | None = None,
+    basemap: str | Mapping[str, Any] | None = None,
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
@@ -123,6 +126,10 @@ def export(
         Address at which browsers find the store ``mesh``, such as
         ``"https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"``, or relative to the file,
         ``"./flow.zarr"``. Everybody who opens the page must have permission to read it.
+    basemap
+        Style of a web map, of which the flow, in ``projection="mercator"``, is a layer: an address,
+        such as ``"https://demotiles.maplibre.org/style.json"``, or a dictionary. Such a page loads
+        MapLibre and the map from the network.
     announce
         Called with the estimated size in bytes and the number of steps before the work begins.
     {options}
@@ -152,8 +159,8 @@ def export(
     views = web_views(shown, arguments, steps=steps)
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        look = {"camera": camera, "title": title, "axes": arguments.view.axes}
-        return write_page(views, path, store=store, announce=announce, **look)
+        look: dict[str, Any] = {"camera": camera, "title": title, "axes": arguments.view.axes}
+        return write_page(views, path, store=store, basemap=basemap, announce=announce, **look)
     finally:
         for view in views:
             view.close()
@@ -164,23 +171,31 @@ def write_page(
     path: str | Path,
     *,
     store: str | None = None,
+    basemap: str | Mapping[str, Any] | None = None,
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
     """Write a view, or two side by side, as a page.
 
-    ``store`` and ``announce`` are those of :func:`export`, the options those of
+    ``store``, ``basemap`` and ``announce`` are those of :func:`export`, the options those of
     :func:`page_pieces`.
     """
     path, link = checked_target(path), None if store is None else StoreLink.of(store)
+    if basemap is not None:
+        check_basemap(basemap, path, views)
     scenes = page_data(views) if link is None else [linked_data(view) for view in views]
-    estimated = estimate(scenes, linked=link is not None)
-    if announce is not None:
-        announce(estimated, scenes[0].steps)
     suffix = path.suffix.lower()
     pieces = {".json": scene_pieces}.get(
         suffix, module_pieces if suffix in MODULES else page_pieces
     )
+    client = client_script(with_store=link is not None)
+    if basemap is not None:
+        pieces, client = partial(_map_pieces, basemap), layer_script()
+    estimated = estimate(
+        scenes, linked=link is not None, client="" if suffix == ".json" else client
+    )
+    if announce is not None:
+        announce(estimated, scenes[0].steps)
     with whole_file(path) as file:
         file.writelines(text.encode() for text in pieces(views, scenes, link=link, **options))
     return Page(path, path.stat().st_size, estimated, scenes[0].steps)
@@ -234,12 +249,12 @@ def _packed_bytes(parts: Parts) -> int:
     return sum(len(part_text(part)[1]) for part in parts.values())
 
 
-def estimate(scenes: Sequence[ClientData], *, linked: bool = False) -> int:
-    """Bytes that a page is going to have, about; textures of both views count once.
+def estimate(scenes: Sequence[ClientData], *, client: str, linked: bool = False) -> int:
+    """Bytes that a page with a client is going to have, about; textures of both views count once.
 
     Pages that are linked to a store have one moment.
     """
-    size = HEADER_BYTES + len(client_script(with_store=linked))
+    size = HEADER_BYTES + len(client)
     for n, scene in enumerate(scenes):
         if n and scene.textures is scenes[0].textures:
             break
@@ -324,6 +339,18 @@ def scene_pieces(
     for n, packed in enumerate(_packed(scenes, link, time)):
         yield (",\n" if n else "") + json_text(packed)
     yield "]}\n"
+
+
+def _map_pieces(
+    basemap: Any,
+    views: Sequence[WebView],
+    scenes: Sequence[ClientData],
+    *,
+    title: str | None = None,
+    **shown: Any,
+) -> Iterator[str]:
+    name = title or views[0].scene.field.name or "Flow"
+    return map_pieces(scene_pieces(views, scenes, title=title, **shown), basemap, name)
 
 
 def _headers(

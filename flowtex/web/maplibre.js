@@ -1185,29 +1185,31 @@ href).href,{headers:i,parts:o}=typeof t=="string"?await rc(s):t;if(this.gl!==e)r
 this.shownOpacity=n??i[0].opacity;let u=async()=>{let f=!0,d=new Ot(this.hostOf(()=>g),{...m,source:h,isComing:()=>f}),g=new It(
 e,d);this.pictures.push(g);for(let y of l.parts){let b=await l.kept(y);if(!this.pictures.includes(g))break;d.setPart(b)}
 return f=!1,g},{view:p}=await u();this.gl===e&&(this.scene={...m,add:u,mercator:new Ft(c.earth,p.parts.get("lonlat"))},p.
-requests.open(),this.map?.triggerRepaint())}hostOf=e=>({isHeld:()=>this.map?.isMoving()??!1,painted:t=>{e().painted(t),this.
-map?.triggerRepaint()},advanced:()=>this.options.onTime?.(this.time),failed:(t,r)=>this.failed(t,r)});get time(){let{varies:e=!1,
-time:t=0,clock:r=0}=this.scene?.player??{};return e?t:r}set time(e){let{player:t}=this.scene??{};t?.varies?t.seek(e):t&&
-(t.clock=e),this.change()}get times(){return this.scene?.header.slices.times??[]}get opacity(){return this.shownOpacity}set opacity(e){
-this.shownOpacity=e,this.map?.triggerRepaint()}play(){let{player:e,settings:t}=this.scene??{};!e||!t||(!e.varies&&t.motion===
-"off"&&(t.motion="speed"),e.start(),this.change())}pause(){this.scene&&(this.scene.player.playing=!1),this.change()}set(e){
-Object.assign(this.scene?.settings??{},e),this.change()}setColours(e){for(let{view:t}of this.pictures)t.chooseColours(e)}change(){
-for(let{view:e}of this.pictures)e.change()}pointAt(e){let{mercator:t,header:r}=this.scene??{};if(!t||!r?.earth)return null;
-let n=[...t.positionOf(ge(e)),r.geometry.center[2]];for(let{view:s,isUsed:i}of this.pictures){let{camera:o,parts:c,settings:l}=s,
-h=i&&o?.project(n)||[2,2];if(Math.max(...h.map(Math.abs))>1)continue;let[m,u]=[s.find(h[0],h[1]),s.painter.shown];if(!o||
-!m||!u)continue;let p=m.point.position,f={scene:m.layer.scene,moment:u,place:m.place,position:p},{path:d,velocity:g}=Vs(
-f,l,o,s.rows),[y,b]=Ps(r.earth,p,g,c.get("lonlat"));return{eastward:y,northward:b,values:m.point.values,path:d.map(v=>t.
-lngLatOf(v))}}return null}failed(e,t){this.map?.fire("error",{error:new Error([e,t].filter(Boolean).join(" "))})}render(e,t){
-let{map:r,scene:n,programs:s,array:i,opacity:o}=this;if(!r||!n||!s)return;let c=t.defaultProjectionData.projectionTransition>
-0;this.follow(r,n,c);let[l,h]=[r.getZoom(),r.getCenter()],m=this.pictures.filter(({isUsed:d})=>d),{shaderData:u,getProjectionData:p}=t,
-f={gl:e,programs:s,array:i,shaderData:u,getProjectionData:p,zoom:l,center:h,globe:c,opacity:o};for(let d of m){let g=d.draw(
-{...f,mercator:n.mercator,isRepeated:m.length===1});typeof g=="string"&&g?this.failed("The flow cannot be drawn on the m\
-ap.",g):g!==!0&&r.triggerRepaint()}}follow(e,{mercator:t,header:r,add:n},s){let{what:i,ratio:o,text:c}=fa(e,s);if(c===this.
-look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.pictures.length&&n(),[0,1].forEach(h=>{let{width:m=1,height:u=1}=l[h]??
-{},p=Math.sqrt(tc*i.width*i.height/(m*u));this.pictures[h]?.follow(l[h],Math.min(o,o*p,ec/Math.max(m,u)))}),this.look=c,
-this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.scene||!t.every(r=>r.isComplete)?!1:this.look===
-fa(e,this.globe).text}};function fa(a,e){let{clientWidth:t,clientHeight:r}=a.getCanvas(),n={center:a.unproject([t/2,r/2]),
-width:t,height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),fov:a.getVerticalFieldOfView(),globe:e},s=a.
-getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function rc(a){let e=await fetch(a);if(!e.ok)throw new Error(
-`the scene ${a} cannot be read: the server answers ${e.status}`);return await e.json()}function nc(a){let{earth:e}=a;return{
-...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,graticule:!1}}}}export{pa as FlowtexLayer};
+requests.open(),this.options.onOpen?.(),this.map?.triggerRepaint())}hostOf=e=>({isHeld:()=>this.map?.isMoving()??!1,painted:t=>{
+e().painted(t),this.map?.triggerRepaint()},advanced:()=>this.options.onTime?.(this.time),failed:(t,r)=>this.failed(t,r)});get time(){
+let{varies:e=!1,time:t=0,clock:r=0}=this.scene?.player??{};return e?t:r}set time(e){let{player:t}=this.scene??{};t?.varies?
+t.seek(e):t&&(t.clock=e),this.change()}get times(){return this.scene?.header.slices.times??[]}get bounds(){let{mercator:e}=this.
+scene??{};if(!e)return null;let{box:t}=e;return[e.lngLatOf(t.slice(0,2)),e.lngLatOf(t.slice(2))]}get opacity(){return this.
+shownOpacity}set opacity(e){this.shownOpacity=e,this.map?.triggerRepaint()}play(){let{player:e,settings:t}=this.scene??{};
+!e||!t||(!e.varies&&t.motion==="off"&&(t.motion="speed"),e.start(),this.change())}pause(){this.scene&&(this.scene.player.
+playing=!1),this.change()}set(e){Object.assign(this.scene?.settings??{},e),this.change()}setColours(e){for(let{view:t}of this.
+pictures)t.chooseColours(e)}change(){for(let{view:e}of this.pictures)e.change()}pointAt(e){let{mercator:t,header:r}=this.
+scene??{};if(!t||!r?.earth)return null;let n=[...t.positionOf(ge(e)),r.geometry.center[2]];for(let{view:s,isUsed:i}of this.
+pictures){let{camera:o,parts:c,settings:l}=s,h=i&&o?.project(n)||[2,2];if(Math.max(...h.map(Math.abs))>1)continue;let[m,
+u]=[s.find(h[0],h[1]),s.painter.shown];if(!o||!m||!u)continue;let p=m.point.position,f={scene:m.layer.scene,moment:u,place:m.
+place,position:p},{path:d,velocity:g}=Vs(f,l,o,s.rows),[y,b]=Ps(r.earth,p,g,c.get("lonlat"));return{eastward:y,northward:b,
+values:m.point.values,path:d.map(v=>t.lngLatOf(v))}}return null}failed(e,t){this.map?.fire("error",{error:new Error([e,t].
+filter(Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:i,opacity:o}=this;if(!r||!n||!s)return;let c=t.
+defaultProjectionData.projectionTransition>0;this.follow(r,n,c);let[l,h]=[r.getZoom(),r.getCenter()],m=this.pictures.filter(
+({isUsed:d})=>d),{shaderData:u,getProjectionData:p}=t,f={gl:e,programs:s,array:i,shaderData:u,getProjectionData:p,zoom:l,
+center:h,globe:c,opacity:o};for(let d of m){let g=d.draw({...f,mercator:n.mercator,isRepeated:m.length===1});typeof g=="\
+string"&&g?this.failed("The flow cannot be drawn on the map.",g):g!==!0&&r.triggerRepaint()}}follow(e,{mercator:t,header:r,
+add:n},s){let{what:i,ratio:o,text:c}=fa(e,s);if(c===this.look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.
+pictures.length&&n(),[0,1].forEach(h=>{let{width:m=1,height:u=1}=l[h]??{},p=Math.sqrt(tc*i.width*i.height/(m*u));this.pictures[h]?.
+follow(l[h],Math.min(o,o*p,ec/Math.max(m,u)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||
+!this.scene||!t.every(r=>r.isComplete)?!1:this.look===fa(e,this.globe).text}};function fa(a,e){let{clientWidth:t,clientHeight:r}=a.
+getCanvas(),n={center:a.unproject([t/2,r/2]),width:t,height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),
+fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function rc(a){
+let e=await fetch(a);if(!e.ok)throw new Error(`the scene ${a} cannot be read: the server answers ${e.status}`);return await e.
+json()}function nc(a){let{earth:e}=a;return{...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,
+graticule:!1}}}}export{pa as FlowtexLayer};

@@ -361,3 +361,40 @@ def test_data_around_the_earth_are_shown_across_their_ends(shown: Shown, project
     one, other = pictures[0][:, step:], pictures[1][:, :-step]
     if projection == "mercator":
         assert correlation(one, other) > 0.95
+
+
+def test_a_page_with_a_map_is_written_whole(
+    browser: Browser, server: RangeServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.web.webmap.MAPLIBRE", "./maplibre")
+    page, own = server.folder / "own.html", str(server.folder / "flow.zarr")
+    made = flowtex.export(own, page, store="./flow.zarr", basemap=STYLE, title="<Eddies>", **LOOK)
+    assert made.nbytes == page.stat().st_size == pytest.approx(made.estimated, rel=0.5)
+    with opened_page(browser, WIDTH, HEIGHT) as opened:
+        opened.goto(f"{server.address}own.html")
+        opened.wait_for_function(COMPLETE)
+        assert opened.title() == "<Eddies>"
+        west, south, east, north = np.ravel(opened.evaluate("() => map.getBounds().toArray()"))
+        assert west < -60 and south < 10 and east > 20 and north > 65
+        assert opened.evaluate("() => flow.bounds.flat()") == pytest.approx([-60, 10, 20, 65], abs=0.2)
+        opened.mouse.click(WIDTH / 2, HEIGHT / 2)
+        opened.locator(".maplibregl-popup", has_text="speed").wait_for()
+        assert opened.locator("#fault").is_hidden()
+
+
+@pytest.mark.parametrize(
+    ("basemap", "name", "options", "said"),
+    [
+        ("style.json", "a.html", {}, "basemap is 'style.json'; expected the address of a style"),
+        (STYLE, "a.json", {}, "path is 'a.json'; expected a page"),
+        (STYLE, "a.html", {"projection": "robinson"}, "on the map 'robinson'; web maps are in"),
+    ],
+)
+def test_what_is_no_web_map_is_refused(
+    basemap: Any, name: str, options: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    winds = around().isel(lat=slice(None, None, 8), lon=slice(None, None, 8))
+    chosen = {"projection": "mercator"} | options
+    with pytest.raises(flowtex.FieldError, match=re.escape(said)):
+        flowtex.export(winds, tmp_path / name, basemap=basemap, **chosen)
+    assert not list(tmp_path.iterdir())
