@@ -376,7 +376,9 @@ def test_a_page_with_a_map_is_written_whole(
         assert opened.title() == "<Eddies>"
         west, south, east, north = np.ravel(opened.evaluate("() => map.getBounds().toArray()"))
         assert west < -60 and south < 10 and east > 20 and north > 65
-        assert opened.evaluate("() => flow.bounds.flat()") == pytest.approx([-60, 10, 20, 65], abs=0.2)
+        assert opened.evaluate("() => flow.bounds.flat()") == pytest.approx(
+            [-60, 10, 20, 65], abs=0.2
+        )
         opened.mouse.click(WIDTH / 2, HEIGHT / 2)
         opened.locator(".maplibregl-popup", has_text="speed").wait_for()
         assert opened.locator("#fault").is_hidden()
