@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from pathlib import Path
@@ -62,6 +63,8 @@ def every_extra() -> list[str]:
 def test_one_version_everywhere() -> None:
     assert read_yaml(ROOT / "CITATION.cff")["version"] == flowtex.__version__
     assert read_yaml(RECIPE)["context"]["version"] == flowtex.__version__
+    layer = json.loads((ROOT / "distribution" / "npm" / "package.json").read_text("utf-8"))
+    assert layer["version"] == flowtex.__version__
     changes = re.findall(r"^## \[(.+)\]", (ROOT / "CHANGELOG.md").read_text("utf-8"), re.MULTILINE)
     assert flowtex.__version__ in changes[:2]  # the first, or below what is not released
 
