@@ -398,6 +398,9 @@ export class Viewer implements User, View {
       this.root.dataset.frames = String(this.frames);
       this.panel.clear();
     }
+    // A host that reads paths would be asked at every picture.
+    const changes = this.playing && (this.header?.slices.times.length ?? 1) > 1;
+    if (changes && !this.options.reader) this.card.update();
     this.setSharp(isComplete && !this.playing);
     if (!this.sharp) this.request();
   }

@@ -2065,25 +2065,25 @@ let leader=this.options.follows??this;leader.playing?leader.pause():leader.play(
 performance.now()+duration}get isHeld(){return performance.now()<this.busyUntil}change(cameraOnly=!1){this.painter.restart?.(
 cameraOnly),this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.
 setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.
-dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),this.setSharp(
-isComplete&&!this.playing),this.sharp||this.request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.
-sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&
-this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,
-[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===
-this.canvas.height)return;let{painter,canvas}=this;painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=
-[width,height],this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),
-this.change()}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,1)}lost(){this.header&&this.painter.
-open?.(this.header),this.setSharp(!1)}get scene(){return this.painter.scene??null}get tiles(){return this.painter.tiles??
-null}get shown(){return this.painter.shown??null}get lacking(){return this.painter.lacking??[]}lack(reason,tile,steps=[]){
-tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){if(!this.lifetime.isOver)try{this.painter.
-frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}advance(now){
-let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;!player.playing||!player.advance(now,isMade)||
-(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),painter.restart?.(!1),this.
-setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("no scene is \
-shown yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},
-shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{
-header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){return this.canPick?this.painter.find?.(
-x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),this.playing&&
+(this.header?.slices.times.length??1)>1&&!this.options.reader&&this.card.update(),this.setSharp(isComplete&&!this.playing),
+this.sharp||this.request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&
+(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){
+let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].
+map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;
+painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=
+this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),this.change()}get ratio(){return this.canvas.height/
+Math.max(this.stage.clientHeight,1)}lost(){this.header&&this.painter.open?.(this.header),this.setSharp(!1)}get scene(){return this.
+painter.scene??null}get tiles(){return this.painter.tiles??null}get shown(){return this.painter.shown??null}get lacking(){
+return this.painter.lacking??[]}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){
+if(!this.lifetime.isOver)try{this.painter.frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could \
+not be drawn.",String(error))}}advance(now){let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;
+!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),
+this.panel.tick(),painter.restart?.(!1),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||
+!camera)throw new Error("no scene is shown yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,
+player,rows:this.stage.clientHeight},shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.
+find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
+return this.canPick?this.painter.find?.(x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
 controls",onAxes:"axes",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
 height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.

@@ -101,7 +101,10 @@ def mount(client: ClientPage, field: FlowField, **options: Any) -> None:
     view = web_views(field, Options.split(samples=9))[0]
     data = view.page_data()
     plain = {"controls": False, "smooth": False}
-    client.mount(packed(data, data.header(view.scene.settings)), (600, 300), **plain | options)
+    steps = tuple(range(len(field.times)))
+    client.mount(
+        packed(data, data.header(view.scene.settings), steps), (600, 300), **plain | options
+    )
     client.sharp()
 
 
@@ -169,6 +172,21 @@ def test_a_click_shows_card_and_path_until_the_card_is_closed(client: ClientPage
     page.locator(".card").wait_for()
     assert len(card(page)["position"]) > 20
     page.evaluate("() => { delete viewers[0].canPick; }")
+
+
+def test_the_card_follows_the_time_that_plays(client: ClientPage) -> None:
+    y, x = np.mgrid[-1:1:21j, -2:2:41j]
+    steps = np.array([1.0, 2.0, 4.0])[:, None, None, None] * np.ones((*x.shape, 2))
+    mount(client, FlowField.from_arrays(np.stack([x, y], axis=-1), steps, times=[0.0, 5.0, 10.0]))
+    client.page.mouse.click(300, 150)
+    client.page.locator(".card").wait_for()
+    first = card(client.page)["speed"]
+    client.page.evaluate("viewers[0].play()")
+    speed = "() => [...document.querySelectorAll('.card dt')].find((e) => e.innerText === 'speed')"
+    shown = f"({speed})().nextElementSibling.innerText"
+    client.page.wait_for_function(f"(first) => {shown} !== first", arg=first)
+    assert client.page.evaluate("viewers[0].playing")
+    client.page.evaluate("viewers[0].pause()")
 
 
 def test_what_leaves_the_surface_is_told(client: ClientPage) -> None:
