@@ -426,9 +426,75 @@ def nine() -> Picture:
     return np.asarray(whole)
 
 
+def webmap() -> Picture:
+    """Take pictures of a page with a web map: currents on the flat map, winds on the globe."""
+    from playwright.sync_api import Route, sync_playwright
+
+    from flowtex.web.webmap import MAPLIBRE
+
+    modules = FOLDER.parents[1] / "client" / "node_modules" / "maplibre-gl" / "dist"
+    kinds = {".css": "text/css", ".html": "text/html", ".mjs": "text/javascript"}
+
+    def answer(route: Route) -> None:
+        name = route.request.url.split("?")[0].rsplit("/", 1)[-1]
+        path = (modules if MAPLIBRE in route.request.url else Path()) / name
+        route.fulfill(path=path, content_type=kinds.get(path.suffix))
+
+    currents, winds = flowtex.examples.ocean().isel(time=0), flowtex.examples.weather()
+    look: dict[str, Any] = {"projection": "mercator", "samples": 25}
+    views = {"mercator": ([-66.0, 38.0], 4.6), "globe": ([-40.0, 35.0], 1.35)}
+    shots = []
+    with (
+        TemporaryDirectory() as folder,
+        contextlib.chdir(folder),
+        sync_playwright() as playwright,
+        playwright.chromium.launch(executable_path=shutil.which("chromium")) as browser,
+    ):
+        flowtex.export(currents, "mercator.html", basemap=_coasts("#222"), cmap="viridis", **look)
+        flowtex.export(
+            winds, "globe.html", basemap=_coasts("#eee"), level=250, cmap="magma", **look
+        )
+        for name, (center, zoom) in views.items():
+            page = browser.new_page(viewport={"width": 596, "height": 440})
+            page.set_default_timeout(120_000)
+            page.context.route("**", answer)
+            page.goto(f"https://flowtex.example/{name}.html")
+            page.wait_for_function("() => window.flow?.isComplete")
+            page.evaluate(
+                "([type, center, zoom]) => { map.setProjection({ type }); map.moveLayer('coasts');"
+                " map.jumpTo({ center, zoom }); return new Promise((f) => map.once('idle', f)); }",
+                [name, center, zoom],
+            )
+            page.wait_for_function("() => flow.isComplete && map.loaded()")
+            with Image.open(io.BytesIO(page.screenshot())) as picture:
+                shots.append(np.asarray(picture.convert("RGB")))
+    return _row(shots)
+
+
+def _coasts(color: str) -> dict[str, Any]:
+    """Return a style of MapLibre's with coasts, which asks for nothing from the network."""
+    from flowtex.earth import Projection, coastlines
+
+    lines = coastlines(Projection("globe"))
+    x, y, z = lines.points.T
+    places = np.degrees(np.stack([np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))], axis=-1))
+    pieces = np.split(places.round(2), lines.starts[1:-1])
+    coasts = {"type": "MultiLineString", "coordinates": [piece.tolist() for piece in pieces]}
+    line = {"line-color": color, "line-width": 0.7}
+    return {
+        "version": 8,
+        "sources": {"coasts": {"type": "geojson", "data": coasts}},
+        "layers": [
+            {"id": "ground", "type": "background", "paint": {"background-color": "#d8d4c8"}},
+            {"id": "coasts", "type": "line", "source": "coasts", "paint": line},
+        ],
+    }
+
+
 STILLS = (
     *(wake, globe, cartopy, ocean, zooms, critical, vortices, sphere, torus, level_of_detail),
     *(grain, levels, correction, kernels, arrows, structure, patterns, half_turns, gyre, nine),
+    webmap,
 )
 PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}
 

@@ -75,13 +75,16 @@ export class MapPicture {
   }
 
   /** Take the picture over that the canvas has. */
-  private upload(gl: WebGL2RenderingContext): void {
+  private upload(gl: WebGL2RenderingContext, globe: boolean): void {
     if (!this.next) return;
     gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, true);
     gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, true);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, this.view.canvas);
     for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, side, gl.CLAMP_TO_EDGE);
-    for (const size of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, size, gl.LINEAR);
+    // Towards the sides of a globe, and its poles, many pixels of the picture lie in one of the map.
+    if (globe) gl.generateMipmap(gl.TEXTURE_2D);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, globe ? gl.LINEAR_MIPMAP_LINEAR : gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
     this.shown = this.next;
     this.next = null;
   }
@@ -94,7 +97,7 @@ export class MapPicture {
     if (!program.ready) return program.error;
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.texture);
-    this.upload(gl);
+    this.upload(gl, globe);
     if (!this.shown) return true;
     const { camera } = this.shown;
     // Counted from a tile near the middle of the picture, which keeps the digits of a close view.

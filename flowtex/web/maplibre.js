@@ -902,18 +902,19 @@ hypot(c,.5*a*Math.cos(n)*Math.cos(s)/Math.cos(i))}var _r=8192,ao=22,io=64,It=cla
 createTexture()}dispose(e){this.view.dispose(),e?.deleteTexture(this.texture)}follow(e,t){this.isUsed=this.view.isVisible=
 e!==void 0,e?this.view.look(e.state,e.width,e.height,t):this.shown=this.next=null}painted(e){let{camera:t}=this.view;t&&
 this.isUsed&&(this.next={camera:t,isComplete:e})}get isComplete(){let{view:e,next:t,shown:r}=this;return!this.isUsed||e.
-sharp&&!t&&!!r?.isComplete&&!e.tiles?.pending}upload(e){if(this.next){e.pixelStorei(e.UNPACK_FLIP_Y_WEBGL,!0),e.pixelStorei(
-e.UNPACK_PREMULTIPLY_ALPHA_WEBGL,!0),e.texImage2D(e.TEXTURE_2D,0,e.RGBA,e.RGBA,e.UNSIGNED_BYTE,this.view.canvas);for(let t of[
-e.TEXTURE_WRAP_S,e.TEXTURE_WRAP_T])e.texParameteri(e.TEXTURE_2D,t,e.CLAMP_TO_EDGE);for(let t of[e.TEXTURE_MIN_FILTER,e.TEXTURE_MAG_FILTER])
-e.texParameteri(e.TEXTURE_2D,t,e.LINEAR);this.shown=this.next,this.next=null}}draw(e){let{gl:t,programs:r,mercator:n,globe:s}=e,
-{vertexShaderPrelude:i,define:o}=e.shaderData,c=r.get(`${o}
+sharp&&!t&&!!r?.isComplete&&!e.tiles?.pending}upload(e,t){if(this.next){e.pixelStorei(e.UNPACK_FLIP_Y_WEBGL,!0),e.pixelStorei(
+e.UNPACK_PREMULTIPLY_ALPHA_WEBGL,!0),e.texImage2D(e.TEXTURE_2D,0,e.RGBA,e.RGBA,e.UNSIGNED_BYTE,this.view.canvas);for(let r of[
+e.TEXTURE_WRAP_S,e.TEXTURE_WRAP_T])e.texParameteri(e.TEXTURE_2D,r,e.CLAMP_TO_EDGE);t&&e.generateMipmap(e.TEXTURE_2D),e.texParameteri(
+e.TEXTURE_2D,e.TEXTURE_MIN_FILTER,t?e.LINEAR_MIPMAP_LINEAR:e.LINEAR),e.texParameteri(e.TEXTURE_2D,e.TEXTURE_MAG_FILTER,e.
+LINEAR),this.shown=this.next,this.next=null}}draw(e){let{gl:t,programs:r,mercator:n,globe:s}=e,{vertexShaderPrelude:i,define:o}=e.
+shaderData,c=r.get(`${o}
 ${i}
 ${Ls}`,Rs);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
-t),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(R(e.zoom,0,ao)),m=n.placeOf(l.state.focal_point),u=2**h,p=[
-Math.floor(m[0]*u),R(Math.floor(m[1]*u),0,u-1)],f=Math.floor(p[0]/u),d={z:h,x:p[0]-f*u,y:p[1]},g=S=>S.map((k,_)=>(k*u-p[_])*
-_r),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(S=>g(n.placeOf(S)));t.bindVertexArray(e.array);let A=s?io:1,E=s?0:Math.round(
-ge(e.center)[0]-m[0]);for(let S of e.isRepeated&&!s?[-1,0,1]:[0]){let k={wrap:f+E+S,canonical:d},_=e.getProjectionData({
-tileID:k,applyGlobeMatrix:s});r.use(c,{u_projection_matrix:_.mainMatrix,u_projection_fallback_matrix:_.fallbackMatrix,u_projection_tile_mercator_coords:_.
+t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(R(e.zoom,0,ao)),m=n.placeOf(l.state.focal_point),u=2**h,
+p=[Math.floor(m[0]*u),R(Math.floor(m[1]*u),0,u-1)],f=Math.floor(p[0]/u),d={z:h,x:p[0]-f*u,y:p[1]},g=S=>S.map((k,_)=>(k*u-
+p[_])*_r),[y,b,v,x]=n.box,[w,M]=[[y,b],[v,x]].map(S=>g(n.placeOf(S)));t.bindVertexArray(e.array);let A=s?io:1,E=s?0:Math.
+round(ge(e.center)[0]-m[0]);for(let S of e.isRepeated&&!s?[-1,0,1]:[0]){let k={wrap:f+E+S,canonical:d},_=e.getProjectionData(
+{tileID:k,applyGlobeMatrix:s});r.use(c,{u_projection_matrix:_.mainMatrix,u_projection_fallback_matrix:_.fallbackMatrix,u_projection_tile_mercator_coords:_.
 tileMercatorCoords,u_projection_clipping_plane:_.clippingPlane,u_projection_transition:_.projectionTransition,u_box:[...w,
 M[0]-w[0],M[1]-w[1]],u_mapCells:A,u_flowMatrix:oo(this.view.header,l,n,p,1/(u*_r)),u_flowPicture:0,u_opacity:e.opacity}),
 t.drawArraysInstanced(t.TRIANGLE_STRIP,0,2*A+2,A)}return t.bindVertexArray(null),!0}};function oo({geometry:a},e,t,r,n){
