@@ -180,10 +180,9 @@ def test_the_card_follows_the_time_that_plays(client: ClientPage) -> None:
     mount(client, FlowField.from_arrays(np.stack([x, y], axis=-1), steps, times=[0.0, 5.0, 10.0]))
     client.page.mouse.click(300, 150)
     client.page.locator(".card").wait_for()
-    first = card(client.page)["speed"]
+    shown = "viewers[0].card.element.innerText"
+    first = client.page.evaluate(shown)
     client.page.evaluate("viewers[0].play()")
-    speed = "() => [...document.querySelectorAll('.card dt')].find((e) => e.innerText === 'speed')"
-    shown = f"({speed})().nextElementSibling.innerText"
     client.page.wait_for_function(f"(first) => {shown} !== first", arg=first)
     assert client.page.evaluate("viewers[0].playing")
     client.page.evaluate("viewers[0].pause()")
