@@ -81,6 +81,7 @@ export class FlowtexLayer implements CustomLayerInterface {
   }
 
   onAdd(map: MapLibreMap, gl: WebGL2RenderingContext): void {
+    this.onRemove(); // a map that has lost its context forgets a layer without a word
     this.map = map;
     this.gl = gl;
     const context = { context: gl, counted: <T>(made: T | null) => made as T, free: () => undefined };

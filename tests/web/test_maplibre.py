@@ -325,6 +325,22 @@ def test_a_series_goes_on_in_time(shown: Shown) -> None:
     assert shown.page.evaluate("() => view.graphics.objects") == 0
 
 
+def test_a_layer_can_be_added_again(shown: Shown) -> None:
+    before = shown.pixels()
+    shown.page.evaluate(
+        "() => { const lost = map.painter.context.gl.getExtension('WEBGL_lose_context');"
+        "map.once('webglcontextlost', () => setTimeout(() => lost.restoreContext()));"
+        "lost.loseContext(); }"
+    )
+    shown.page.wait_for_function("() => map.style?._loaded && map.getLayer('flow')")
+    shown.wait()
+    assert correlation(before, shown.pixels()) > 0.999
+    shown.page.evaluate("() => { map.setStyle(mapStyle, { diff: false }); }")
+    painted(shown.page)
+    shown.wait()
+    assert correlation(before, shown.pixels()) > 0.999
+
+
 @pytest.mark.parametrize(
     ("scene", "said"),
     [
