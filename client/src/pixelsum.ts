@@ -47,28 +47,23 @@ interface Step {
   weight: number;
 }
 
-/** Weight on a side, -1 behind the point, at t from 0 there to 1 beyond the last sample. */
+/**
+ * Weight on a side, -1 behind the point, at t from 0 there to 1 beyond the last sample. Paths part from 0 to
+ * 1 where they begin.
+ */
 function kernelAt(side: number, t: number, parting: number, u: Uniforms, c: Constants): number {
   if (u.u_kernel === c.KERNEL_BOX[0]) return 1;
   if (u.u_kernel !== c.KERNEL_RAMP[0]) return 0.5 + 0.5 * Math.cos(Math.PI * t);
   if (u.u_sides === 1) return 1 - t;
-  const first = 0.5 + 0.5 * parting;
-  if (side > 0) return first * (1 - t);
-  const low = Math.min(first, 0.5);
-  return Math.min(1 - parting, 1) * (low + (1 - low) * t);
+  return (0.5 + 0.5 * side * parting) * (1 - side * t);
 }
 
-/** Number of samples on a side. */
-function countOf(u: Uniforms): number {
-  const set = Number(u.u_samples);
-  return u.u_sides === 2 ? Math.floor(set / 2) : set - 1;
-}
-
-/** Samples of a side, from the point outward; `spacing` is that between two. */
+/** Samples of a side, from the point outward, the last one in part; `spacing` is that between two. */
 function sideSteps(
   layers: (layer: number) => number[],
   side: number,
   spacing: number,
+  count: number,
   parting: number,
   u: Uniforms,
   c: Constants,
@@ -79,7 +74,6 @@ function sideSteps(
   const first = side * lags.length;
   const end = Math.min(layers(first + 1)[3], lags[lags.length - 1]);
   const sign = side ? 1 : -1;
-  const count = countOf(u);
   let [before, after] = [slope(0), slope(first + 1)];
   let [from, m] = [0, 0];
   const bendAt = () => scale(subtract(after, before), 1 / (lags[m] - from));
@@ -90,9 +84,9 @@ function sideSteps(
   };
   let [lag, step] = [0, stepAt(before, bendAt())];
   const result: Step[] = [];
-  for (let k = 1; k <= count; k += 1) {
+  for (let k = 1; k < count + 1; k += 1) {
     lag += step;
-    const alive = clamp((end - lag) / step + 1, 0, 1);
+    const alive = clamp((end - lag) / step + 1, 0, 1) * Math.min(count - k + 1, 1);
     if (!alive) break;
     for (; lag > lags[m] && m < lags.length - 1; m += 1) {
       [before, from] = [after, lags[m]];
@@ -142,8 +136,16 @@ export function pixelSum({ at, settings, camera, rows }: PixelPlace): PixelSum |
   const moves = length(layers(0).slice(0, 3)) > c.LEAST_SPEED[0];
   const sides = moves ? [...Array(Number(u.u_sides)).keys()] : [];
   const sparse = isSparse(header, settings);
-  const parting = sparse && !isSignFree(header) ? partingAt(at, countOf(u) * spacing) : 0;
-  const [back = [], ahead = []] = sides.map((side) => sideSteps(layers, side, spacing, parting, u, c));
+  const set = Number(u.u_samples);
+  const whole = u.u_sides === 2 ? Math.floor(set / 2) : set - 1;
+  const sine = sparse && !isSignFree(header) ? partingAt(at, 0.5 * whole * spacing) : 0;
+  const cosine = Math.sqrt(Math.max(1 - sine ** 2, 0));
+  const parting = clamp(2 * sine, 0, 1);
+  const together = (c.TOGETHER[0] * cosine) / Math.max(Math.abs(sine), c.LEAST_SPEED[0]);
+  const count = whole * Math.min(together, 1);
+  const [back = [], ahead = []] = sides.map((side) =>
+    sideSteps(layers, side, spacing, count, parting, u, c),
+  );
   const own = Math.max(kernelAt(1, 0, parting, u, c), c.LEAST_WEIGHT[0]);
   const steps = [...back.reverse(), { displacement: [0, 0, 0] as Vector, weight: own }, ...ahead];
 

@@ -158,20 +158,18 @@ function sidesAt(scene: Scene, place: [number, number]): [Vector, Vector] {
 }
 
 /**
- * How paths part over a length, half of it to either side of a place: from -1 where they meet to 1 where
- * they begin.
+ * Sine of the angle to paths so far beside, as shaders/common/texture.glsl has it: below 0 where they meet.
  */
-export function partingAt(at: PathPlace, reach: number): number {
+export function partingAt(at: PathPlace, half: number): number {
   const { scene, place } = at;
   const [first, second] = sidesAt(scene, place);
   const normal = cross(first, second);
   const wayAt = (beside: Beside) =>
     unit(fromFrame(scene.header.geometry.frame, layersAt(at, beside)(0).slice(0, 3)));
   const across = unit(cross(normal, wayAt([0, 0])));
-  const by = (0.5 * reach) / dot(normal, normal);
+  const by = half / dot(normal, normal);
   const [di, dj] = [cross(second, normal), cross(normal, first)].map((side) => by * dot(across, side));
-  const change = subtract(wayAt([di, dj]), wayAt([-di, -dj]));
-  return clamp(dot(across, change), -1, 1);
+  return 0.5 * dot(across, subtract(wayAt([di, dj]), wayAt([-di, -dj])));
 }
 
 function between(values: number[], at: number): number {

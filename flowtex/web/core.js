@@ -784,18 +784,18 @@ place),local=[0,1,2].map(c=>interpolated(corners,n=>data[3*n+c]));return fromFra
 let{shape:shape2,triangles}=scene.header.geometry;if(triangles){let corner=(second,third)=>pointAt(scene,placeIn(Math.floor(
 place[1]),second,third));return[subtract2(corner(1,0),corner(0,0)),subtract2(corner(0,1),corner(0,0))]}let[i,j]=place.map(
 (n,axis)=>clamp(n,.5,shape2[1-axis]-1.5)),at=(di,dj)=>pointAt(scene,[i+di,j+dj]);return[subtract2(at(.5,0),at(-.5,0)),subtract2(
-at(0,.5),at(0,-.5))]}function partingAt(at,reach){let{scene,place}=at,[first,second]=sidesAt(scene,place),normal=cross2(
-first,second),wayAt=beside=>unit(fromFrame(scene.header.geometry.frame,layersAt(at,beside)(0).slice(0,3))),across=unit(cross2(
-normal,wayAt([0,0]))),by=.5*reach/dot2(normal,normal),[di,dj]=[cross2(second,normal),cross2(normal,first)].map(side=>by*
-dot2(across,side)),change=subtract2(wayAt([di,dj]),wayAt([-di,-dj]));return clamp(dot2(across,change),-1,1)}function between(values,at){
-let n=Math.min(Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){
-let n=values.findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-
-1])}function grainAt({scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,normal=cross2(...sidesAt(
-scene,place)),{height,ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/
-rows;if(paper){let[across,up]=[paper.alongI,paper.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.
-length-2);return(along2[n+1]-along2[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.grain*
-(settings.lod?Math.max(pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),grain=pixel/
-facing*Number(settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
+at(0,.5),at(0,-.5))]}function partingAt(at,half){let{scene,place}=at,[first,second]=sidesAt(scene,place),normal=cross2(first,
+second),wayAt=beside=>unit(fromFrame(scene.header.geometry.frame,layersAt(at,beside)(0).slice(0,3))),across=unit(cross2(
+normal,wayAt([0,0]))),by=half/dot2(normal,normal),[di,dj]=[cross2(second,normal),cross2(normal,first)].map(side=>by*dot2(
+across,side));return .5*dot2(across,subtract2(wayAt([di,dj]),wayAt([-di,-dj])))}function between(values,at){let n=Math.min(
+Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){let n=values.
+findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-1])}function grainAt({
+scene,place,position},settings,camera,rows){let{geometry,paper}=scene.header,normal=cross2(...sidesAt(scene,place)),{height,
+ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;if(paper){let[
+across,up]=[paper.alongI,paper.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.length-2);return(along2[n+
+1]-along2[n])*paper.size[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return paper.grain*(settings.lod?Math.max(
+pixel/Math.sqrt(facing),texel2):texel2)}let texel=geometry.extent/Number(settings.resolution),grain=pixel/facing*Number(
+settings.grain);return settings.lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function upTo(start,side,most){
 let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>
 0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}
 function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,paper,speed}=scene.header,layers=layersAt(at),
@@ -2119,37 +2119,37 @@ reduce((all,{shares:shares2},axis)=>all*shares2[side(axis)],1),grain=Math.imul(h
 grain,c):grain)}let spread=(all,{shares:[a,b]})=>all*(1-2*a*b);return sum/Math.sqrt(sides.reduce(spread,1)*c.GRAIN_VARIANCE[0])}
 function noiseAround(local,octave,isPlanar,isSparse2,u,c){let point=add(local,scale2(u.u_noiseOrigin,-1)),[fine,coarse]=[
 0,1].map(n=>latticeOf(point,octave+n,u,c)),axes=isPlanar?2:3;return displacement=>[octaveAt(fine,displacement,c,axes,isSparse2),
-octaveAt(coarse,displacement,c,axes,isSparse2)]}function kernelAt(side,t,parting,u,c){if(u.u_kernel===c.KERNEL_BOX[0])return 1;if(u.u_kernel!==c.KERNEL_RAMP[0])return .5+
-.5*Math.cos(Math.PI*t);if(u.u_sides===1)return 1-t;let first=.5+.5*parting;if(side>0)return first*(1-t);let low=Math.min(
-first,.5);return Math.min(1-parting,1)*(low+(1-low)*t)}function countOf(u){let set=Number(u.u_samples);return u.u_sides===
-2?Math.floor(set/2):set-1}function sideSteps(layers,side,spacing,parting,u,c){let lags=u.u_lags,slope=layer=>layers(layer).
-slice(0,3),by=layers(0)[3]*Number(u.u_unit),first=side*lags.length,end=Math.min(layers(first+1)[3],lags[lags.length-1]),
-sign=side?1:-1,count2=countOf(u),[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],bendAt=()=>scale2(subtract2(after,
-before),1/(lags[m]-from)),stepAt=(along2,bend)=>{let least=Math.max(Math.sqrt(length2(bend)*spacing/by),c.LEAST_SPEED[0]);
-return spacing/by/Math.max(length2(along2),least)},[lag,step]=[0,stepAt(before,bendAt())],result2=[];for(let k=1;k<=count2;k+=
-1){lag+=step;let alive=clamp((end-lag)/step+1,0,1);if(!alive)break;for(;lag>lags[m]&&m<lags.length-1;m+=1)[before,from]=
-[after,lags[m]],after=slope(first+m+2);let bend=bendAt(),at=lateness=>before.map((x,n)=>x+bend[n]*lateness),weight=alive*
-kernelAt(sign,k/(count2+1),parting,u,c);result2.push({displacement:scale2(at(lag-from),lag*sign*by),weight}),step=stepAt(
-at(2*lag-from),bend)}return result2}function shared(apart,near,c){let total2=1;for(let m=1;m<=c.SHARED_TERMS[0];m+=1){let d=m*
-m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*(c.BELL[0]+c.BELL_BEND[0]*d))}return total2}var total=values=>values.
-reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+Math.exp(-c.TONE_SLOPE[0]*contrast*value))}
-function pixelSum({at,settings,camera,rows}){let{header}=at.scene,{geometry,slices,shaders}=header;if(header.paper||isMoving(
-header,settings))return null;let c=constantsOf(shaders.fragment),focus=camera.state.focal_point,view={...{eye:camera.eye,
-between:at.moment[2],time:slices.times[0],clock:0},focus,anchor:[0,0,0],density:1,pixel:1},u=uniforms(header,settings,view),
-grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*grain,layers=layersAt(at),sides=length2(layers(0).slice(
-0,3))>c.LEAST_SPEED[0]?[...Array(Number(u.u_sides)).keys()]:[],sparse2=isSparse(header,settings),parting=sparse2&&!isSignFree(
-header)?partingAt(at,countOf(u)*spacing):0,[back=[],ahead=[]]=sides.map(side=>sideSteps(layers,side,spacing,parting,u,c)),
-own=Math.max(kernelAt(1,0,parting,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{displacement:[0,0,0],weight:own},...ahead],
-octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),octave=Math.floor(octaves),late=octaves-octave,
-local=toFrame(geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(local,octave,geometry.planar,sparse2,
-u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.map(weight=>weight**2)),pairs=weights2.slice(1).map((weight,n)=>weight*
-weights2[n]),near=total(pairs)/squares,apart=Number(u.u_spacing)*2**(late/2),shares2=[1-late,late],alone=Math.hypot(...shares2),
-variance=shares2.map((w,n)=>w**2*shared(apart*Math.SQRT1_2**n,near,c)),slow=u.u_fade?clamp(layers(2)[3]/Number(u.u_fade),
-0,1):1,gain=slow**2*(3-2*slow)*alone*total(weights2)/Math.sqrt(squares*total(variance)),moved=mover(at),samples=steps.map(
-({displacement,weight})=>{let[fine,coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(
-displacement)??at.position,weight:weight/total(weights2),noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.
-weight*sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*
-mean,Number(settings.contrast),c)}}var SVG4="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacin\
+octaveAt(coarse,displacement,c,axes,isSparse2)]}function kernelAt(side,t,parting,u,c){return u.u_kernel===c.KERNEL_BOX[0]?1:u.u_kernel!==c.KERNEL_RAMP[0]?.5+.5*Math.cos(
+Math.PI*t):u.u_sides===1?1-t:(.5+.5*side*parting)*(1-side*t)}function sideSteps(layers,side,spacing,count2,parting,u,c){
+let lags=u.u_lags,slope=layer=>layers(layer).slice(0,3),by=layers(0)[3]*Number(u.u_unit),first=side*lags.length,end=Math.
+min(layers(first+1)[3],lags[lags.length-1]),sign=side?1:-1,[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],bendAt=()=>scale2(
+subtract2(after,before),1/(lags[m]-from)),stepAt=(along2,bend)=>{let least=Math.max(Math.sqrt(length2(bend)*spacing/by),
+c.LEAST_SPEED[0]);return spacing/by/Math.max(length2(along2),least)},[lag,step]=[0,stepAt(before,bendAt())],result2=[];for(let k=1;k<
+count2+1;k+=1){lag+=step;let alive=clamp((end-lag)/step+1,0,1)*Math.min(count2-k+1,1);if(!alive)break;for(;lag>lags[m]&&
+m<lags.length-1;m+=1)[before,from]=[after,lags[m]],after=slope(first+m+2);let bend=bendAt(),at=lateness=>before.map((x,n)=>x+
+bend[n]*lateness),weight=alive*kernelAt(sign,k/(count2+1),parting,u,c);result2.push({displacement:scale2(at(lag-from),lag*
+sign*by),weight}),step=stepAt(at(2*lag-from),bend)}return result2}function shared(apart,near,c){let total2=1;for(let m=1;m<=
+c.SHARED_TERMS[0];m+=1){let d=m*m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*(c.BELL[0]+c.BELL_BEND[0]*
+d))}return total2}var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+
+Math.exp(-c.TONE_SLOPE[0]*contrast*value))}function pixelSum({at,settings,camera,rows}){let{header}=at.scene,{geometry,slices,
+shaders}=header;if(header.paper||isMoving(header,settings))return null;let c=constantsOf(shaders.fragment),focus=camera.
+state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0},focus,anchor:[0,0,0],density:1,
+pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*grain,layers=layersAt(
+at),sides=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0]?[...Array(Number(u.u_sides)).keys()]:[],sparse2=isSparse(header,
+settings),set=Number(u.u_samples),whole=u.u_sides===2?Math.floor(set/2):set-1,sine=sparse2&&!isSignFree(header)?partingAt(
+at,.5*whole*spacing):0,cosine=Math.sqrt(Math.max(1-sine**2,0)),parting=clamp(2*sine,0,1),together=c.TOGETHER[0]*cosine/Math.
+max(Math.abs(sine),c.LEAST_SPEED[0]),count2=whole*Math.min(together,1),[back=[],ahead=[]]=sides.map(side=>sideSteps(layers,
+side,spacing,count2,parting,u,c)),own=Math.max(kernelAt(1,0,parting,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{displacement:[
+0,0,0],weight:own},...ahead],octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),octave=Math.floor(
+octaves),late=octaves-octave,local=toFrame(geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(local,
+octave,geometry.planar,sparse2,u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.map(weight=>weight**2)),
+pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(u.u_spacing)*2**(late/
+2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*Math.SQRT1_2**n,near,
+c)),slow=u.u_fade?clamp(layers(2)[3]/Number(u.u_fade),0,1):1,gain=slow**2*(3-2*slow)*alone*total(weights2)/Math.sqrt(squares*
+total(variance)),moved=mover(at),samples=steps.map(({displacement,weight})=>{let[fine,coarse]=noise(displacement),value=(shares2[0]*
+fine+shares2[1]*coarse)/alone;return{position:moved(displacement)??at.position,weight:weight/total(weights2),noise:value,
+grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.weight*sample.noise));return{samples,middle:back.length,
+level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*mean,Number(settings.contrast),c)}}var SVG4="http://www.w3.org/2000/svg",FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacin\
 g","Spacing, Δt",.1,3,.1],["grain","Grain, pixels",2,24,1],["seed","Another noise",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={
 hann:"smooth",box:"even",ramp:"falling"},ROW2=40;function row(name,count2,marks){let svg=document.createElementNS(SVG4,"\
 svg");svg.setAttribute("viewBox",`0 0 ${count2} ${ROW2}`),svg.setAttribute("preserveAspectRatio","none"),svg.setAttribute(

@@ -64,6 +64,8 @@ const float FLOWTEX_DASH_SHARE = 0.4;
 const float FLOWTEX_DASH_HIGH = 17.698921;
 const float FLOWTEX_DASH_LOW = 0.02831827;
 const float FLOWTEX_DASH_PHASES = 256.0;
+// Their sides are as long as this over the tangent of the angle to paths half a side's length beside.
+const float FLOWTEX_TOGETHER = 0.5;
 const float FLOWTEX_GRAIN_VARIANCE = 1.537228672809129e18; // a third of its square
 
 // Shading: the lightness that black and white are drawn to, and how far the texture goes from it.

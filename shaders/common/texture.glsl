@@ -44,36 +44,36 @@ vec2 flowtexFootprint(float aa, float bb, float determinant)
 }
 
 #ifdef FLOWTEX_SPARSE
-// How the paths part over a side of the fragment's: from -1 where they meet to 1 where they begin.
-float flowtexParting = 0.0;
+float flowtexParting = 0.0; // how paths part, from 0 to 1 where they begin
 
 // Direction of the flow beside a fragment, by so much in its coordinate.
 vec3 flowtexWay(vec2 coordinate, vec2 to, float level, bool inCell)
 {
   vec3 way = flowtexUnit(flowtexLayer(coordinate + to, 0, level).xyz);
-#if defined(FLOWTEX_CELLS) && defined(FLOWTEX_TRIANGLES)
-  vec3 own = flowtexCell.velocity * flowtexFactors(to);
-#elif defined(FLOWTEX_CELLS)
-  vec2 cells = to * u_slicesSize;
-  vec3 own = flowtexCell.velocity * flowtexFactors(cells);
-#endif
 #ifdef FLOWTEX_CELLS
+#ifndef FLOWTEX_TRIANGLES
+  to *= u_slicesSize;
+#endif
   if (inCell)
-    way = mix(way, flowtexUnit(own), flowtexCell.share);
+    way = mix(way, flowtexUnit(flowtexCell.velocity * flowtexFactors(to)), flowtexCell.share);
 #endif
   return way;
 }
 
-// Sets it from the directions at both sides of a path whose sides are so long.
+// Share of a path over which it stays with those beside it, half a side's length away.
 //
 // A grain from which paths part, as in a source, is in all of them: it would be as wide a spot as a
-// streak is long. So streaks lie before the grain there, and beyond it where paths meet.
-void flowtexSetParting(vec2 coordinate, float level, float reach, bool inCell)
+// streak is long. So streaks lie before the grain there. Where paths meet, and before the grain where they
+// part, long streaks would be finer than a pixel.
+float flowtexTogether(vec2 coordinate, float level, float half_, bool inCell)
 {
   vec3 across = flowtexUnit(cross(flowtexCellNormal, flowtexWay(coordinate, vec2(0.0), level, inCell)));
-  vec2 to = flowtexBy * (0.5 * reach * across);
+  vec2 to = flowtexBy * (half_ * across);
   vec3 change = flowtexWay(coordinate, to, level, inCell) - flowtexWay(coordinate, -to, level, inCell);
-  flowtexParting = clamp(dot(across, change), -1.0, 1.0);
+  float sine = 0.5 * dot(across, change);
+  float cosine = sqrt(max(1.0 - sine * sine, 0.0));
+  flowtexParting = clamp(2.0 * sine, 0.0, 1.0);
+  return min(FLOWTEX_TOGETHER * cosine / max(abs(sine), FLOWTEX_LEAST_SPEED), 1.0);
 }
 #else
 const float flowtexParting = 0.0;
@@ -89,11 +89,7 @@ vec3 flowtexKernel(float side)
     return vec3(0.5, 0.5, 0.0);
   if (u_sides == 1)
     return vec3(1.0, 0.0, -1.0);
-  float first = 0.5 + 0.5 * flowtexParting;
-  if (side > 0.0)
-    return vec3(first, 0.0, -first);
-  first = min(first, 0.5);
-  return vec3(first, 0.0, 1.0 - first) * min(1.0 - flowtexParting, 1.0);
+  return (0.5 + 0.5 * side * flowtexParting) * vec3(1.0, 0.0, -side);
 }
 
 // Sums along a path: of the weighted noise in both octaves, of the squared weights, and of the
@@ -177,7 +173,7 @@ void flowtexSide(inout FlowtexSums sums, vec2 coordinate, float level, vec3 afte
         if (inCell)
           flowtexGoOn(side * spacing, displacement, alive);
         float weight = alive * (line + cosine);
-#ifdef FLOWTEX_UNCERTAIN
+#if defined(FLOWTEX_UNCERTAIN) || defined(FLOWTEX_SPARSE)
         weight *= min(count - float(k) + 1.0, 1.0);
 #endif
         flowtexAdd(sums, displacement, side * lag * scale, weight, previous);
@@ -234,8 +230,8 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, float spacing)
 #endif
   bool inCell = goes && flowtexEnterCell(coordinate, count * spacing);
 #if defined(FLOWTEX_SPARSE) && !defined(FLOWTEX_SIGNFREE)
-  if (goes && u_sides == 2)
-    flowtexSetParting(coordinate, sliceLevel, count * spacing, inCell);
+  if (goes)
+    count *= flowtexTogether(coordinate, sliceLevel, 0.5 * count * spacing, inCell);
 #endif
   vec3 kernel = flowtexKernel(1.0);
   flowtexAdd(sums, vec3(0.0), 0.0, max(kernel.x + kernel.y, FLOWTEX_LEAST_WEIGHT), 0.0);

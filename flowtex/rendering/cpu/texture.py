@@ -74,7 +74,7 @@ LookupMaker = Callable[[Fragments, Values], Lookup]
 def weight(side: float, t: float | Floats, parting: Floats, values: Values) -> Floats:
     """Weights (N,) on a side, -1 behind the particle, at t from 0 there to 1 past the last sample.
 
-    ``parting`` (N,) is how paths part, from -1 where they meet to 1 where they begin.
+    ``parting`` (N,) is how paths part, from 0 to 1 where they begin.
     """
     none = 0.0 * parting
     if values["u_kernel"] == const.KERNEL_BOX:
@@ -83,11 +83,7 @@ def weight(side: float, t: float | Floats, parting: Floats, values: Values) -> F
         return np.asarray(none + 0.5 + 0.5 * np.cos(const.PI * t))
     if values["u_sides"] == 1:
         return np.asarray(none + 1.0 - t)
-    first = 0.5 + 0.5 * parting
-    if side > 0:
-        return np.asarray(first * (1.0 - t))
-    first = np.minimum(first, 0.5)
-    return np.asarray(np.minimum(1.0 - parting, 1.0) * (first + (1.0 - first) * t))
+    return np.asarray((0.5 + 0.5 * side * parting) * (1.0 - side * t))
 
 
 def shared(apart: Floats, near: Floats) -> Floats:
@@ -127,13 +123,17 @@ class Summing:
         moving = values["moving"]
         lookup.move(speed, self._slices.layer(coordinate, 2, level)[:, 3] if moving else speed)
         cell = self.cell(coordinate, known)
+        count = self._count * known
         self._parting = np.zeros(len(base))
         if values["sparse"] and not isinstance(self._slices, AxisSlices):
-            half = 0.5 * self._count * known * lookup.spacing
-            self._parting = self._parted(coordinate, level, by, half, cell)
+            sine = self._parted(coordinate, level, by, 0.5 * count * lookup.spacing, cell)
+            cosine = np.sqrt(np.maximum(1.0 - sine**2, 0.0))
+            self._parting = np.clip(2.0 * sine, 0.0, 1.0)
+            sine = np.maximum(np.abs(sine), const.LEAST_SPEED)
+            count *= np.minimum(const.TOGETHER * cosine / sine, 1.0)
         sums = self._first(len(base))
         for side in self.sides(coordinate, level, base):
-            self._add(sums, side, cell, self._count * known)
+            self._add(sums, side, cell, count)
         value = lookup.blend(sums)
         if value.ndim > 1:  # a picture keeps its colours
             return value
@@ -142,7 +142,7 @@ class Summing:
     def _parted(
         self, coordinate: Places, level: Floats, by: Floats, half: Floats, cell: CellPath | None
     ) -> Floats:
-        """How paths part over half a side's length, (N,), from the directions beside them."""
+        """Sines (N,) of the angles to paths half a side's length beside; < 0 where they meet."""
         whole = isinstance(coordinate, TrianglePlaces)
         cells = np.ones(2) if whole else np.asarray(self._values["u_slicesSize"])
 
@@ -154,7 +154,7 @@ class Summing:
         across = unit(np.cross(normal, way(np.zeros((len(level), 2)))))
         to = np.einsum("nkc,nc->nk", by, half[:, None] * across)
         change = np.einsum("nc,nc->n", across, way(to) - way(-to))
-        return np.asarray(np.clip(change, -1.0, 1.0))
+        return np.asarray(0.5 * change)
 
     def faded(self, coordinate: Places, level: Floats, known: Floats) -> Floats:
         """Share of the texture where its direction is not known or the flow is slow, (N,)."""
