@@ -78,6 +78,10 @@ class FlowtexAccessor:
         """Draw the flow into axes of matplotlib or cartopy, as :func:`flowtex.axes` does."""
         return flowtex.axes(ax, self._dataset, **options)
 
+    def dynamic_map(self, **options: Any) -> Any:
+        """Return the flow for HoloViews and Panel, as :func:`flowtex.dynamic_map` does."""
+        return flowtex.dynamic_map(self._dataset, **options)
+
     def plot(
         self,
         *,

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
+import importlib
 from typing import Any
 
 import numpy as np
 import pytest
 
 import flowtex
-from flowtex.field import FieldError
 
 hv = pytest.importorskip("holoviews", reason="make integrations")
 hv.extension("bokeh")
@@ -68,16 +67,11 @@ def test_a_series_has_a_time(opengl: Any) -> None:
 
 def test_data_of_the_earth_lie_on_tiles(opengl: Any) -> None:
     pytest.importorskip("pyproj")
+    importlib.import_module("flowtex.xarray")
     winds = flowtex.examples.weather().isel(latitude=slice(None, None, 3))
-    flow = flowtex.dynamic_map(winds, level=500, projection="EPSG:3857", **LOOK)
+    flow = winds.flowtex.dynamic_map(level=500, projection="EPSG:3857", **LOOK)
     overlay = hv.element.tiles.OSM() * flow
     assert hv.render(overlay) is not None
     left, bottom, right, top = flow[()].bounds.lbrt()
     assert right - left == pytest.approx(2 * np.pi * 6.378e6, rel=0.02)
     assert -2.1e7 < bottom < top < 2.1e7
-
-
-def test_who_has_no_holoviews_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "holoviews", None)
-    with pytest.raises(FieldError, match="pip install holoviews"):
-        flowtex.dynamic_map(flowtex.examples.double_gyre_field(shape=(9, 9)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import numpy as np
@@ -271,3 +272,9 @@ def test_a_curved_surface_has_no_axes(figure: Figure) -> None:
         flowtex.axes(figure.add_subplot(), flowtex.examples.delta_wing_field())
     with pytest.raises(FieldError, match=r"^ax is None; expected rectilinear matplotlib axes"):
         flowtex.axes(None, edge())  # type: ignore[arg-type]
+
+
+def test_who_has_no_holoviews_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "holoviews", None)
+    with pytest.raises(FieldError, match="pip install holoviews"):
+        flowtex.dynamic_map(flowtex.examples.double_gyre_field(shape=(9, 9)))
