@@ -79,7 +79,6 @@ def _pairs(title: str = "") -> Table:
 
 
 def _store_table(place: Path) -> Table:
-    """Describe the pyramid in a store."""
     from flowtex.pyramid.levels import Levels
 
     about = Levels(place).about

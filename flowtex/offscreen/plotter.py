@@ -117,7 +117,6 @@ class OffscreenPlotter:
         return self._annotated(picture) if self._annotations else picture
 
     def _annotated(self, picture: Bytes) -> Bytes:
-        """Return a picture with what is written on each of its views."""
         picture = picture.copy()
         changes = self._view.beside or {}
         views = np.array_split(picture, len(self.handles), axis=1)

@@ -237,7 +237,6 @@ def _bytes(colour: Any) -> Bytes:
 
 
 def _labels(actor: Any) -> Iterator[Label]:
-    """Give the labels of points."""
     mapper = actor.GetMapper() if actor.IsA("vtkActor2D") else None
     if mapper is None or not mapper.IsA("vtkLabelPlacementMapper"):
         msg = f"{actor.GetClassName()}, neither a mesh nor a point label"

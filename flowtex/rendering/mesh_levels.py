@@ -133,7 +133,6 @@ class MeshLevels:
         return np.concatenate(parts or [np.empty((0, 3), np.intp)])
 
     def _triangles_of(self, blocks: tuple[Indices, ...], level: int, border: Ints) -> Indices:
-        """Triangles of the blocks of one level."""
         step, (j, i) = 1 << level, blocks
         places = np.arange(BLOCK_CELLS // step + 1) * step
         rows = np.minimum(places, self._rows.cells[j][:, None])

@@ -199,7 +199,6 @@ class TileLoader:
         return Tile(key, textures, textures and self._prepare(textures))
 
     def _make(self, key: TileKey, step: int) -> None:
-        """Make a tile with the layers of one destination time."""
         try:
             with stoppable(lambda: not self._is_wanted(key)), _turn():
                 tile = self._tiles.get(key, lambda: self._tile(key, step))

@@ -160,7 +160,6 @@ class TrianglePyramid(Pyramid):
         return Boxes(points[:: -(-len(points) // MOST_MEASURED)], self._steps(0))
 
     def _members(self, level: int) -> list[Indices]:
-        """Triangles of a level by block."""
         with self._lock:
             if level not in self._parts:
                 this = self._clusters[level]

@@ -91,7 +91,6 @@ class _Columns:
     """Arrays whose last axis is that of the particles; some of them may be None."""
 
     def pick(self, mask: Bools | Indices) -> Self:
-        """Return those of some particles."""
         # Numbers are several times as fast as a mask where there is more than one row.
         some = np.flatnonzero(mask) if mask.dtype == bool else mask
         parts = vars(self).values()
@@ -185,7 +184,6 @@ class _Run:
             self.state = self.state.pick(~resting)
 
     def end_all(self) -> None:
-        """End all paths where they are."""
         self._go_straight(self.state, self.state.rate)
 
     def advance(self) -> None:

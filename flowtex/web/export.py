@@ -431,7 +431,6 @@ def json_text(value: Any) -> str:
 
 
 def _parts(scene: ClientData) -> Iterator[tuple[str, AnyArray]]:
-    """Give all arrays of a view."""
     steps = track(range(scene.steps), scene.steps, "Packing time steps")
     return chain(
         scene.surface().items(),

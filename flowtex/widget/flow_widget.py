@@ -313,7 +313,6 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             setattr(self, HEADERS[number], {**header, "shaders": None})
 
     def _handle_message(self, _: Any, content: Any, buffers: list[Any]) -> None:
-        """Answer the client."""
         if isinstance(content, dict):
             if content.get("kind") == "frame":
                 self._frame = bytes(buffers[0])

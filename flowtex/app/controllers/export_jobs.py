@@ -64,12 +64,7 @@ class TiledPicture:
     """
 
     def __init__(
-        self,
-        viewport: Viewport,
-        size: tuple[int, int],
-        *,
-        density: float = 1.0,
-        supersampling: int = 1,
+        self, viewport: Viewport, size: tuple[int, int], density: float, supersampling: int
     ) -> None:
         self.size, self._viewport, self._supersampling = size, viewport, supersampling
         self._cost = Cost()
@@ -154,20 +149,15 @@ class Job:
         self._viewport, self._size, self._busy = viewport, size, busy
         self._supersampling, self._density = supersampling, density
         self._annotations = annotations
-        self._cancelled = False
+        self.cancelled = False  #: Whether it was cancelled before it was done.
         self._pool = ThreadPoolExecutor(1, "flowtex-export")
 
     def cancel(self) -> None:
         """Make no more of it; :meth:`run` ends with ``Stopped`` and no file is left."""
-        self._cancelled = not self.done
-
-    @property
-    def cancelled(self) -> bool:
-        """Whether it was cancelled before it was done."""
-        return self._cancelled
+        self.cancelled = not self.done
 
     def _unwanted(self) -> bool:
-        return self._cancelled or self.done
+        return self.cancelled or self.done
 
     async def run(self) -> Path:
         """Draw it, write it and return the file; ``Stopped`` when it was cancelled."""
@@ -185,9 +175,7 @@ class Job:
         raise NotImplementedError
 
     def _tiled(self, viewport: Viewport) -> TiledPicture:
-        return TiledPicture(
-            viewport, self._size, density=self._density, supersampling=self._supersampling
-        )
+        return TiledPicture(viewport, self._size, self._density, self._supersampling)
 
     async def _draw(self, tiled: TiledPicture, before: float, share: float) -> Bytes:
         """Draw one picture, which is ``share`` of the whole work, after what was ``before``."""
@@ -196,9 +184,9 @@ class Job:
             picture, self.progress = canvas, before + share * drawn
             # Whatever waits for the event loop has its turn.
             await asyncio.sleep(0)
-            while self._busy() and not self._cancelled:
+            while self._busy() and not self.cancelled:
                 await asyncio.sleep(BUSY_INTERVAL_S)
-            if self._cancelled:
+            if self.cancelled:
                 raise Stopped
         if picture is None:
             msg = "the size is empty; expected at least one pixel"

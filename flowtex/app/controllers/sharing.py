@@ -156,7 +156,6 @@ class Sharing(Controller):
         self.state.send(out_file={"name": path.name, "url": self.downloads.add(path)})
 
     async def _report_progress(self, job: Job) -> None:
-        """Show the progress of the job on the page."""
         while job is self._job:
             self.state.send(out_progress=round(100 * job.progress, 1))
             await asyncio.sleep(PROGRESS_INTERVAL_S)

@@ -130,8 +130,6 @@ class LimitedServer:
 
 
 class _Refusal(asyncio.Protocol):
-    """Ends a connection at once."""
-
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         if isinstance(transport, asyncio.Transport):
             transport.abort()

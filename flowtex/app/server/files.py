@@ -135,7 +135,6 @@ class Routes:
         return web.Response(text="")
 
     def _find(self, name: str) -> Give | None:
-        """Return what is served under a name."""
         stem, _, rest = name.partition(".")
         if name in self._content or stem not in self._families:
             return self._content.get(name)

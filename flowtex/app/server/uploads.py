@@ -33,7 +33,6 @@ class Uploads:
 
     def __init__(self, routes: Routes, arrived: Callable[[str, Path], None]) -> None:
         self._arrived = arrived
-        self._count = 0
         self._folder = TemporaryFolder()
         self.folder = self._folder.path
         self.address = routes.take("upload", self.receive)
@@ -48,23 +47,18 @@ class Uploads:
             endings = ", ".join(UPLOAD_SUFFIXES)
             msg = f"{name}: this format cannot be uploaded; expected one of {endings}"
             raise FieldError(msg)
-        if self._count >= MOST_UPLOADS:
+        if len(list(self.folder.glob("*"))) >= MOST_UPLOADS:
             msg = (
                 f"{name}: {MOST_UPLOADS} files have been uploaded already; reload the page to "
                 "upload more"
             )
             raise FieldError(msg)
-        self._count += 1
         prepare_readers()
         try:
             path = await self._written(name, content)
         except OSError as error:
-            self._count -= 1
             msg = f"{name}: cannot be stored on the server ({error.strerror or error})"
             raise FieldError(msg) from error
-        except BaseException:
-            self._count -= 1
-            raise
         self._arrived(name, path)
 
     async def _written(self, name: str, content: AsyncIterable[bytes]) -> Path:

@@ -404,7 +404,6 @@ def _whole_mesh(surface: TriangleSurface) -> pv.PolyData:
 
 
 def _time_beside(first: Scene, changes: Mapping[str, Any]) -> float:
-    """Time of a second pane."""
     if "field" in changes:
         return _time_in(first, changes["field"])
     earliest, latest = first.field.times[[0, -1]]

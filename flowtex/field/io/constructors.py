@@ -279,7 +279,6 @@ class FieldConstructors:
 
 
 def _with_uncertainty(field: Any, uncertainty: Any) -> Any:
-    """Return a field with the uncertainty of its direction, if one is given."""
     from flowtex.field.uncertainty import with_uncertainty
 
     return field if uncertainty is None else with_uncertainty(field, uncertainty)

@@ -103,7 +103,6 @@ def _read_planes(
     periodic: str | None,
     sign_free: bool,
 ) -> dict[str, Any]:
-    """Read planes of structured meshes."""
     sheets: list[_PlaneStep] = []
     choice: tuple[Plane, MeshArray] | None = None
     for step in steps:
@@ -146,7 +145,6 @@ def _check_step(step: TimeStep, plane: Plane, vectors: MeshArray) -> None:
 def _plane_step(
     step: TimeStep, plane: Plane, vectors: MeshArray, periodic: str | None, *, sign_free: bool
 ) -> _PlaneStep:
-    """Take one plane out of one grid."""
     grid, time = step.grid, step.time
     points = _positions(grid, plane)
     shown = ~plane.nodes(hidden_nodes(grid))

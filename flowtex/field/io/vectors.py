@@ -176,7 +176,6 @@ def _is_vector(array: MeshArray) -> bool:
 def _component_fault(
     vectors: Any, words: tuple[str, ...], arrays: list[MeshArray], listed: str
 ) -> str:
-    """Return what is wrong with a list of components."""
     end = f"The arrays of the mesh, with their numbers of components: {listed}"
     missing = next((w for w in words if not any(a.name == w for a in arrays)), None)
     if missing is not None:

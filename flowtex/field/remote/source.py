@@ -114,7 +114,6 @@ class _OpenFile:
         return value, arrays
 
     def field(self, chosen: dict[str, Any]) -> FlowField:
-        """Return a field of what is chosen."""
         value, arrays = self.ask("field", **chosen)
         try:
             return unpack_field(value, arrays, lambda number: _RemoteSteps(self, number))

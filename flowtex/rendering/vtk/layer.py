@@ -481,9 +481,5 @@ def write_uniform(program: Any, name: str, value: Any) -> None:
         program.SetUniformf(name, value)
     elif isinstance(value, list):
         program.SetUniform1fv(name, len(value), value)
-    elif len(value) == 2:
-        program.SetUniform2f(name, value)
-    elif len(value) == 4:
-        program.SetUniform4f(name, value)
     else:
-        program.SetUniform3f(name, value)
+        getattr(program, f"SetUniform{len(value)}f")(name, value)

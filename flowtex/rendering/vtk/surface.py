@@ -43,8 +43,6 @@ LOOK_INTERVAL_MS = 250
 
 @dataclass(eq=False)
 class _TileActor:
-    """A tile as it is drawn."""
-
     tile: Tile
     actor: pv.Actor
     mesh: pv.PolyData

@@ -509,7 +509,6 @@ def _shaders(variant: tuple[str, ...], *, traces: bool) -> dict[str, str]:
 
 
 def _table() -> list[dict[str, Any]]:
-    """Return the table of settings, for controls."""
     names = (
         *("name", "label", "default", "affects", "text", "low", "high", "logarithmic"),
         "condition",

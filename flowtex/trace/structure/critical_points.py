@@ -133,7 +133,6 @@ class CriticalPoints(Records, Sequence[CriticalPoint]):
         return rows
 
     def _geometries(self) -> list[dict[str, Any] | None]:
-        """Return the GeoJSON geometry of each point."""
         places = (point.lonlat for point in self._points)
         return [place and {"type": "Point", "coordinates": list(place)} for place in places]
 

@@ -96,7 +96,6 @@ class Separatrices(Records, list[Separatrix]):
         return rows
 
     def _geometries(self) -> list[dict[str, Any] | None]:
-        """Return the GeoJSON geometry of each line."""
         return [None if line.lonlat is None else _split(line.lonlat) for line in self]
 
     def to_pyvista(self) -> Any:

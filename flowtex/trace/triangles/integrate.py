@@ -160,7 +160,6 @@ class _Particles:
     last: Floats
 
     def pick(self, mask: Bools | Indices) -> Self:
-        """Return some of the particles."""
         at = np.flatnonzero(mask) if mask.dtype == bool else mask
         return type(self)(*(getattr(self, f.name).take(at, axis=-1) for f in fields(self)))
 
@@ -237,7 +236,6 @@ class _Run:
             self.state = state.pick(left)
 
     def end_all(self) -> None:
-        """End all paths where they are."""
         state = self.state
         if len(state.which):
             now = self.motion.at(state.triangle, state.shares, state.lag, state.last)

@@ -123,7 +123,6 @@ def _dot(one: Floats, two: Floats) -> Floats:
 
 
 def _across(surface: TriangleSurface) -> Indices:
-    """Return :attr:`TriangleMesh.across`."""
     corners, beside = surface.triangles, surface.neighbours
     result = np.full(beside.shape, -1, dtype=np.intp)
     for k in range(3):

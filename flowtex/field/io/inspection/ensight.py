@@ -60,7 +60,6 @@ def _checked(file: Path, check: Callable[[TextScanner], _Sizes]) -> _Sizes:
 
 
 def _geometry(text: TextScanner) -> _Sizes:
-    """Return the nodes and elements of the parts of a geometry."""
     lines = [text.line() or b"" for _ in range(4)]
     ids = [line.split()[-1:] in ([b"given"], [b"ignore"]) for line in lines[2:]]
     sizes: _Sizes = {}

@@ -32,8 +32,6 @@ def check_netcdf(path: Path, *, whole: bool) -> None:
 
 
 class _Header:
-    """The header of a file."""
-
     def __init__(self, stream: BinaryIO, size: int) -> None:
         self._stream, self._left = stream, size
         version = self._read(4)[3]

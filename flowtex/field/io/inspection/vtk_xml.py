@@ -110,7 +110,6 @@ class _Document:
 
     @property
     def points(self) -> int:
-        """Points of the grid."""
         return max(self._points, self._whole)
 
     def parse(self, stream: BinaryIO) -> None:

@@ -89,7 +89,6 @@ def _size(sheet: _SurfaceStep) -> str:
 def _surface_step(
     step: TimeStep, vectors: MeshArray, cut: Cut | None, *, tell: bool
 ) -> _SurfaceStep:
-    """Take the surface out of one mesh."""
     surface, triangles = surface_of(step.grid, cut, vectors, tell=tell)
     if cut is not None:
         vectors = replace(vectors, where="points")
