@@ -190,33 +190,20 @@ class Camera:
                 raise FieldError(msg)
             point = np.asarray(focus, dtype=float)
             center[: len(point)] = point
-        if surface.frame is not None:
-            return cls._fit_flat(surface, surface.frame, center, aspect, zoom, share)
+        if surface.frame is not None:  # straight on, the surface's own axes to the right and up
+            right, upward = surface.frame
+            width, height = surface.plane_size
+            return cls(
+                position=_point(center + np.cross(right, upward) * surface.extent),
+                focal_point=_point(center),
+                up=_point(upward),
+                parallel=True,
+                parallel_scale=float(0.5 * max(height, width / aspect) / share / zoom),
+            )
         closest = CAMERA_LIMITS.closest if focus is not None else 1.0
         side = _side(center) if surface.on_globe else (ASIDE, UP)
         toward, up = toward or side[0], up or side[1]
         return cls._fit_curved(surface, center, aspect, zoom, closest, toward, up, share)
-
-    @classmethod
-    def _fit_flat(
-        cls,
-        surface: Surface,
-        frame: Floats,
-        center: Floats,
-        aspect: float,
-        zoom: float,
-        share: float,
-    ) -> Self:
-        """Look straight on, without perspective, the surface's own axes to the right and up."""
-        right, up = frame
-        width, height = surface.plane_size
-        return cls(
-            position=_point(center + np.cross(right, up) * surface.extent),
-            focal_point=_point(center),
-            up=_point(up),
-            parallel=True,
-            parallel_scale=float(0.5 * max(height, width / aspect) / share / zoom),
-        )
 
     @classmethod
     def _fit_curved(

@@ -86,9 +86,7 @@ class FlowHandle(AppearanceAttributes):
             self.actor, plotter.renderer, scene.textures, scene.settings, scene.pyramid
         )
         self._surface.set_moment(*scene.moment)
-        self._map = None
-        if scene.field.projection is not None:
-            self._map = MapOverlay(self.actor, plotter.renderer, scene, self._surface)
+        self._map = self._map_of(scene)
         self._structure = StructureOverlay(self.actor, plotter.renderer, scene, self._surface)
         self._shown: Appearance | None = None
         self._show_appearance()
@@ -128,10 +126,7 @@ class FlowHandle(AppearanceAttributes):
 
     @density.setter
     def density(self, value: float) -> None:
-        least, expected = (
-            float(np.finfo(float).tiny),
-            ("a positive number, 1 for a standard screen"),
-        )
+        least, expected = float(np.finfo(float).tiny), "a positive number, 1 for a standard screen"
         self._surface.view.density = checked_number("density", value, least, expected=expected)
         self._draw()
 
@@ -201,14 +196,17 @@ class FlowHandle(AppearanceAttributes):
         self._surface.set_moment(*scene.moment)
         if self._map is not None:
             self._map.close()
-            self._map = None
-        if scene.field.projection is not None:
-            self._map = MapOverlay(self.actor, self._plotter.renderer, scene, self._surface)
+        self._map = self._map_of(scene)
         self._structure.show(scene)
         self._show_appearance("scalars", "lighting")
         scene.follow(old)
         self._end = scene.observe(self._changed)
         self._draw()
+
+    def _map_of(self, scene: Scene) -> MapOverlay | None:
+        if scene.field.projection is None:
+            return None
+        return MapOverlay(self.actor, self._plotter.renderer, scene, self._surface)
 
     def set_image(self, image: Any) -> None:
         """Advect another image, given as for the argument ``image``."""
