@@ -168,7 +168,7 @@ class PanePainter:
         width, height = self.pane.size
         view, state = self.pane.plane_view(), self._state
         start = self.quick(0.0) if self._last is None else self._last
-        canvas = self._enlarged(start, width, height)
+        canvas = _resized(start, width, height).copy()
         reused = self._reuse(canvas, view)
         areas = [(0, 0, width, height)] if reused is None else _around(reused, width, height)
         spent, drawn, complete = 0.0, 0, False
@@ -249,14 +249,14 @@ class PanePainter:
         self.cost.learn(time.perf_counter() - started, width * height, self._samples)
         return pixels
 
-    @staticmethod
-    def _enlarged(pixels: Bytes, width: int, height: int) -> Bytes:
-        if pixels.shape[:2] == (height, width):
-            return pixels.copy()
-        from PIL import Image
 
-        smooth = Image.Resampling.BILINEAR
-        return np.array(Image.fromarray(pixels).resize((width, height), smooth))
+def _resized(pixels: Bytes, width: int, height: int) -> Bytes:
+    if pixels.shape[:2] == (height, width):
+        return pixels
+    from PIL import Image
+
+    smooth = Image.Resampling.BILINEAR
+    return np.asarray(Image.fromarray(pixels).resize((width, height), smooth))
 
 
 def _around(reused: Rect, width: int, height: int) -> list[Rect]:
@@ -338,15 +338,10 @@ class ViewPainter:
         """Put pictures side by side, a line between them."""
         if len(pictures) == 1:
             return pictures[0]
-        from PIL import Image
-
         height, width = (max(p.shape[axis] for p in pictures) for axis in (0, 1))
         gap = max(round(GAP_PX * width / self._viewport.pane_size[0]), 1)
         joined = np.full((height, len(pictures) * (width + gap) - gap, 3), LINE_GREY, np.uint8)
         for number, picture in enumerate(pictures):
-            if picture.shape[:2] != (height, width):
-                smooth = Image.Resampling.BILINEAR
-                picture = np.asarray(Image.fromarray(picture).resize((width, height), smooth))
             left = number * (width + gap)
-            joined[:, left : left + width] = picture
+            joined[:, left : left + width] = _resized(picture, width, height)
         return joined
