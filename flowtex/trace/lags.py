@@ -22,6 +22,8 @@ SMALL_CELLS = 5
 LEAST_CELL, MOST_CELL = 0.25, 16.0
 #: Quotient of one lag and the one before.
 RATIO = 2.0
+#: Least number of lags that are drawn; the uncertainty of a flow lies in the layer of one more.
+LEAST_LAGS = 2
 
 
 def lag_unit(field: FlowField, parameter: str) -> Floats:
@@ -59,13 +61,14 @@ def choose_lags(
     """
     if longest is None:
         longest = longest_path(field)
+    least = LEAST_LAGS + bool(field.uncertainty)
     if parameter == "arclength":
         first, last = first_cells, longest / small_cell(field)
     else:
         speed = field.typical.speed[:, field.valid]
         moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
         if not moving.any():
-            return np.array([1.0, RATIO])
+            return RATIO ** np.arange(float(least))
         size = field.surface.cell_size[field.valid]
         crossing = np.broadcast_to(size, speed.shape)[moving] / speed[moving]
         first = first_cells * float(np.percentile(crossing, 10))
@@ -76,7 +79,7 @@ def choose_lags(
             # Lags that reach other time steps are what long paths can be composed of.
             step = float(np.mean(np.diff(field.times)))
             first = step * RATIO ** np.rint(np.log(first / step) / np.log(RATIO))
-    count = int(np.ceil(np.log(max(last / first, RATIO)) / np.log(RATIO))) + 1
+    count = max(int(np.ceil(np.log(max(last / first, RATIO)) / np.log(RATIO))) + 1, least)
     return np.asarray(first * RATIO ** np.arange(min(count, MOST_CHOSEN_LAGS)))
 
 
@@ -131,4 +134,6 @@ def drawn_lags(
     last = np.ceil(longest / even / part) * part
     doubled = first_cells * RATIO ** np.arange(MOST_CHOSEN_LAGS - 1)
     # A last lag that is hardly longer than the one before takes its place.
-    return np.append(doubled[doubled < last / np.sqrt(RATIO)], last), unit
+    lags = np.append(doubled[doubled < last / np.sqrt(RATIO)], last)
+    lacking = LEAST_LAGS + bool(field.uncertainty) - len(lags)
+    return np.append(lags, last * RATIO ** np.arange(1.0, lacking + 1)), unit
