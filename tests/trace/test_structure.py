@@ -9,6 +9,7 @@ from flowtex import FieldError, FlowField
 from flowtex._util.array_types import Floats
 from flowtex.earth import EARTH_RADIUS, Projection
 from flowtex.trace.structure import KINDS, CriticalPoints, Separatrices
+from flowtex.trace.structure.separatrices import _turned
 
 #: Gradients of linear flows by their kinds.
 LINEAR = {
@@ -141,3 +142,23 @@ def test_what_has_no_structure_is_refused() -> None:
         flowtex.critical_points(field, steps=[1])
     with pytest.raises(FieldError, match="GeoJSON needs longitudes"):
         flowtex.critical_points(field).to_geojson()
+
+
+@pytest.mark.parametrize("seam", [0.2, 2.0, 6.0])
+def test_a_line_that_crosses_the_seam_ends_in_a_focus(seam: float) -> None:
+    # A damped pendulum on the cylinder of its states.
+    angle, rate = np.meshgrid(np.linspace(0, 2 * np.pi, 65) + seam, np.linspace(-3, 3.1, 41))
+    points = np.stack([np.cos(angle), np.sin(angle), rate], axis=-1)
+    around = np.stack([-np.sin(angle), np.cos(angle), 0 * angle], axis=-1)
+    velocity = rate[..., None] * around
+    velocity[..., 2] -= np.sin(angle) + 0.3 * rate
+    lines = flowtex.separatrices(FlowField.from_arrays(points, velocity))
+    assert not any(line.closed for line in lines)
+    ahead = [line.points[-1] for line in lines if line.forward]
+    assert len(ahead) == 2
+    assert np.array(ahead) == pytest.approx(np.array([[1.0, 0, 0]] * 2), abs=0.01)
+
+
+def test_a_line_whose_points_lie_ever_denser_does_not_turn() -> None:
+    line = np.cumsum(0.8 ** np.arange(40.0))[:, None] * [1.0, 0.0, 0.0]
+    assert _turned(line, 1.0, 0.1) is None

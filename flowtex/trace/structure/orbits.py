@@ -159,7 +159,8 @@ class _Rays:
         low, high = np.where(np.isinf(ends), -np.inf, WALL_CELLS), ends - WALL_CELLS
 
         def within(index: Floats) -> Bools:
-            away = np.isinf(near.query(index.T, distance_upper_bound=REST_CELLS)[0])
+            there = surface.wrap(index.T)
+            away = np.isinf(near.query(there, distance_upper_bound=REST_CELLS)[0])
             return np.asarray(away & ((low < index.T) & (high > index.T)).all(axis=1))
 
         self._follow = partial(paths, field, parameter="arclength", within=within)

@@ -256,7 +256,9 @@ def _followed(
         near = scipy.spatial.KDTree([point.index[::-1] for point in points])
 
         def within(index: Floats) -> Bools:
-            return np.isinf(near.query(index.T, distance_upper_bound=REST_CELLS)[0])
+            # Paths go on beyond a seam.
+            index = field.surface.wrap(index.T)
+            return np.isinf(near.query(index, distance_upper_bound=REST_CELLS)[0])
 
         left = lags[FIRST_POINTS:] - lags[FIRST_POINTS - 1]
         later = follow(first.positions[-1, away], left, within=within)
@@ -283,6 +285,9 @@ def _turned(line: Floats, spacing: float, near: float) -> tuple[int, int] | None
     around = max(0.75 * spacing, 1.25 * near)
     pairs = scipy.spatial.KDTree(line).query_pairs(around, output_type="ndarray")
     pairs = pairs[pairs[:, 1] - pairs[:, 0] > LEAST_TURN]
+    # Points may be dense where the flow is slow, and the line goes straight on.
+    along = np.cumsum(np.linalg.norm(np.diff(line, axis=0, prepend=line[:1]), axis=1))
+    pairs = pairs[along[pairs[:, 1]] - along[pairs[:, 0]] > 2 * around]
     if not len(pairs):
         return None
     before, after = pairs[np.argsort(pairs[:, 1])].T
