@@ -28,10 +28,10 @@ def swirl(times: int = 1) -> Any:
     import flowtex
 
     y, x = np.mgrid[-1:1:76j, -1:1:151j]
-    steps = [np.stack([-(y - 0.1 * t), x], axis=-1) for t in range(times)]
-    steps[0][:73, :73] = np.nan
+    steps = np.stack([np.stack([-(y - 0.1 * t), x], axis=-1) for t in range(times)])
+    steps[:, :73, :73] = np.nan
     points = np.stack([x, y], axis=-1)
-    return flowtex.FlowField.from_arrays(points, np.stack(steps), scalars={"depth": x * x + y})
+    return flowtex.FlowField.from_arrays(points, steps, scalars={"depth": x * x + y})
 
 
 class Client:
