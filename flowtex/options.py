@@ -191,10 +191,7 @@ class FieldOptions:
     ) -> FlowField:
         if (stored := self._of_store(mesh, choices, time)) is not None:
             if uncertainty is not None:
-                msg = (
-                    "uncertainty is given, but a stored pyramid holds none; omit it, or draw "
-                    "the data from which the store was built, or a part of them"
-                )
+                msg = "uncertainty is given, but a stored pyramid holds none; draw its source"
                 raise FieldError(msg)
             return stored
         if is_dataset(mesh):

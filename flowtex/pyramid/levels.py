@@ -115,6 +115,11 @@ class Levels:
         (values,) = self._read(_Piece(name, at, name))
         return values
 
+    def valid(self, level: int, rows: Indices, columns: Indices) -> Bools:
+        """Return which nodes are valid, (J, I); positions may not be written yet."""
+        (valid,) = self._read(self._nodal(level, "valid", rows, columns))
+        return valid.astype(bool)
+
     def check_part(self, part: Part) -> None:
         """Raise a DamageError where some of a part is missing, or is not what was written."""
         level, step, *at = part

@@ -113,7 +113,7 @@ def _source_nodes(levels: Levels, source: Source, part: Part) -> Nodes:
     lines = part.lines(source.shape)
     valid = None
     if part.step and source.travels:  # others have it available
-        _, valid = levels.positions(0, *(np.arange(s.start, s.stop) for s in lines))
+        valid = levels.valid(0, *(np.arange(some.start, some.stop) for some in lines))
     return source.nodes(part.step, *lines, valid)
 
 
