@@ -21,7 +21,8 @@ class WorkerPool:
 
     def __init__(self, name: str, size: int) -> None:
         self._name, self._size = name, size
-        self._lock = threading.Lock()
+        # A collection of garbage closes widgets in any thread, also in one that has the lock.
+        self._lock = threading.RLock()
         self._count = itertools.count()
         self._waiting: list[Entry] = []
         self._busy: set[Worker] = set()
@@ -61,7 +62,7 @@ class WorkerPool:
                 self._threads -= 1
                 return None
             entry = min(free, key=lambda e: e[:2])
-            self._waiting.remove(entry)
+            self._waiting = [other for other in self._waiting if other is not entry]
             self._busy.add(entry[2])
             return entry
 

@@ -231,6 +231,21 @@ def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Client], wrong
     assert client.errors == []
 
 
+def test_a_worker_may_be_closed_by_a_collection_while_a_pool_chooses() -> None:
+    pool, done = WorkerPool("a test", 1), threading.Event()
+    other = Worker(pool, lambda error: None)
+
+    class Collecting(Worker):
+        """Whoever looks whether it is busy sets off the end of another worker."""
+
+        def __hash__(self) -> int:
+            other.close()
+            return id(self)
+
+    Collecting(pool, lambda error: None).do(done.set)
+    assert done.wait(PATIENCE_S)
+
+
 def test_a_pool_that_is_busy_does_the_urgent_jobs_of_all_workers_first() -> None:
     pool, done, may = WorkerPool("a test", 1), list[str](), threading.Event()
     first, other = (Worker(pool, lambda error: done.append(str(error))) for _ in range(2))
