@@ -39,6 +39,8 @@ export interface LayerOptions {
   onTime?: (time: number) => void;
 }
 
+type MapColours = Pick<ColourChoice, "scalars" | "cmap" | "clim" | "log_scale">;
+
 /** A point of the flow. */
 export interface FlowPoint {
   /** Velocity on the Earth, in the unit of the data. */
@@ -74,9 +76,13 @@ export class FlowtexLayer implements CustomLayerInterface {
   private look = "";
   private globe = false;
   private shownOpacity = 1;
+  /** Settings and colours that were chosen, also before the scene is here. */
+  private readonly own: Settings;
+  private readonly colours: MapColours = {};
 
   constructor(options: LayerOptions) {
     this.options = options;
+    this.own = { ...options.settings };
     this.id = options.id;
   }
 
@@ -101,14 +107,14 @@ export class FlowtexLayer implements CustomLayerInterface {
 
   /** Read the scene, and have a first picture of it. */
   private async open(gl: WebGL2RenderingContext): Promise<void> {
-    const { scene: given, settings: own = {}, opacity } = this.options;
+    const { scene: given, opacity } = this.options;
     const base = new URL(typeof given === "string" ? given : "", location.href).href;
     const { headers, parts } = typeof given === "string" ? await fetched(base) : given;
     if (this.gl !== gl) return; // the layer has gone
     const header = bare(headers[0]);
     const embedded = new Embedded(header, parts.flatMap(([n, info, text]) => (n ? [] : [[info, text]])), new Map(), new Map());
     const source = header.store ? new Stream(header, base) : embedded;
-    const shared = { header, settings: { ...header.settings, ...header.own, ...own }, player: new Player() };
+    const shared = { header, settings: { ...header.settings, ...header.own, ...this.own }, player: new Player() };
     this.shownOpacity = opacity ?? headers[0].opacity;
     const add = async () => {
       let isComing = true;
@@ -121,6 +127,7 @@ export class FlowtexLayer implements CustomLayerInterface {
         view.setPart(unpacked);
       }
       isComing = false;
+      if (Object.keys(this.colours).length) view.chooseColours(this.colours);
       return picture;
     };
     const { view } = await add();
@@ -192,12 +199,14 @@ export class FlowtexLayer implements CustomLayerInterface {
 
   /** Change settings of the texture, by their names in Python. */
   set(settings: Settings): void {
+    Object.assign(this.own, settings);
     Object.assign(this.scene?.settings ?? {}, settings);
     this.change();
   }
 
   /** Colour by another scalar, with another map or range. */
-  setColours(choice: Pick<ColourChoice, "scalars" | "cmap" | "clim" | "log_scale">): void {
+  setColours(choice: MapColours): void {
+    Object.assign(this.colours, choice);
     for (const { view } of this.pictures) view.chooseColours(choice);
   }
 

@@ -1,7 +1,7 @@
 """Nodes that have data at some times only, as of a radar, or of a level below the ground.
 
-A field has one mask for all times, so such nodes are at rest while they have no data. They are
-drawn without streaks, as the uncertainty of their direction is 1, and in the colour of NaN.
+A field has one mask for all times, so the velocity of such nodes is zero while they lack data. They
+are drawn without streaks, as the uncertainty of their direction is 1, and in the colour of NaN.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ NO_DATA = "no data"
 
 
 class Filled(NamedTuple):
-    """Arguments of a field, and the name of the uncertainty; empty without gaps in time."""
+    """Arguments of a field; ``uncertainty`` is empty without gaps in time."""
 
     velocity: Any
     scalars: Mapping[str, Any]
@@ -39,8 +39,8 @@ def filled_gaps(
 ) -> Filled:
     """Return a velocity (T, ..., 2 or 3) that is zero where only some times have no data.
 
-    There are so many ``axes`` of nodes, and ``unit`` is that of the speed. Of late steps the first,
-    the middle and the last one are compared, if nodes of the first one have no data.
+    ``axes`` is the number of axes of the nodes, ``unit`` the unit of the speed. Of lazy steps the
+    first, the middle and the last one are compared if the first one has missing data.
     """
     unchanged = Filled(velocity, {} if scalars is None else scalars, units or {}, "")
     if isinstance(velocity, LazySteps):

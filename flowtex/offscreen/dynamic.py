@@ -23,9 +23,9 @@ def dynamic_map(
 ) -> Any:
     """Return a flat flow as a HoloViews element that is drawn for what its plot shows.
 
-    After a zoom or in a larger plot the flow is drawn again, so that its texture stays sharp. A
+    The flow is redrawn for each range and size of the plot, so that its texture stays sharp. A
     field with several times has the dimension ``time``, for which HoloViews and Panel show a
-    slider. Beside the flow the picture is transparent, so that it lies well over tiles of a map.
+    slider. The picture is transparent outside the flow, so that it can lie over map tiles.
 
     Parameters
     ----------

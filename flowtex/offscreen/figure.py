@@ -365,7 +365,7 @@ class FlowImage(AxesImage):
     def _draw(self, corners: Floats, size: tuple[int, int], density: float) -> Bytes:
         """Draw what lies between two corners, (2, 2), row 0 at the bottom.
 
-        It is opaque, except on axes without a ground.
+        It is opaque, except on axes without a background colour.
         """
         spans = np.abs(corners[1] - corners[0])
         scale = min(float(np.max(size / spans)), LONGEST_SIDE_PX / float(spans.max()))
@@ -386,9 +386,9 @@ class FlowImage(AxesImage):
         )
         with closing(plotter), warnings.catch_warnings():
             warnings.filterwarnings("ignore", NOTHING_SEEN)  # axes may be elsewhere
-            clear = view.background[-1] == 0
-            picture = plotter.picture(time=self.time, clock=self.clock, clear=clear)
-        if clear:  # pixels of an edge have the share of the ground, which is black
+            transparent = view.background[-1] == 0
+            picture = plotter.picture(time=self.time, clock=self.clock, transparent=transparent)
+        if transparent:  # edge pixels are premultiplied, on black
             shares = np.maximum(picture[..., 3:], 1) / 255
             picture = np.concatenate([picture[..., :3] / shares, picture[..., 3:]], axis=-1)
             picture = picture.clip(0, 255).astype(np.uint8)

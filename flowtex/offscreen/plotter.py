@@ -94,11 +94,11 @@ class OffscreenPlotter:
             raise
 
     def picture(
-        self, *, time: float | str | None = None, clock: float = 0.0, clear: bool = False
+        self, *, time: float | str | None = None, clock: float = 0.0, transparent: bool = False
     ) -> Bytes:
         """Return a picture (height, width, 3), row 0 at the top; by default of the present time.
 
-        A ``clear`` one has a fourth channel, which is 0 beside the flow.
+        A ``transparent`` one has a fourth channel, which is 0 outside the flow.
         """
         # One picture for all that changes.
         self._plotter.suppress_rendering = True
@@ -108,8 +108,8 @@ class OffscreenPlotter:
             handle.clock = clock
         self._plotter.suppress_rendering = False
         self._plotter.render()
-        shot: Any = self._plotter.screenshot(return_img=True, transparent_background=clear)
-        pixels = np.asarray(shot[..., : 4 if clear else 3], dtype=np.uint8)
+        shot: Any = self._plotter.screenshot(return_img=True, transparent_background=transparent)
+        pixels = np.asarray(shot[..., : 4 if transparent else 3], dtype=np.uint8)
         visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
         if visible and (pixels[..., :3] == self._plotter.background_color.int_rgb).all():
             notify(NOTHING_SEEN, UserWarning)

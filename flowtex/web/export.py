@@ -184,16 +184,13 @@ def write_page(
     if basemap is not None:
         check_basemap(basemap, path, views)
     scenes = page_data(views) if link is None else [linked_data(view) for view in views]
-    suffix = path.suffix.lower()
-    pieces = {".json": scene_pieces}.get(
-        suffix, module_pieces if suffix in MODULES else page_pieces
-    )
-    client = client_script(with_store=link is not None)
+    client, suffix = client_script(with_store=link is not None), path.suffix.lower()
+    pieces: Any = module_pieces if suffix in MODULES else page_pieces
     if basemap is not None:
         pieces, client = partial(_map_pieces, basemap), layer_script()
-    estimated = estimate(
-        scenes, linked=link is not None, client="" if suffix == ".json" else client
-    )
+    elif suffix == ".json":
+        pieces, client = scene_pieces, ""
+    estimated = estimate(scenes, linked=link is not None, client=client)
     if announce is not None:
         announce(estimated, scenes[0].steps)
     with whole_file(path) as file:
@@ -333,7 +330,7 @@ def scene_pieces(
     link: StoreLink | None = None,
     **shown: Any,
 ) -> Iterator[str]:
-    """Give the JSON text of a scene piece by piece; the arguments are those of `page_pieces`."""
+    """Give the JSON text of a scene in pieces; the arguments are those of :func:`page_pieces`."""
     headers = _headers(views, scenes, link, title, time=time, **shown)
     yield f'{{"headers": {_headers_text(headers)}, "parts": ['
     for n, packed in enumerate(_packed(scenes, link, time)):

@@ -1176,41 +1176,42 @@ rs/${d}`),p=c===null?[]:u.filter(d=>!n(d)&&!o.has(d));if(!p.length)return[...o.v
 let g=l>1?K(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[x]=await(i.get(g)??this.flow(e,g,s));return{...Qo(x,
 t,this.header.speed.typical),name:d}}let y=l>1?this.told.steps[g]:0,v=(await this.file("values",e,[y,e[1],e[2],h],s)).get(
 `scalars/${y}/${h}`);if(!v)throw new Error(`tile ${B(e)} has no values of step ${y}`);return{...v,name:d}}));Fr(f,t,this.
-header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var ec=4096,tc=4,pa=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;constructor(e){
-this.options=e,this.id=e.id}onAdd(e,t){this.onRemove(),this.map=e,this.gl=t;let r={context:t,counted:n=>n,free:()=>{}};this.
-programs=new Me(r),this.array=t.createVertexArray(),this.open(t).catch(n=>this.failed(n.message,""))}onRemove(){let{gl:e}=this;
-for(let t of this.pictures)t.dispose(e);e?.deleteVertexArray(this.array),this.programs?.dispose(),this.map=this.gl=this.
-scene=null,[this.pictures,this.look]=[[],""]}async open(e){let{scene:t,settings:r={},opacity:n}=this.options,s=new URL(typeof t==
-"string"?t:"",location.href).href,{headers:i,parts:o}=typeof t=="string"?await rc(s):t;if(this.gl!==e)return;let c=nc(i[0]),
-l=new Ut(c,o.flatMap(([f,d,g])=>f?[]:[[d,g]]),new Map,new Map),h=c.store?new ar(c,s):l,m={header:c,settings:{...c.settings,
-...c.own,...r},player:new it};this.shownOpacity=n??i[0].opacity;let u=async()=>{let f=!0,d=new Ot(this.hostOf(()=>g),{...m,
-source:h,isComing:()=>f}),g=new It(e,d);this.pictures.push(g);for(let y of l.parts){let b=await l.kept(y);if(!this.pictures.
-includes(g))break;d.setPart(b)}return f=!1,g},{view:p}=await u();this.gl===e&&(this.scene={...m,add:u,mercator:new Ft(c.
-earth,p.parts.get("lonlat"))},p.requests.open(),this.options.onOpen?.(),this.map?.triggerRepaint())}hostOf=e=>({isHeld:()=>this.
-map?.isMoving()??!1,painted:t=>{e().painted(t),this.map?.triggerRepaint()},advanced:()=>this.options.onTime?.(this.time),
-failed:(t,r)=>this.failed(t,r)});get time(){let{varies:e=!1,time:t=0,clock:r=0}=this.scene?.player??{};return e?t:r}set time(e){
-let{player:t}=this.scene??{};t?.varies?t.seek(e):t&&(t.clock=e),this.change()}get times(){return this.scene?.header.slices.
-times??[]}get bounds(){let{mercator:e}=this.scene??{};if(!e)return null;let{box:t}=e;return[e.lngLatOf(t.slice(0,2)),e.lngLatOf(
-t.slice(2))]}get opacity(){return this.shownOpacity}set opacity(e){this.shownOpacity=e,this.map?.triggerRepaint()}play(){
-let{player:e,settings:t}=this.scene??{};!e||!t||(!e.varies&&t.motion==="off"&&(t.motion="speed"),e.start(),this.change())}pause(){
-this.scene&&(this.scene.player.playing=!1),this.change()}set(e){Object.assign(this.scene?.settings??{},e),this.change()}setColours(e){
-for(let{view:t}of this.pictures)t.chooseColours(e)}change(){for(let{view:e}of this.pictures)e.change()}pointAt(e){let{mercator:t,
-header:r}=this.scene??{};if(!t||!r?.earth)return null;let n=[...t.positionOf(ge(e)),r.geometry.center[2]];for(let{view:s,
-isUsed:i}of this.pictures){let{camera:o,parts:c,settings:l}=s,h=i&&o?.project(n)||[2,2];if(Math.max(...h.map(Math.abs))>
-1)continue;let[m,u]=[s.find(h[0],h[1]),s.painter.shown];if(!o||!m||!u)continue;let p=m.point.position,f={scene:m.layer.scene,
-moment:u,place:m.place,position:p},{path:d,velocity:g}=Vs(f,l,o,s.rows),[y,b]=Ps(r.earth,p,g,c.get("lonlat"));return{eastward:y,
-northward:b,values:m.point.values,path:d.map(v=>t.lngLatOf(v))}}return null}failed(e,t){this.map?.fire("error",{error:new Error(
-[e,t].filter(Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:i,opacity:o}=this;if(!r||!n||!s)return;
-let c=t.defaultProjectionData.projectionTransition>0;this.follow(r,n,c);let[l,h]=[r.getZoom(),r.getCenter()],m=this.pictures.
-filter(({isUsed:d})=>d),{shaderData:u,getProjectionData:p}=t,f={gl:e,programs:s,array:i,shaderData:u,getProjectionData:p,
-zoom:l,center:h,globe:c,opacity:o};for(let d of m){let g=d.draw({...f,mercator:n.mercator,isRepeated:m.length===1});typeof g==
-"string"&&g?this.failed("The flow cannot be drawn on the map.",g):g!==!0&&r.triggerRepaint()}}follow(e,{mercator:t,header:r,
-add:n},s){let{what:i,ratio:o,text:c}=fa(e,s);if(c===this.look)return;let l=t.look(i,r.geometry.center[2]);l.length>this.
-pictures.length&&n(),[0,1].forEach(h=>{let{width:m=1,height:u=1}=l[h]??{},p=Math.sqrt(tc*i.width*i.height/(m*u));this.pictures[h]?.
-follow(l[h],Math.min(o,o*p,ec/Math.max(m,u)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||
-!this.scene||!t.every(r=>r.isComplete)?!1:this.look===fa(e,this.globe).text}};function fa(a,e){let{clientWidth:t,clientHeight:r}=a.
-getCanvas(),n={center:a.unproject([t/2,r/2]),width:t,height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),
-fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function rc(a){
-let e=await fetch(a);if(!e.ok)throw new Error(`the scene ${a} cannot be read: the server answers ${e.status}`);return await e.
-json()}function nc(a){let{earth:e}=a;return{...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,
-graticule:!1}}}}export{pa as FlowtexLayer};
+header.mesh.tileCells);for(let d of f)o.set(d.name,d)}}};var ec=4096,tc=4,pa=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;own;colours={};constructor(e){
+this.options=e,this.own={...e.settings},this.id=e.id}onAdd(e,t){this.onRemove(),this.map=e,this.gl=t;let r={context:t,counted:n=>n,
+free:()=>{}};this.programs=new Me(r),this.array=t.createVertexArray(),this.open(t).catch(n=>this.failed(n.message,""))}onRemove(){
+let{gl:e}=this;for(let t of this.pictures)t.dispose(e);e?.deleteVertexArray(this.array),this.programs?.dispose(),this.map=
+this.gl=this.scene=null,[this.pictures,this.look]=[[],""]}async open(e){let{scene:t,opacity:r}=this.options,n=new URL(typeof t==
+"string"?t:"",location.href).href,{headers:s,parts:i}=typeof t=="string"?await rc(n):t;if(this.gl!==e)return;let o=nc(s[0]),
+c=new Ut(o,i.flatMap(([p,f,d])=>p?[]:[[f,d]]),new Map,new Map),l=o.store?new ar(o,n):c,h={header:o,settings:{...o.settings,
+...o.own,...this.own},player:new it};this.shownOpacity=r??s[0].opacity;let m=async()=>{let p=!0,f=new Ot(this.hostOf(()=>d),
+{...h,source:l,isComing:()=>p}),d=new It(e,f);this.pictures.push(d);for(let g of c.parts){let y=await c.kept(g);if(!this.
+pictures.includes(d))break;f.setPart(y)}return p=!1,Object.keys(this.colours).length&&f.chooseColours(this.colours),d},{
+view:u}=await m();this.gl===e&&(this.scene={...h,add:m,mercator:new Ft(o.earth,u.parts.get("lonlat"))},u.requests.open(),
+this.options.onOpen?.(),this.map?.triggerRepaint())}hostOf=e=>({isHeld:()=>this.map?.isMoving()??!1,painted:t=>{e().painted(
+t),this.map?.triggerRepaint()},advanced:()=>this.options.onTime?.(this.time),failed:(t,r)=>this.failed(t,r)});get time(){
+let{varies:e=!1,time:t=0,clock:r=0}=this.scene?.player??{};return e?t:r}set time(e){let{player:t}=this.scene??{};t?.varies?
+t.seek(e):t&&(t.clock=e),this.change()}get times(){return this.scene?.header.slices.times??[]}get bounds(){let{mercator:e}=this.
+scene??{};if(!e)return null;let{box:t}=e;return[e.lngLatOf(t.slice(0,2)),e.lngLatOf(t.slice(2))]}get opacity(){return this.
+shownOpacity}set opacity(e){this.shownOpacity=e,this.map?.triggerRepaint()}play(){let{player:e,settings:t}=this.scene??{};
+!e||!t||(!e.varies&&t.motion==="off"&&(t.motion="speed"),e.start(),this.change())}pause(){this.scene&&(this.scene.player.
+playing=!1),this.change()}set(e){Object.assign(this.own,e),Object.assign(this.scene?.settings??{},e),this.change()}setColours(e){
+Object.assign(this.colours,e);for(let{view:t}of this.pictures)t.chooseColours(e)}change(){for(let{view:e}of this.pictures)
+e.change()}pointAt(e){let{mercator:t,header:r}=this.scene??{};if(!t||!r?.earth)return null;let n=[...t.positionOf(ge(e)),
+r.geometry.center[2]];for(let{view:s,isUsed:i}of this.pictures){let{camera:o,parts:c,settings:l}=s,h=i&&o?.project(n)||[
+2,2];if(Math.max(...h.map(Math.abs))>1)continue;let[m,u]=[s.find(h[0],h[1]),s.painter.shown];if(!o||!m||!u)continue;let p=m.
+point.position,f={scene:m.layer.scene,moment:u,place:m.place,position:p},{path:d,velocity:g}=Vs(f,l,o,s.rows),[y,b]=Ps(r.
+earth,p,g,c.get("lonlat"));return{eastward:y,northward:b,values:m.point.values,path:d.map(v=>t.lngLatOf(v))}}return null}failed(e,t){
+this.map?.fire("error",{error:new Error([e,t].filter(Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:i,
+opacity:o}=this;if(!r||!n||!s)return;let c=t.defaultProjectionData.projectionTransition>0;this.follow(r,n,c);let[l,h]=[r.
+getZoom(),r.getCenter()],m=this.pictures.filter(({isUsed:d})=>d),{shaderData:u,getProjectionData:p}=t,f={gl:e,programs:s,
+array:i,shaderData:u,getProjectionData:p,zoom:l,center:h,globe:c,opacity:o};for(let d of m){let g=d.draw({...f,mercator:n.
+mercator,isRepeated:m.length===1});typeof g=="string"&&g?this.failed("The flow cannot be drawn on the map.",g):g!==!0&&r.
+triggerRepaint()}}follow(e,{mercator:t,header:r,add:n},s){let{what:i,ratio:o,text:c}=fa(e,s);if(c===this.look)return;let l=t.
+look(i,r.geometry.center[2]);l.length>this.pictures.length&&n(),[0,1].forEach(h=>{let{width:m=1,height:u=1}=l[h]??{},p=Math.
+sqrt(tc*i.width*i.height/(m*u));this.pictures[h]?.follow(l[h],Math.min(o,o*p,ec/Math.max(m,u)))}),this.look=c,this.globe=
+s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.scene||!t.every(r=>r.isComplete)?!1:this.look===fa(e,this.
+globe).text}};function fa(a,e){let{clientWidth:t,clientHeight:r}=a.getCanvas(),n={center:a.unproject([t/2,r/2]),width:t,
+height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();
+return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function rc(a){let e=await fetch(a);if(!e.ok)throw new Error(`th\
+e scene ${a} cannot be read: the server answers ${e.status}`);return await e.json()}function nc(a){let{earth:e}=a;return{
+...a,background:[0,0,0],opacity:1,earth:e&&{...e,...{land:null,coastlines:!1,graticule:!1}}}}export{pa as FlowtexLayer};
