@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from waiting import PATIENCE_S, wait_until
+from waiting import PATIENCE_S, wait_until, wait_until_served
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -135,7 +135,9 @@ def lab(folder: Path) -> Iterator[LabServer]:
             [sys.executable, "-c", START, *OPTIONS, *own], stdout=file_, stderr=file_
         )
     try:
-        yield LabServer(_address(process, log), folder)
+        address = _address(process, log)
+        wait_until_served(f"{address}/api", process, log.read_text)
+        yield LabServer(address, folder)
     finally:
         process.terminate()
         process.wait(PATIENCE_S)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import subprocess
 import time
+import urllib.request
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 #: Seconds that a slow and busy machine may take for anything. Nothing passes by being quicker.
@@ -19,6 +22,20 @@ def wait_until(holds: Callable[[], Any], seen: Callable[[], object] = lambda: ""
         assert time.monotonic() < end, f"waited {PATIENCE_S:g} s in vain; {seen()}"
         time.sleep(INTERVAL_S)
     return found
+
+
+def wait_until_served(
+    address: str, process: subprocess.Popen[Any], log: Callable[[], str] = lambda: ""
+) -> None:
+    """Wait until a server answers: some print their address before they listen."""
+
+    def answers() -> bool:
+        assert process.poll() is None, f"the server of {address} ended:\n{log()}"
+        with suppress(OSError), urllib.request.urlopen(address, timeout=PATIENCE_S):
+            return True
+        return False
+
+    wait_until(answers, log)
 
 
 async def until(holds: Callable[..., Any]) -> None:

@@ -11,7 +11,6 @@ import os
 import socket
 import subprocess
 import sys
-import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from importlib.util import find_spec
@@ -19,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from waiting import PATIENCE_S, wait_until
+from waiting import PATIENCE_S, wait_until, wait_until_served
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -108,15 +107,8 @@ def served(host: str, folder: Path) -> Iterator[str]:
         process = subprocess.Popen(
             command, cwd=folder, env=environment, stdout=said, stderr=subprocess.STDOUT
         )
-
-    def answers() -> bool:
-        assert process.poll() is None, log.read_text()
-        with suppress(OSError), urllib.request.urlopen(address, timeout=PATIENCE_S):
-            return True
-        return False
-
     try:
-        wait_until(answers, log.read_text)
+        wait_until_served(address, process, log.read_text)
         yield address
     finally:
         process.terminate()

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import subprocess
 import sys
-import urllib.request
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from waiting import PATIENCE_S, wait_until
+from waiting import PATIENCE_S, wait_until_served
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -57,14 +55,7 @@ def address(tmp_path: Path) -> Iterator[str]:
     assert process.stdout is not None
     said = next((line for line in process.stdout if "http://" in line), "")
     address = said[said.find("http://") :].strip().replace("localhost", "127.0.0.1")
-
-    def answers() -> bool:
-        """Whether anyone listens: the address is told before."""
-        with contextlib.suppress(OSError), urllib.request.urlopen(address, timeout=PATIENCE_S):
-            return True
-        return False
-
-    wait_until(answers)
+    wait_until_served(address, process)
     yield address
     process.terminate()
     process.communicate(timeout=PATIENCE_S)
