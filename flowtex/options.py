@@ -189,10 +189,7 @@ class FieldOptions:
     def _read(
         self, mesh: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
     ) -> FlowField:
-        if (stored := self._of_store(mesh, choices, time)) is not None:
-            if uncertainty is not None:
-                msg = "uncertainty is given, but a stored pyramid holds none; draw its source"
-                raise FieldError(msg)
+        if (stored := self._of_store(mesh, choices, time, uncertainty)) is not None:
             return stored
         if is_dataset(mesh):
             return FlowField.from_xarray(mesh, uncertainty=uncertainty, **self._of_dataset(choices))
@@ -214,7 +211,7 @@ class FieldOptions:
         return mesh
 
     def _of_store(
-        self, place: Any, choices: dict[str, Any], time: float | str | None
+        self, place: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
     ) -> FlowField | None:
         """Return the field of a pyramid in a store, where there is one."""
         if not isinstance(place, (str, Path)) or Path(place).is_file():
@@ -229,7 +226,7 @@ class FieldOptions:
             self._refuse(given, tuple(given), "the source of a pyramid")
         if time is not None:
             choices = {**choices, "sel": {**choices.get("sel", {}), "time": time}}
-        return open_store(place, **self._of_dataset(choices))
+        return open_store(place, uncertainty=uncertainty, **self._of_dataset(choices))
 
     def _of_dataset(self, choices: dict[str, Any]) -> dict[str, Any]:
         """Return the arguments of :meth:`FlowField.from_xarray`."""

@@ -63,8 +63,8 @@ MOST_FAILURES = 20
 #: What a field is known again by, and how it is drawn.
 IDENTITY = (
     *("format", "times", "nodes", "parameter", "lines", "depth", "tile_cells", "components"),
-    *("axes", "height", "has_position", "periodic", "projection", "scalars", "units"),
-    *("time_unit", "length_unit", "start"),
+    *("axes", "height", "has_position", "periodic", "projection", "scalars", "uncertainty"),
+    *("units", "time_unit", "length_unit", "start"),
 )
 
 
@@ -131,7 +131,7 @@ def build(
         Whether to show a progress bar.
     **options
         Arguments of :meth:`flowtex.FlowField.from_xarray`, ``from_pyvista`` or ``from_file``, such
-        as ``u``, ``v``, ``globe`` or ``level``.
+        as ``u``, ``v``, ``globe`` or ``level``, and ``uncertainty`` for any source.
 
     Returns
     -------
@@ -273,7 +273,8 @@ def _prepared(
         about = {**about, "ranges": source.ranges()}
     else:
         there = check_about(there, place)
-        other = [name for name in IDENTITY if there.get(name) != about[name]]
+        known = {"uncertainty": "", **there}  # earlier versions wrote none
+        other = [name for name in IDENTITY if known.get(name) != about[name]]
         if other:
             msg = (
                 f"{place} contains the pyramid of another field ({', '.join(other)} differ); "

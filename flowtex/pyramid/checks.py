@@ -115,6 +115,7 @@ _ABOUT: dict[str, Check] = {
     "components": _either(2, 3),
     "height": _number,
     "scalars": lambda v: _by_name(_whole(1, MOST_STEPS))(v) and all(map(is_scalar_name, v)),
+    "uncertainty": _or_none(_text),
     "units": _by_name(_text),
     "long_names": _by_name(_text),
     "ranges": _or_none(_by_name(_ENDS)),
@@ -133,6 +134,8 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
     wrong = [name for name, check in _ABOUT.items() if not check(about.get(name))]
     if not wrong and math.prod(level_shape(about["nodes"], about["depth"])) > MOST_ROOT_NODES:
         wrong = ["depth"]
+    if not wrong and about.get("uncertainty") and about["uncertainty"] not in about["scalars"]:
+        wrong = ["uncertainty"]
     if wrong or about.get("seal") != _seal(about):
         what = f" ({', '.join(wrong)})" if wrong else ""
         msg = f"the metadata of {place} are damaged{what}; build it again"

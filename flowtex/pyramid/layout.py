@@ -143,6 +143,7 @@ def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
         "late": source.late or len(field.times) > MOST_HELD,
         "has_position": source.has_position is not None,
         "scalars": dict(source.scalars),
+        "uncertainty": field.uncertainty,
         "units": dict(field.units),
         "long_names": dict(field.long_names),
         "fingerprint": "",
@@ -276,4 +277,5 @@ def empty_field(about: Mapping[str, Any]) -> FlowField:
         long_names=about["long_names"],
         start=date_of(about["start"]),
         projection=Projection.of(about["projection"]),
+        uncertainty=about.get("uncertainty", ""),
     )

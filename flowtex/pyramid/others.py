@@ -23,7 +23,7 @@ from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
 from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.places import PyramidError, ReadFault, fault_words
-from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at
+from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, source_of
 from flowtex.tiles.pyramid import ROOT_NODES, level_lines, root_level
 
 #: Nodes of a level may be so many times as far apart as those that are drawn.
@@ -34,16 +34,17 @@ SLOW_BYTES, SLOW_NODES = 8_000_000, 16 * ROOT_NODES
 KEPT_BYTES = 64_000_000
 
 
-def levels_of_others(place: str, options: Mapping[str, Any]) -> OtherLevels | FlowField:
+def levels_of_others(
+    place: str, options: Mapping[str, Any], uncertainty: Any = None
+) -> OtherLevels | FlowField:
     """Open a store of others; one that is small, or on curved lines, is a whole field."""
     datasets = datasets_at(place, options)
     named = {"name": Path(place).stem, **options}
-    arrays = read_datasets(datasets[0], regions=True, **named)
-    if not isinstance(arrays, Regions):
-        return FlowField.of(arrays)
-    finest = RegionSource(arrays)
+    finest = source_of(datasets[0], uncertainty, **named)
+    if not isinstance(finest, RegionSource):
+        return finest.field
     if math.prod(finest.shape) <= WHOLE_NODES:
-        return FlowField.from_xarray(datasets[0], **named)
+        return FlowField.from_xarray(datasets[0], uncertainty=uncertainty, **named)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Notice)  # what the finest one has told
         others: list[Any] = [read_datasets(one, regions=True, **named) for one in datasets[1:]]

@@ -7,6 +7,7 @@ import math
 import os
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,7 @@ from flowtex.field.io.arrays import FieldArrays
 from flowtex.field.io.files import OF_MESHES, errors_of, read_files, refuse
 from flowtex.field.io.inspection.zarr_folder import check_zarr
 from flowtex.field.steps import LazySteps, Nodes
+from flowtex.field.uncertainty import with_uncertainty
 from flowtex.pyramid.places import (
     PyramidError,
     ReadFault,
@@ -77,6 +79,10 @@ class Source:
     def chosen_lines(self, lines: str) -> str:
         """Return what the textures are drawn along, as :func:`flowtex.trace.chosen_lines` does."""
         return chosen_lines(self.field, lines)
+
+    def with_uncertainty(self, value: Any) -> Source:
+        """Return the source with an uncertainty of its direction, see :func:`with_uncertainty`."""
+        raise NotImplementedError
 
     def identity(self) -> str:
         """Return a hash that changes when the source may have; empty where its values tell."""
@@ -130,6 +136,10 @@ class FieldSource(Source):
         velocity = np.asarray(field.velocity[step])[at]
         known = None if self.has_position is None else self.has_position[at]
         return Nodes(field.points[at], field.valid[at], velocity, scalars, known)
+
+    def with_uncertainty(self, value: Any) -> Source:
+        """Return the source of a field that has it."""
+        return FieldSource(with_uncertainty(self.field, value))
 
     def ranges(self) -> dict[str, list[Any]]:
         """Return ends of scalars and of the speed."""
@@ -197,6 +207,13 @@ class RegionSource(Source):
         )
         return chosen_lines(some, lines)
 
+    def with_uncertainty(self, value: Any) -> Source:
+        """Set it; here it is the name of a scalar, whose values are read by region."""
+        unread = dict.fromkeys(self.scalars, np.zeros((1, 1, 1)))
+        field = with_uncertainty(replace(self.field, scalars=unread), value)
+        self.field = replace(field, scalars={})
+        return self
+
     def identity(self) -> str:
         """Return a hash of the paths, sizes and times of change of the files."""
         known = [(str(path), info.st_size, info.st_mtime_ns) for path, info in self._members()]
@@ -210,8 +227,16 @@ class RegionSource(Source):
                 yield one.resolve(), one.stat()
 
 
-def source_of(given: Any, **options: Any) -> Source:
+def source_of(given: Any, uncertainty: Any = None, **options: Any) -> Source:
     """Return what a pyramid is built from: a field, a mesh, a dataset, or files, with options."""
+    source = _source_of(given, uncertainty, **options)
+    return source if uncertainty is None else source.with_uncertainty(uncertainty)
+
+
+def _source_of(given: Any, uncertainty: Any, **options: Any) -> Source:
+    # An array has a value for each node; a name may be a dimension to average over.
+    read: dict[str, Any] = {"regions": uncertainty is None or isinstance(uncertainty, str)}
+    read["uncertainty"] = uncertainty
     if isinstance(given, (FlowField, Source)):
         refuse(options, "the data of a field")
         return given if isinstance(given, Source) else FieldSource(given)
@@ -219,7 +244,7 @@ def source_of(given: Any, **options: Any) -> Source:
         msg = f"{given} is already a pyramid; give the data from which one is built"
         raise FieldError(msg)
     if is_dataset(given):
-        return _source_from(read_datasets(given, regions=True, **options))
+        return _source_from(read_datasets(given, **read, **options))
     several = given if isinstance(given, (list, tuple)) else [given]
     if not all(isinstance(each, (str, Path)) for each in several):
         known = (*OF_MESHES, "vectors", "times", "name")
@@ -230,11 +255,11 @@ def source_of(given: Any, **options: Any) -> Source:
     if isinstance(one, (str, Path)) and has_parts(one):
         place = place_text(one)
         finest, *_ = datasets_at(place, options)
-        source = _source_from(read_datasets(finest, regions=True, name=Path(place).stem, **options))
+        source = _source_from(read_datasets(finest, name=Path(place).stem, **read, **options))
         paths = [] if is_remote(one) else [Path(place)]
     else:
         with errors_of(one):
-            source = _source_from(read_files(one, regions=True, **options))
+            source = _source_from(read_files(one, **read, **options))
         paths = [file_and_group(path)[0] for path in dataset_paths(one)]
     if isinstance(source, RegionSource):
         source.files, source.choice = paths, repr(sorted(options.items()))

@@ -12,6 +12,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.datasets.ensembles import spread_name
 from flowtex.field.field import WHOLE_SHAPE
 from flowtex.field.steps import Nodes
 from flowtex.pyramid.layout import VELOCITY_BITS
@@ -23,7 +24,7 @@ from flowtex.tiles import Pyramid, TileKey, attach_pyramid
 from flowtex.tiles.pyramid import averaged
 
 
-def open_store(store: str | Path, **options: Any) -> FlowField:
+def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) -> FlowField:
     """Open a pyramid in a store as a field.
 
     ``flowtex.render``, ``flowtex.show`` and the widget read only the tiles in view. The arrays of
@@ -36,6 +37,9 @@ def open_store(store: str | Path, **options: Any) -> FlowField:
         Endpoint and credentials come from the environment. It may also be written by other
         programs: a multiscale group of xarray datasets, as of ndpyramid and topozarr, or a Zarr
         dataset.
+    uncertainty
+        As for :meth:`flowtex.FlowField.from_xarray`. A store of flowtex has only that with which it
+        was built, which is also used by default.
     **options
         For stores of other programs: arguments of :meth:`flowtex.FlowField.from_xarray`, such as
         ``u``, ``v``, ``globe`` or ``level``.
@@ -65,7 +69,7 @@ def open_store(store: str | Path, **options: Any) -> FlowField:
     (21, 41)
     """
     if not is_store(store):
-        found = levels_of_others(place_text(store), options)
+        found = levels_of_others(place_text(store), options, uncertainty)
         return found if isinstance(found, FlowField) else _field_of(found)
     if options:
         msg = f"{', '.join(options)} applies to the source of a pyramid; omit it"
@@ -77,6 +81,14 @@ def open_store(store: str | Path, **options: Any) -> FlowField:
             "flowtex.pyramid.build again to build the missing parts"
         )
         raise PyramidError(msg)
+    own = levels.template.uncertainty
+    asked = uncertainty if isinstance(uncertainty, str) else "an array"
+    if uncertainty is not None and asked not in (own, own.removeprefix(spread_name(""))):
+        msg = (
+            f"uncertainty is {asked}, but {levels.place} was built with {own or 'none'}; set it "
+            "when you build the store"
+        )
+        raise FieldError(msg)
     return _field_of(levels)
 
 

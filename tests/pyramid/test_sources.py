@@ -18,13 +18,18 @@ from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
 from flowtex.field.datasets.regions import Regions
 from flowtex.field.steps import Nodes
+from flowtex.options import FieldOptions
 from flowtex.pyramid import build, layout, open_store, verify
 from flowtex.pyramid.checks import sealed
+from flowtex.pyramid.layout import FILE_CHUNK
 from flowtex.pyramid.levels import Levels
-from flowtex.pyramid.places import ChangedError
+from flowtex.pyramid.places import ChangedError, PyramidError
 from flowtex.pyramid.source import RegionSource, source_of
 from flowtex.pyramid.workers import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
+from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.scene import Scene
+from flowtex.textures.texture_set import UNCERTAIN_LAYER
+from flowtex.tiles import TileKey, shared_pyramid
 
 zarr = pytest.importorskip("zarr")
 xr = pytest.importorskip("xarray")
@@ -53,6 +58,7 @@ def dataset(lon: Floats, lat: Floats, *, steps: int = 1, plane: bool = False) ->
             "u": (dims, u, {"standard_name": names[0], "units": "m/s"}),
             "v": (dims, v, {"standard_name": names[1], "units": "m/s"}),
             "ssh": (dims, u * v, {"units": "m"}),
+            "error": (dims, np.abs(u * v)),
         },
         {
             x: (x, lon, {"units": degrees[0]}),
@@ -75,6 +81,7 @@ CASES: dict[str, tuple[Any, dict[str, Any]]] = {
         {"projection": "mercator", "u": "u", "v": "v"},
     ),
     "plane": (lambda: dataset(np.linspace(0, 9, 75), np.linspace(0, 5, 48), plane=True), {}),
+    "uncertain": (around, {"uncertainty": "error"}),
     "series": (lambda: around(4), {"isel": {"time": 3}}),
 }
 
@@ -101,6 +108,40 @@ def test_tasks_write_what_the_field_in_memory_has(tmp_path: Path, name: str) -> 
     build(data, tmp_path / "a.zarr", **more, **options)
     build(FlowField.from_xarray(data, **options), tmp_path / "b.zarr", **more)
     assert_same(tmp_path / "a.zarr", tmp_path / "b.zarr")
+
+
+def test_a_store_has_the_uncertainty_of_its_source(tmp_path: Path) -> None:
+    store, data = tmp_path / "a.zarr", around()
+    build(data, store, progress=False, uncertainty="error")
+    field = FlowField.from_xarray(data, uncertainty="error")
+    opened = FieldOptions(uncertainty="error").field(store)
+    assert opened.uncertainty == field.uncertainty == "error"
+    layers = []
+    for one in (field, opened):
+        textures = shared_pyramid(one, "arclength").textures(TileKey(0, 0, 0))
+        assert textures is not None
+        layers.append(textures.layers()[UNCERTAIN_LAYER].astype(float))
+    assert np.ptp(layers[0][..., 3]) > 0.1
+    np.testing.assert_allclose(layers[0], layers[1], atol=2e-3)
+    # Browsers read it with the flow.
+    file = zarr.open_group(store)["0/flow"][0, 0, 0, :FILE_CHUNK]
+    assert [info["shape"][-1] for info in file_infos(file.tobytes())[0][1:]] == [5]
+    for other, words in (("ssh", "ssh"), (np.ones(data.u.shape), "an array")):
+        with pytest.raises(FieldError, match=f"uncertainty is {words}, but .* built with error"):
+            open_store(store, uncertainty=other)
+    with pytest.raises(PyramidError, match="uncertainty differ"):
+        build(data, store, progress=False)
+    with pytest.raises(FieldError, match=r"uncertainty is 'eror', which is not a scalar; .*error"):
+        source_of(data, uncertainty="eror")
+
+
+def test_a_store_of_an_ensemble_has_its_mean_and_spread(tmp_path: Path) -> None:
+    data = around()
+    members = xr.concat([data * share for share in (0.8, 1.2)], "number", combine_attrs="override")
+    build(members, tmp_path / "a.zarr", progress=False, uncertainty="number")
+    opened = open_store(tmp_path / "a.zarr", uncertainty="number")
+    assert opened.uncertainty == "spread over number"
+    np.testing.assert_allclose(opened.scalars[opened.uncertainty][0][opened.valid], 0.2, atol=1e-3)
 
 
 def test_a_series_of_a_file_is_that_of_the_field(tmp_path: Path) -> None:
@@ -250,7 +291,7 @@ def test_robust_ranges_of_large_data_are_those_of_a_sample(
     field = FlowField.from_xarray(around())
     build(around(), tmp_path / "a.zarr", progress=False)
     ranges = Levels(tmp_path / "a.zarr").about["ranges"]
-    assert set(ranges) == {"ssh", "speed"}
+    assert set(ranges) == {"ssh", "error", "speed"}
     for name, (whole, robust) in ranges.items():
         values = np.asarray(field.scalars[name])[:, field.valid]
         values = values[np.isfinite(values)]
