@@ -43,7 +43,7 @@ coverage: $(VENV)/.ready-test ## measure the coverage of flowtex/ and client/src
 fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, files and messages
 	FLOWTEX_FUZZ=$(FUZZ) $(BIN)/pytest -n auto --maxprocesses 4 -m hypothesis -o faulthandler_timeout=0 $(PYTEST_ARGS)
 
-integrations: $(VENV)-integrations/.ready ## show a flow in Notebook 7, Panel, HoloViews, Shiny, Solara, Streamlit and MyST, in a separate environment
+integrations: $(VENV)-integrations/.ready ## show a flow in hosts such as Notebook 7, Panel and MyST, and results of other libraries, in a separate environment
 	@sh tools/browsers.sh $(VENV)-integrations/bin/python
 	$(VENV)-integrations/bin/python -m pytest tests/integrations $(PYTEST_ARGS)
 
@@ -96,5 +96,5 @@ $(VENV)/.ready-site: $(SETUP)
 	@touch $@ $(VENV)/.ready-demo
 
 $(VENV)-integrations/.ready: $(SETUP)
-	@sh tools/setup.sh "$(PYTHON)" $(VENV)-integrations notebook integrations
+	@sh tools/setup.sh "$(PYTHON)" $(VENV)-integrations notebook,xarray integrations
 	@touch $@

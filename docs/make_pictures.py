@@ -405,24 +405,37 @@ def _page_picture(page: Any, name: str) -> None:
 
 def nine() -> Picture:
     """Draw the figures of ``docs/howto/nine.md``, three in a row."""
+    return _figures("nine.md", "python", 3, (480, 360), film="wake.gif")
+
+
+def doors() -> Picture:
+    """Draw those of ``docs/howto/doors.md``, four in a row; their libraries must be here."""
+    return _figures("doors.md", "py", 4, (300, 225))
+
+
+def _figures(page: str, kind: str, columns: int, cell: tuple[int, int], film: str = "") -> Picture:
+    """Run the blocks of a page, and put the figures, or the film, that they leave into rows."""
     import matplotlib.pyplot as plt
 
-    page = (FOLDER.parent / "howto" / "nine.md").read_text(encoding="utf-8")
+    text = (FOLDER.parent / "howto" / page).read_text(encoding="utf-8")
     names: dict[str, Any] = {}
-    whole = Image.new("RGB", (3 * 480, 3 * 360), "white")
+    cells = []
     with TemporaryDirectory() as folder, contextlib.chdir(folder):
-        for n, block in enumerate(re.findall(r"```python\n(.*?)```", page, re.DOTALL)):
+        for block in re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL):
             exec(block, names)  # the lines of the page, as they are
-            if n == 0:
-                continue
-            path = Path("wake.gif")
+            path = Path(film)
             if plt.get_fignums():
                 path = Path("figure.png")
                 plt.savefig(path, dpi=150)
                 plt.close("all")
-            with Image.open(path) as figure:
-                cell = ImageOps.contain(figure.convert("RGB"), (470, 350))
-            whole.paste(cell, ((n - 1) % 3 * 480 + 5, (n - 1) // 3 * 360 + 5))
+            if path.is_file():
+                with Image.open(path) as figure:
+                    size = cell[0] - 10, cell[1] - 10
+                    cells.append(ImageOps.contain(figure.convert("RGB"), size))
+    width, height = cell
+    whole = Image.new("RGB", (columns * width, -(-len(cells) // columns) * height), "white")
+    for n, figure in enumerate(cells):
+        whole.paste(figure, (n % columns * width + 5, n // columns * height + 5))
     return np.asarray(whole)
 
 
@@ -528,7 +541,8 @@ def main() -> None:
                 method=6,
             )
             continue
-        Image.fromarray(PICTURES[name]()).save(FOLDER / f"{name}.jpg", quality=82, optimize=True)
+        draw = doors if name == "doors" else PICTURES[name]
+        Image.fromarray(draw()).save(FOLDER / f"{name}.jpg", quality=82, optimize=True)
 
 
 if __name__ == "__main__":
