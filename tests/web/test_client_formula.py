@@ -85,6 +85,18 @@ def test_the_formula_draws_what_a_fine_grid_of_it_does_and_follows_its_slider(
         assert rms(picture(page), pictures[0.8]) < 2 < rms(*pictures.values())
 
 
+def test_a_formula_is_sharp_at_a_zoom_of_100_000(browser: Browser, tmp_path: Path) -> None:
+    look: dict[str, Any] = {"zoom": 1e5, "focus": (0, 0), "scalars": False}
+    path = flowtex.export(pendulum(), tmp_path / "page.html", **look).path
+    with opened_page(browser, 320, 240) as page:
+        opened(page, path)
+        drawn = picture(page)[..., :3]
+    y, x = np.mgrid[1 : -1 : drawn.shape[0] * 1j, -1 : 1 : drawn.shape[1] * 1j]
+    x *= drawn.shape[1] / drawn.shape[0]
+    found = flowtex.quality.alignment(drawn, y, -x - 0.2 * y, np.hypot(x, y) > 0.25)
+    assert found.angle < 3 and found.coherence > 0.93
+
+
 def test_no_slider_is_hidden_by_a_legend(browser: Browser, tmp_path: Path) -> None:
     field = flowtex.formula("y", "c - a*sin(x) - b*y", **ENDS, a=(1, 0, 2), c=(0.3, -1, 1))
     look: dict[str, Any] = {"samples": 3, "critical_points": True, "nullclines": True}
