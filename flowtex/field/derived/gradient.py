@@ -7,6 +7,7 @@ sphere as on a crooked grid, and no term for the curvature of coordinates is nee
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,8 +26,8 @@ from flowtex.field.triangles.surface import TriangleSurface
 COLLAPSED_AREA = 1e-10
 #: Neighbours that a quadratic fit needs, and its regularisation as a share of the largest entry.
 QUADRATIC_NEIGHBOURS, REGULARISATION = 5, 1e-12
-#: Nodes along each axis by which the side of a surface is judged.
-MOST_JUDGED = 1000
+#: About how many nodes of a grid tell the side of a surface.
+MOST_JUDGED = 40_000
 
 
 def true_positions(points: Floats, projection: Projection | None) -> Floats:
@@ -272,7 +273,7 @@ def _poles(points: Floats, valid: Bools) -> Iterator[tuple[int, int]]:
 
 def _clockwise(one: Floats, two: Floats, points: Floats, valid: Bools) -> bool:
     """Return whether turning from the first direction to the second is negative, by some nodes."""
-    some = tuple(slice(None, None, -(-count // MOST_JUDGED)) for count in valid.shape)
+    some = (slice(None, None, 1 + math.isqrt(valid.size // MOST_JUDGED)),) * 2
     one, two, points = (a[:, *some] for a in (one, two, points))
     normal = np.stack([one[a] * two[b] - one[b] * two[a] for a, b in ((1, 2), (2, 0), (0, 1))])
     known = valid[some] & np.isfinite(normal).all(axis=0)
