@@ -120,19 +120,22 @@ def say(line: str) -> None:
 
 def main(columns: list[int]) -> None:
     """Print the table."""
-    heads = ("metric", "integrate", "compose", "trace", "layers", "rlic", "trace / rlic", "MB")
+    heads = ("metric", "vorticity", "integrate", "compose", "trace", "layers", "rlic")
+    heads = (*heads, "trace / rlic", "MB")
     say(f"{'':22}{'nodes':>12}" + "".join(f"{head:>13}" for head in heads))
     for name, make in fields(columns).items():
         field = make()
         started = time.perf_counter()
         _ = field.surface.cell_size, field.index_velocity
         metric = time.perf_counter() - started
+        vorticity = best(lambda: field.at_step(0).derive("vorticity"))
         whole, composed = composing(field)
         textures = TextureSet.build(SliceStore(field, slices=trace(field)), Settings())
         layers, taps = best(textures.layers), convolution(field)
         size = trace(field).nbytes / 1e6
         rows, count = field.shape
-        numbers = (metric, whole - composed, composed, whole, layers, taps, whole / taps, size)
+        numbers = (metric, vorticity, whole - composed, composed, whole, layers, taps)
+        numbers = (*numbers, whole / taps, size)
         say(f"{name:22}{count:>6} x{rows:>4}" + "".join(f"{n:13.3f}" for n in numbers))
 
 
