@@ -128,7 +128,7 @@ def main(columns: list[int]) -> None:
         started = time.perf_counter()
         _ = field.surface.cell_size, field.index_velocity
         metric = time.perf_counter() - started
-        vorticity = best(lambda: field.at_step(0).derive("vorticity"))
+        vorticity = best(lambda field=field: field.at_step(0).derive("vorticity"))
         whole, composed = composing(field)
         textures = TextureSet.build(SliceStore(field, slices=trace(field)), Settings())
         layers, taps = best(textures.layers), convolution(field)
