@@ -37,6 +37,7 @@ def in_flags(text: str) -> str:
         quote = match["quote"] if " " in match["value"] else ""
         return f"--{match['name'].replace('_', '-')} {quote}{match['value']}{quote}"
 
+    text = re.sub(r"\b(i?sel)=\{'(\w+)': ([^{}]+)\}", r"--\1 \2=\3", text)
     text = re.sub(rf"(?:^|(?<=: |\. ))(?P<name>{names}) (?P<value>is |applies )", flag, text)
     text = re.sub(
         rf"\b(?P<name>{names})=True\b", lambda m: f"--{m['name'].replace('_', '-')}", text

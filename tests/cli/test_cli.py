@@ -417,6 +417,8 @@ def test_export_writes_a_page_and_tells_its_size(run: Run, gyre: Path, tmp_path:
         ("mesh[0], or block=0 for a file", "mesh[0], or --block 0 for a file"),
         ("--zoom is 0; expected", "--zoom is 0; expected"),
         ("such as --beside lod=false", "such as --beside lod=false"),
+        ("as in sel={'number': 5}", "as in --sel number=5"),
+        ("by index, as in isel={'number': 0}", "by index, as in --isel number=0"),
     ],
 )
 def test_messages_are_in_the_words_of_the_shell(said: str, told: str) -> None:

@@ -316,7 +316,7 @@ def _picks(
     else:
         other_value = line[other_one]
         text = f"{other_value:g}" if line.dtype.kind in "fiu" else repr(str(other_value))
-        how = f"{LEVEL if kind == LEVEL else dim}={text}"
+        how = f"level={text}" if kind == LEVEL else f"sel={{{dim!r}: {text}}}"
     note = f"{dim} is {said}, {why} of {count} values; choose another, as in {how}"
     return [_alike(value, number, other) for other in lines], note
 

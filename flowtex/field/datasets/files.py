@@ -16,11 +16,11 @@ from flowtex.field.datasets.pairs import find_pairs
 from flowtex.field.datasets.series import are_steps, joined, of_tree
 from flowtex.field.datasets.wind_json import read_winds
 from flowtex.field.io.inspection.files import inspect_file
+from flowtex.field.io.inspection.netcdf import SUFFIXES as NETCDF
 
 if TYPE_CHECKING:
     import xarray as xr
 
-NETCDF = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
 ZARR, JSON = (".zarr",), (".json",)
 #: Suffixes of files that are opened by xarray.

@@ -12,10 +12,16 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.array_types import AnyArray
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 from flowtex.field.datasets.meshes.conventions import with_mesh_axes
 from flowtex.field.datasets.pairs import find_pairs
+
+#: Dates as letters, which some models write beside times that are less exact, or instead of them.
+LETTERS = ("Times", "xtime")
+#: A unit of time of ICON: a date, with the share of the day behind its point.
+DAYS_AS_NUMBERS = "%Y%m%d"
 
 
 class Datasets(list[Any]):
@@ -74,10 +80,40 @@ def _decoded(ds: Any) -> Any:
             ds[name].attrs["units"] = unit
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        with suppress(ValueError, OverflowError, TypeError):  # times of no calendar
+            ds = import_extra("xarray", "xarray").decode_cf(ds, decode_timedelta=False)
+    return _dated(ds)
+
+
+def _dated(ds: Any) -> Any:
+    """Return a dataset with dates along its axis of time, where they are hidden in it."""
+    for name in LETTERS:
+        if name not in ds.variables or not ds[name].dims or ds[name].dtype.kind not in "SUO":
+            continue
+        dim = str(ds[name].dims[0])
+        texts = [
+            (row.decode() if isinstance(row, bytes) else str(row)).strip(" \0")
+            for row in (ds[name].values if ds[name].ndim == 1 else map(b"".join, ds[name].values))
+        ]
         try:
-            return import_extra("xarray", "xarray").decode_cf(ds, decode_timedelta=False)
-        except (ValueError, OverflowError, TypeError):
-            return ds  # its times are those of no calendar
+            dates = np.array([t.replace("_", "T").rstrip("Z") for t in texts], "datetime64[ms]")
+        except ValueError:
+            continue
+        if ds.sizes[dim] == len(dates) and not np.isnat(dates).any():
+            return ds.assign_coords({dim: (dim, dates.astype("datetime64[ns]"), {"axis": "T"})})
+    for dim in ds.dims:
+        line = ds.coords.get(dim)
+        if line is not None and DAYS_AS_NUMBERS in str(line.attrs.get("units", "")):
+            return ds.assign_coords({dim: (dim, _days(line.values), {"axis": "T"})})
+    return ds
+
+
+def _days(numbers: AnyArray) -> AnyArray:
+    whole = np.floor(numbers).astype(int)
+    days = np.array([f"{n:08d}" for n in whole])
+    dates = [np.datetime64(f"{d[:4]}-{d[4:6]}-{d[6:]}", "s") for d in days]
+    seconds = np.round((numbers - whole) * 86400).astype("timedelta64[s]")
+    return np.asarray(np.array(dates) + seconds, dtype="datetime64[ns]")
 
 
 def _with_axes(ds: Any) -> Any:

@@ -46,7 +46,9 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
     if catcher.error_events:
         # VTK continues after an error and gives a part of the data, or none: the cause is here.
         first = _first_line(catcher.error_events[0].alert)
-        msg = f"{file}: the file is damaged or incomplete. VTK reports: {first}"
+        msg = (
+            f"{file}: the file is damaged, incomplete, or not of this format. VTK reports: {first}"
+        )
         raise FieldError(msg) from cause
     if isinstance(cause, FieldError):
         msg = f"{file}: {cause}"

@@ -118,6 +118,12 @@ def test_wrf_repeats_its_places_for_every_time() -> None:
     )
     assert error(wrf) < 1e-3 * RATE
     assert error(wrf.set_coords(["XLONG", "XLAT"])) < 1e-3 * RATE
+    # Its dates are letters.
+    series = xr.concat([wrf, wrf], "Time").assign(
+        Times=("Time", np.array([b"2020-01-31_18:00:00", b"2020-02-01_00:00:00"]))
+    )
+    field = FlowField.from_xarray(series)
+    assert field.times.tolist() == [0, 21600] and str(field.start) == "2020-01-31 18:00:00"
 
 
 def test_what_a_long_name_calls_zonal_is_along_the_grid_on_sides_of_cells() -> None:

@@ -423,10 +423,18 @@ def test_a_format_that_is_not_known(tmp_path: Path) -> None:
         FlowField.from_file(tmp_path / "flow")
 
 
-def test_broken_netcdf_is_told(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"CDF\x01", "the file is truncated"),
+        (b"x,y,u,v", r"this is not a NetCDF file: it begins with b'x,y,u,v'; expected 'CDF'"),
+        (b"", "this is not a NetCDF file: it is empty"),
+    ],
+)
+def test_broken_netcdf_is_told(tmp_path: Path, content: bytes, words: str) -> None:
     path = tmp_path / "flow.nc"
-    path.write_bytes(b"CDF\x01")
-    with pytest.raises(FieldError, match=r"flow\.nc: the file is truncated"):
+    path.write_bytes(content)
+    with pytest.raises(FieldError, match=rf"flow\.nc: {words}"):
         FlowField.from_file(path)
 
 
@@ -449,9 +457,13 @@ def test_a_broken_file(
     path = tmp_path / name
     path.write_text(text, encoding="ascii")
     reason = reason.format(path=path)
-    with says(f"{path}: the file is damaged or incomplete. VTK reports: {reason}"):
+    with says(
+        f"{path}: the file is damaged, incomplete, or not of this format. VTK reports: {reason}"
+    ):
         FlowField.from_file(path)
-    with says(f"{path}: the file is damaged or incomplete. VTK reports: {reason}"):
+    with says(
+        f"{path}: the file is damaged, incomplete, or not of this format. VTK reports: {reason}"
+    ):
         describe(path)
     out, err = capfd.readouterr()
     assert out == err == "", "VTK's own lines got through"
@@ -524,7 +536,9 @@ def test_threads_that_read_broken_files_do_not_corrupt_the_heap(tmp_path: Path) 
     assert done.returncode == 0, f"{done.returncode}: {done.stderr}"
     assert done.stderr == ""
     (fault,) = done.stdout.splitlines()
-    assert fault.startswith(f"{path}: the file is damaged or incomplete. VTK reports: ")
+    assert fault.startswith(
+        f"{path}: the file is damaged, incomplete, or not of this format. VTK reports: "
+    )
 
 
 def test_what_vtk_only_warns_of_is_passed_on(tmp_path: Path) -> None:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import FACES, LEVELS, NODES
 from flowtex.field.datasets.meshes.mesh import Mesh
@@ -47,12 +46,8 @@ MODELS = (
     ("MPAS", ("cellsOnVertex",), (("lonCell", "latCell"), ("xCell", "yCell")), 1),
     ("MPAS", ("verticesOnCell",), (("lonVertex", "latVertex"), ("xVertex", "yVertex")), 1),
 )
-#: Dates as letters, which some models write beside times that are less exact, or instead of them.
-LETTERS = ("Times", "xtime")
 #: A dimension of the two components of a vector.
 COMPONENTS = re.compile(r"^(two|component\w*|n?vec\w*)$", re.IGNORECASE)
-#: A unit of time of ICON: a date, with the share of the day behind its point.
-DAYS_AS_NUMBERS = "%Y%m%d"
 
 
 def find_mesh(datasets: Sequence[xr.Dataset]) -> Mesh | None:
@@ -138,15 +133,14 @@ def _bounded(variables: Mapping[str, Any]) -> Iterator[Mesh]:
 def with_mesh_axes(datasets: Sequence[Any]) -> list[Any]:
     """Return datasets whose mesh, if there is one, has dimensions of known names.
 
-    Vectors in one variable become two, and levels and times get values where files have them
-    elsewhere.
+    Vectors in one variable become two, and levels get values where files have them elsewhere.
     """
     mesh = find_mesh(datasets)
     if mesh is None:
         return list(datasets)
     sizes = dict(zip((NODES, FACES), _sizes(mesh), strict=True))
     named = dict(zip((NODES, FACES), mesh.dims, strict=True))
-    return [_levels(_times(_apart(_renamed(ds, named, sizes))), mesh) for ds in datasets]
+    return [_levels(_apart(_renamed(ds, named, sizes)), mesh) for ds in datasets]
 
 
 def _sizes(mesh: Mesh) -> tuple[int, int]:
@@ -178,37 +172,6 @@ def _apart(ds: Any) -> Any:
             part.attrs = {k: v for k, v in array.attrs.items() if k == "units"}
         ds = ds.drop_vars(name).assign(both)
     return ds
-
-
-def _times(ds: Any) -> Any:
-    """Return a dataset with dates along its axis of time, where they are hidden in it."""
-    for name in LETTERS:
-        if name not in ds.variables or not ds[name].dims or ds[name].dtype.kind not in "SUO":
-            continue
-        dim = str(ds[name].dims[0])
-        texts = [
-            (row.decode() if isinstance(row, bytes) else str(row)).strip(" \0")
-            for row in (ds[name].values if ds[name].ndim == 1 else map(b"".join, ds[name].values))
-        ]
-        try:
-            dates = np.array([t.replace("_", "T").rstrip("Z") for t in texts], "datetime64[ms]")
-        except ValueError:
-            continue
-        if ds.sizes[dim] == len(dates) and not np.isnat(dates).any():
-            return ds.assign_coords({dim: (dim, dates.astype("datetime64[ns]"), {"axis": "T"})})
-    for dim in ds.dims:
-        line = ds.coords.get(dim)
-        if line is not None and DAYS_AS_NUMBERS in str(line.attrs.get("units", "")):
-            return ds.assign_coords({dim: (dim, _days(line.values), {"axis": "T"})})
-    return ds
-
-
-def _days(numbers: AnyArray) -> AnyArray:
-    whole = np.floor(numbers).astype(int)
-    days = np.array([f"{n:08d}" for n in whole])
-    dates = [np.datetime64(f"{d[:4]}-{d[4:6]}-{d[6:]}", "s") for d in days]
-    seconds = np.round((numbers - whole) * 86400).astype("timedelta64[s]")
-    return np.asarray(np.array(dates) + seconds, dtype="datetime64[ns]")
 
 
 def _levels(ds: Any, mesh: Mesh) -> Any:

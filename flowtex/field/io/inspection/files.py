@@ -67,6 +67,10 @@ def _members(path: Path, _changed: int, size: int, whole: bool) -> tuple[Path, .
         hdf5.check_hdf5(path, whole=whole)
     if head.startswith(netcdf.MAGICS):
         netcdf.check_netcdf(path, whole=whole)
+    elif suffix in netcdf.SUFFIXES and not is_hdf5:
+        found = f"it begins with {head[:8]!r}" if head else "it is empty"
+        msg = f"this is not a NetCDF file: {found}; expected 'CDF', or HDF5"
+        raise FieldError(msg)
     if head.startswith(grib.MAGIC) or suffix.startswith(GRIB_SUFFIXES):
         grib.check_grib(path)
     if suffix in BY_SUFFIX:

@@ -13,6 +13,7 @@ from typing import BinaryIO
 from flowtex.errors import FieldError
 from flowtex.field.io.inspection.limits import check_count, check_memory
 
+SUFFIXES = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
 MAGICS = (b"CDF\x01", b"CDF\x02", b"CDF\x05")
 #: Bytes of a value by the number of its type.
 SIZES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8, 7: 1, 8: 2, 9: 4, 10: 8, 11: 8}
