@@ -78,7 +78,7 @@ LIBRARIES = (
     VTK,
     Library(
         ("matplotlib",),
-        on_load=("offscreen.figure", "offscreen.earth_axes"),
+        on_load=("offscreen.figure", "offscreen.earth_axes", "offscreen.scaled_axes"),
         in_functions=("_util.colours", "offscreen.annotations", "offscreen.dynamic", "xarray"),
     ),
     Library(

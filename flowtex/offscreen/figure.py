@@ -28,7 +28,7 @@ from flowtex.offscreen.earth_axes import (
     unit_of,
 )
 from flowtex.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
-from flowtex.offscreen.scaled_axes import AxesScales
+from flowtex.offscreen.scaled_axes import AxesScales, with_polar_scalars
 from flowtex.options import (
     Appearance,
     FieldOptions,
@@ -43,8 +43,8 @@ Extent = tuple[float, float, float, float]
 
 #: Ends of a colour bar beyond which values lie, below and above, in matplotlib's words.
 EXTENDED = {(False, True): "max", (True, False): "min", (True, True): "both"}
-#: Names of the scales of usual axes.
-LINEAR = ("linear", "linear")
+#: Kind of axes, and names of the scales of usual ones.
+LINEAR = ("rectilinear", "linear", "linear")
 #: Dots per inch at which a grain has the pixels that the settings speak of.
 USUAL_DPI = 100.0
 #: Longest side of what is drawn where the scales of the axes differ, in pixels.
@@ -131,11 +131,14 @@ def axes(
     Parameters
     ----------
     ax
-        Rectilinear axes, with logarithmic or other scales too, or map axes of cartopy
+        Rectilinear axes, with logarithmic or other scales too, polar axes, or map axes of cartopy
         (``projection=ccrs.Robinson()``). Their limits become those of the surface, unless they have
-        been set, and the aspect of axes with linear scales becomes equal. Data on longitudes and
-        latitudes are drawn in degrees, or in the projection of the argument ``projection``, with
-        meridians and parallels as ticks; axes of cartopy already have a projection.
+        been set, and the aspect of axes with linear scales becomes equal. On polar axes x is the
+        angle in radians and y the radius, as for ``ax.plot``, and the velocity is along the
+        growing angle and along the radius, both in the unit of the radius per unit of time. Data on
+        longitudes and latitudes are drawn in degrees, or in the projection of the argument
+        ``projection``, with meridians and parallels as ticks; axes of cartopy already have a
+        projection.
     mesh
         As for :func:`flowtex.render`; its surface must be flat.
     time, clock, supersampling
@@ -164,9 +167,9 @@ def axes(
     >>> figure.savefig("gyre.png", dpi=50)
     >>> plt.close(figure)
     """
-    if not is_geo(ax) and getattr(ax, "name", "") != "rectilinear":
+    if not is_geo(ax) and getattr(ax, "name", "") not in ("rectilinear", "polar"):
         msg = (
-            f"ax is {ax!r}; expected rectilinear matplotlib axes, such as those of "
+            f"ax is {ax!r}; expected rectilinear or polar matplotlib axes, such as those of "
             "plt.subplots(), or axes of cartopy"
         )
         raise FieldError(msg)
@@ -196,10 +199,14 @@ class FlowImage(AxesImage):
     """
 
     def __init__(self, ax: Axes, mesh: Any, options: Options, supersampling: int) -> None:
-        self._unit: AxesUnit | AxesScales = AxesUnit()
+        self._unit = AxesUnit()
         if is_geo(ax):
             name, self._unit = projection_of_axes(ax)
             options = _in_projection(mesh, options, name)
+        if _kind(ax)[0] == "polar":
+            mesh, options = options.field.field(mesh), replace(options, field=FieldOptions())
+            scalar = options.appearance.scalar_name
+            mesh = with_polar_scalars(mesh, _frame(mesh.surface), scalar)
         self._scene = scene = Scene.from_options(mesh, options)
         self._projection = projection = scene.field.projection
         if projection is None and is_geo(ax):
@@ -211,21 +218,23 @@ class FlowImage(AxesImage):
         if not is_geo(ax):
             self._unit = unit_of(projection)
         surface = scene.whole.surface
-        self._frame = _frame(surface)
+        self._frame = frame = _frame(surface)
         # The scene keeps alive what each drawing shares with it.
         self._options = replace(options, field=FieldOptions())
         self._flow = scene.field
         self._scales: AxesScales | None = None
-        if not is_geo(ax) and (ax.get_xscale(), ax.get_yscale()) != LINEAR:
-            self._follow_scales(AxesScales(ax, framed=False))
-            scene, surface = self._scene, self._scene.whole.surface
         self._supersampling, self._clock = supersampling, 0.0
         self._shown: tuple[Any, ...] = ()
         self._picture = np.zeros((1, 1, 4), np.uint8)
-        x, y = self._frame @ surface.center
-        width, height = surface.plane_size / 2
-        corners = np.array([[x - width, y - height], [x + width, y + height]])
-        (left, bottom), (right, top) = self._unit.on_axes(corners).tolist()
+        middle, half = frame @ surface.center, surface.plane_size / 2
+        corners = self._unit.on_axes(np.stack([middle - half, middle + half]))
+        if is_scaled := not is_geo(ax) and _kind(ax) != LINEAR:
+            corners = AxesScales(ax, framed=False).extent(self._flow, frame)
+        (left, bottom), (right, top) = corners.tolist()
+        _limit(ax, left, right, bottom, top)
+        if is_scaled:
+            self._follow_scales(AxesScales(ax, framed=False))
+            scene = self._scene
         super().__init__(ax, extent=(left, right, bottom, top))
         # Pixels have no values, but a colour bar asks for some.
         self.set_data([[scene.scalar_limits[0] if scene.scalar_name else 0.0]])
@@ -246,13 +255,14 @@ class FlowImage(AxesImage):
             return
         if scales is not None and self._projection is not None:
             msg = (
-                f"ax has scales {scales.names}, but the data are of the Earth; expected linear ones"
+                f"ax is {'polar' if scales.polar else f'with scales {scales.names}'}, but the data "
+                "are of the Earth; expected linear axes, or those of cartopy"
             )
             raise FieldError(msg)
         flow, time = self._flow, self._scene.time
-        self._unit, self._scales = AxesUnit() if scales is None else scales, scales
         if scales is not None:
             flow = scales.field(flow, _frame(flow.surface))
+        self._scales = scales
         self._scene = Scene.from_options(flow, self._options)
         self._scene.time = time
         self._frame = _frame(self._scene.whole.surface)
@@ -290,26 +300,12 @@ class FlowImage(AxesImage):
         self.stale = True
 
     def frame_axes(self) -> None:
-        """Set aspect and ticks of the axes, and limits that have not been set."""
+        """Set title, aspect and ticks of the axes."""
         ax: Any = self.axes
-        left, right, bottom, top = self.get_extent()
-        if is_geo(ax):
-            limits = ax.projection
-            (left, right), (bottom, top) = (
-                np.clip((low, high), *sorted(most)).tolist()
-                for low, high, most in (
-                    (left, right, limits.x_limits),
-                    (bottom, top, limits.y_limits),
-                )
-            )
-        if ax.get_autoscalex_on():
-            ax.set_xlim(*((right, left) if ax.xaxis_inverted() else (left, right)))
-        if ax.get_autoscaley_on():
-            ax.set_ylim(*((top, bottom) if ax.yaxis_inverted() else (bottom, top)))
         self._tell()
         if (section := self._flow.section) is not None:
             self._frame_section(section)
-        if is_geo(ax) or isinstance(self._unit, AxesScales) or section is not None:
+        if is_geo(ax) or self._scales is not None or section is not None:
             return
         across, up = self._unit.scale
         ax.set_aspect(up / across)
@@ -342,16 +338,20 @@ class FlowImage(AxesImage):
         """Return the pixels of the axes and their position, for matplotlib."""
         del renderer, unsampled
         if self._projection is None:
-            ax = self.axes
-            straight = ax.get_aspect() != "auto" and (ax.get_xscale(), ax.get_yscale()) == LINEAR
-            self._follow_scales(None if straight else AxesScales(ax))
+            straight = self.axes.get_aspect() != "auto" and _kind(self.axes) == LINEAR
+            try:
+                self._follow_scales(None if straight else AxesScales(self.axes))
+            except FieldError:  # nothing of the flow is on the axes now
+                return np.zeros((1, 1, 4), np.uint8), 0.0, 0.0, None
         box = self.axes.bbox
         # Whole pixels, of which matplotlib cuts those at the border.
         low = np.floor(np.multiply(box.min, magnification))
         high = np.ceil(np.multiply(box.max, magnification))
-        corners = self._unit.on_map(
-            self.axes.transData.inverted().transform(np.stack([low, high]) / magnification)
-        )
+        pixels = np.stack([low, high]) / magnification
+        if self._scales is None:
+            corners = self._unit.on_map(self.axes.transData.inverted().transform(pixels))
+        else:
+            corners = self._scales.shown(pixels)
         width, height = (int(n) for n in np.maximum(high - low, 1))
         density = self.axes.figure.dpi * magnification / USUAL_DPI
         shown = (*corners.ravel(), width, height, density, self.time, self.clock)
@@ -405,6 +405,32 @@ class FlowImage(AxesImage):
         return Camera(
             tuple(position), tuple(center), tuple(up), parallel=True, parallel_scale=height / 2
         )
+
+
+def _limit(ax: Any, left: float, right: float, bottom: float, top: float) -> None:
+    """Set the limits of axes that have not been set."""
+    kind, _, scale = _kind(ax)
+    if is_geo(ax):
+        limits = ax.projection
+        (left, right), (bottom, top) = (
+            np.clip((low, high), *sorted(most)).tolist()
+            for low, high, most in (
+                (left, right, limits.x_limits),
+                (bottom, top, limits.y_limits),
+            )
+        )
+    if kind == "polar":  # all around the centre
+        left, right = ax.get_xlim()
+        bottom = min(bottom, 0.0) if scale == "linear" else bottom
+    if ax.get_autoscalex_on():
+        ax.set_xlim(*((right, left) if ax.xaxis_inverted() else (left, right)))
+    if ax.get_autoscaley_on():
+        ax.set_ylim(*((top, bottom) if ax.yaxis_inverted() else (bottom, top)))
+
+
+def _kind(ax: Axes) -> tuple[str, str, str]:
+    """Return the kind of axes, and the names of their scales."""
+    return ax.name, ax.get_xscale(), ax.get_yscale()
 
 
 def _in_projection(mesh: Any, options: Options, name: str) -> Options:

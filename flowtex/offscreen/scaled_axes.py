@@ -1,4 +1,4 @@
-"""Flows on axes with logarithmic and other scales."""
+"""Flows on axes with logarithmic and other scales, and on polar axes."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.derived import DERIVED, derived_unit
 from flowtex.field.steps import LazySteps
 from flowtex.options import SPEED
 
@@ -26,40 +28,72 @@ STRETCH_STEP = 0.5
 class AxesScales:
     """Scales of axes, which take x and y to where the axes show them.
 
+    Polar axes take the angle and the radius to the positions around their centre.
+
     Attributes
     ----------
     names
         Names of the scales.
+    polar
+        What else places data on polar axes: the zero and the sign of the angle, the radius of the
+        centre, and the sign of the radius. Empty on others.
     stretch
         Factor of the scaled y, so that a picture has about as many pixels for a unit of both.
     """
 
     def __init__(self, ax: Any, *, framed: bool = True) -> None:
         self.names = ax.get_xscale(), ax.get_yscale()
-        self._scales: tuple[Any, Any] = ax.xaxis.get_transform(), ax.yaxis.get_transform()
+        self.polar: tuple[float, ...] = ()
         self.stretch = 1.0
+        # What is scaled, and then moved to the figure: together they are ``ax.transData``.
+        self._scale = self._scaled = ax.transScale
+        if ax.name == "polar":
+            turn = ax.get_theta_offset(), ax.get_theta_direction()
+            self.polar = *turn, ax.get_rorigin(), ax.get_rsign()
+            self._scaled = self._scale + ax.transShift + ax.transProjection
+            self._placed = ax.transProjectionAffine + ax.transWedge + ax.transAxes
+            return
+        self._placed = ax.transLimits + ax.transAxes
         if framed:
-            limits = np.transpose([ax.get_xlim(), ax.get_ylim()])
-            per_unit = np.divide(ax.bbox.size, np.abs(np.diff(self.on_map(limits), axis=0)[0]))
-            power = np.log2(per_unit[1] / per_unit[0]) / STRETCH_STEP
+            spans = np.abs(np.diff(self.shown(ax.bbox.get_points()), axis=0)[0])
+            power = np.log2(np.divide(*np.divide(spans, ax.bbox.size))) / STRETCH_STEP
             self.stretch = float(2.0 ** (STRETCH_STEP * np.round(power)))
 
     @property
-    def key(self) -> tuple[str, str, float]:
+    def key(self) -> tuple[Any, ...]:
         """The same for axes on which a flow is the same."""
-        return *self.names, self.stretch
+        return *self.names, *self.polar, self.stretch
 
     def on_map(self, values: Any) -> Floats:
         """Return scaled positions (..., 2) of values of the axes, NaN where a scale has none."""
+        points = np.asarray(values, dtype=float)
         with np.errstate(all="ignore"):
-            scaled = _transformed(values, self._scales)
-            beyond = (np.abs(scaled) >= BEYOND) & [name in CLIPPED for name in self.names]
-            return np.where(beyond, np.nan, scaled) * (1.0, self.stretch)
+            scaled = self._scaled.transform(points.reshape(-1, 2)).reshape(points.shape)
+            return (scaled if self.polar else self._within(scaled)) * (1.0, self.stretch)
 
-    def on_axes(self, positions: Any) -> Floats:
-        """Return values (..., 2) of the axes of scaled positions."""
-        inverse = tuple(scale.inverted() for scale in self._scales)
-        return _transformed(np.divide(positions, (1.0, self.stretch)), inverse)
+    def _within(self, scaled: Floats) -> Floats:
+        """Return scaled values with NaN where matplotlib clips them."""
+        beyond = (np.abs(scaled) >= BEYOND) & [name in CLIPPED for name in self.names]
+        return np.where(beyond, np.nan, scaled)
+
+    def shown(self, pixels: Any) -> Floats:
+        """Return scaled positions (..., 2) of pixels of the figure."""
+        return np.asarray(self._placed.inverted().transform(pixels) * (1.0, self.stretch))
+
+    def extent(self, field: FlowField, frame: Floats) -> Floats:
+        """Return the least and the greatest values of a field, of those that the scales have.
+
+        Raises
+        ------
+        FieldError
+            When they have none.
+        """
+        values = (field.points @ frame.T).reshape(-1, 2)
+        with np.errstate(all="ignore"):
+            known = np.isfinite(self._within(self._scale.transform(values))).all(axis=-1)
+        if not known.any():
+            raise _missed(values)
+        return np.stack([values[known].min(axis=0), values[known].max(axis=0)])
 
     def field(self, field: FlowField, frame: Floats) -> FlowField:
         """Return a flat field as the axes show it; nodes that these do not have are blanked.
@@ -72,19 +106,28 @@ class AxesScales:
             When no node has a place on the axes.
         """
         points = field.points @ frame.T
-        flat = points.reshape(-1, 2)
+        low, high = self.extent(field, frame)
         scaled = self.on_map(points)
         on_axes = np.isfinite(scaled).all(axis=-1)
-        step = np.maximum(STEP * np.abs(points), LEAST_STEP * np.ptp(flat, axis=0))
-        slope = (self.on_map(points + step) - self.on_map(points - step)) / (2 * step)
-        valid = field.valid & on_axes & np.isfinite(slope).all(axis=-1)
+        step = np.maximum(STEP * np.abs(points), LEAST_STEP * (high - low))
+        near = points.copy()
+        if self.polar:  # the centre has no direction along the angle
+            *_, origin, sign = self.polar
+            beside = np.maximum(sign * (near[..., 1] - origin), 2 * step[..., 1])
+            near[..., 1] = origin + sign * beside
+        # Columns are the ways on the axes for a unit of either value.
+        slope = np.stack(
+            [
+                (self.on_map(near + way) - self.on_map(near - way)) / (2 * step[..., n, None])
+                for n, way in enumerate(np.moveaxis(step[..., None] * np.eye(2), -1, 0))
+            ],
+            axis=-1,
+        )
+        if self.polar:  # a velocity along the angle has the unit of the radius
+            slope[..., 0] /= near[..., 1, None]
+        valid = field.valid & on_axes & np.isfinite(slope).all(axis=(-1, -2))
         if not valid.any():
-            low, high = flat.min(axis=0), flat.max(axis=0)
-            msg = (
-                f"x is from {low[0]:g} to {high[0]:g} and y from {low[1]:g} to {high[1]:g}; "
-                "expected values that the scales of the axes have, or linear axes"
-            )
-            raise FieldError(msg)
+            raise _missed(points)
 
         def planar(two: AnyArray, blank: AnyArray) -> Floats:
             """Return vectors (..., 3) of two components, with others at nodes that are blanked."""
@@ -92,7 +135,7 @@ class AxesScales:
             return np.concatenate([known, np.zeros_like(known[..., :1])], axis=-1)
 
         def moved(steps: Any) -> Floats:
-            return planar(steps @ frame.T * slope, np.zeros(2))
+            return planar((slope @ (steps @ frame.T)[..., None])[..., 0], np.zeros(2))
 
         velocity: Any = field.velocity
         if isinstance(velocity, LazySteps):  # those of a long series are read when they are drawn
@@ -101,7 +144,7 @@ class AxesScales:
         else:
             velocity = moved(velocity)
         known = {SPEED: field.speed, **field.scalars}
-        return replace(
+        shown = replace(
             field,
             points=planar(scaled, scaled[valid][0]),
             velocity=velocity,
@@ -112,10 +155,28 @@ class AxesScales:
             formula=None,
             section=None,
         )
+        if not self.polar or field.triangles is not None:
+            return shown
+        # The angle may go around.
+        closed = FlowField.from_arrays(shown.points, shown.velocity, valid=valid, scalars=known)
+        names = ("points", "velocity", "valid", "has_position", "scalars", "periodic")
+        return replace(shown, **{name: getattr(closed, name) for name in names})
 
 
-def _transformed(values: Any, transforms: tuple[Any, ...]) -> Floats:
-    """Return points (..., 2), each coordinate transformed by itself."""
-    points = np.asarray(values, dtype=float)
-    both = [one.transform(points[..., n].ravel()) for n, one in enumerate(transforms)]
-    return np.stack(both, axis=-1).reshape(points.shape)
+def with_polar_scalars(field: FlowField, frame: Floats, name: str | None) -> FlowField:
+    """Return a field by angle and radius with a scalar that is derived in their plane."""
+    if name not in DERIVED or name in field.scalars or field.sign_free:
+        return field
+    plane = AxesScales(Figure().add_subplot(projection="polar")).field(field, frame)
+    rows, columns = field.shape  # the plane may have a line more, which closes it
+    values = np.stack([np.asarray(step)[:rows, :columns] for step in plane.derive(name)])
+    units = {**field.units, name: derived_unit(name, field.time_unit)}
+    return replace(field, scalars={**field.scalars, name: values}, units=units)
+
+
+def _missed(values: Floats) -> FieldError:
+    low, high = (of(values.reshape(-1, 2), axis=0) for of in (np.min, np.max))
+    return FieldError(
+        f"x is from {low[0]:g} to {high[0]:g} and y from {low[1]:g} to {high[1]:g}; expected "
+        "values that the axes have: positive ones on a logarithmic scale, radii beyond the centre's"
+    )

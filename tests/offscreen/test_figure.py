@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -256,21 +257,115 @@ def test_what_scales_do_not_have_is_blank(figure: Figure) -> None:
     assert ax.get_xlim() == pytest.approx((0.1, 1))
     assert (picture[..., :3] != 255).any(axis=-1).mean() > 0.95
     below = FlowField.from_arrays(np.stack([x - 5, y], -1), field.velocity[0])
-    with pytest.raises(FieldError, match=r"^x is from -6 to -4 .*expected values that the scales"):
+    with pytest.raises(FieldError, match=r"^x is from -6 to -4 .*expected values that the axes"):
         flowtex.axes(figure.add_subplot(xscale="log"), below)
-    with pytest.raises(FieldError, match="data are of the Earth; expected linear ones"):
-        flowtex.axes(figure.add_subplot(yscale="log"), flowtex.examples.weather(), level=500)
+    for options, kind in (
+        ({"yscale": "log"}, "with scales .*"),
+        ({"projection": "polar"}, "polar"),
+    ):
+        with pytest.raises(
+            FieldError, match=f"^ax is {kind}, but the data are of the Earth; expect"
+        ):
+            flowtex.axes(figure.add_subplot(**options), flowtex.examples.weather(), level=500)
+
+
+#: What users do to polar axes.
+POLAR: dict[str, Callable[[Any], Any]] = {
+    "usual": lambda ax: None,
+    "compass": lambda ax: (ax.set_theta_zero_location("N"), ax.set_theta_direction(-1)),
+    "hole": lambda ax: ax.set_rorigin(-1),
+    "logarithmic": lambda ax: ax.set_rscale("log"),
+    "inverted": lambda ax: ax.set_ylim(2, 0.5),
+    "zoomed": lambda ax: ax.set_ylim(0.75, 1.25),
+    "wedge": lambda ax: (ax.set_thetamin(20), ax.set_thetamax(130)),
+}
+
+
+def ring(least: float = 0.5) -> FlowField:
+    """A flow past a cylinder by angle and radius, with a scalar that is light in a part."""
+    theta, r = np.meshgrid(np.linspace(0, 2 * np.pi, 97), np.linspace(least, 2, 61))
+    near = 0.25 / np.maximum(r, 0.5) ** 2
+    velocity = np.stack([-(1 + near) * np.sin(theta), (1 - near) * np.cos(theta)], axis=-1)
+    light = ((theta > 1) & (theta < 2) & (r > 1)).astype(float)
+    return FlowField.from_arrays((theta, r), velocity, scalars={"edge": light})
+
+
+@pytest.mark.parametrize("kind", POLAR)
+def test_directions_on_polar_axes_are_those_of_quiver(figure: Figure, kind: str) -> None:
+    ax: Any = figure.add_subplot(projection="polar")
+    POLAR[kind](ax)
+    field = ring()
+    shown = flowtex.axes(ax, field, samples=3).flow
+    assert shown.periodic == (False, True) and shown.scalars["speed"] == pytest.approx(field.speed)
+    some = np.zeros(field.shape, dtype=bool)
+    some[4:-2:9, 3:-1:8] = shown.valid[4:-2:9, 3:-1:8]
+    theta, r, _ = field.points[some].T
+    along, out, _ = np.asarray(field.velocity[0])[some].T
+    arrows = ax.quiver(theta, r, along / r, out, angles="xy", units="xy")  # rates of both
+    figure.canvas.draw()
+    tips = np.array(
+        [path.vertices[np.argmax(np.hypot(*path.vertices.T))] for path in arrows.get_paths()]
+    )
+    u, v, _ = np.asarray(shown.velocity[0])[some].T
+    assert len(u) > 20
+    # quiver goes a thousandth of the axes, which is an angle on logarithmic ones.
+    assert np.abs(np.angle((u + 1j * v) * (tips @ (1, -1j)))).max() < np.radians(1)
+
+
+@pytest.mark.parametrize("kind", POLAR)
+@pytest.mark.parametrize("dpi", [50, 200])
+def test_polar_axes_show_a_flow_where_it_is(figure: Figure, kind: str, dpi: float) -> None:
+    ax: Any = figure.add_subplot(projection="polar")
+    ax.grid(visible=False)
+    POLAR[kind](ax)
+    flowtex.axes(ax, ring(), **PLAIN)
+    figure.set_dpi(dpi)
+    shot = pixels(figure)
+    low, high = sorted(ax.get_ylim())
+    theta, r = np.meshgrid(
+        np.arange(0.6, 2.2, 0.1) + 0.05, np.linspace(max(low, 0.5), high, 13)[1:-1]
+    )
+    at = (np.abs(theta - 1) > 0.06) & (np.abs(theta - 2) > 0.06) & (np.abs(r - 1) > 0.04)
+    x, y = ax.transData.transform(np.stack([theta[at], r[at]], axis=-1)).astype(int).T
+    light = shot[len(shot) - 1 - y, x, 0] > 127
+    assert (light == ((theta > 1) & (theta < 2) & (r > 1))[at]).all()
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_what_is_derived_on_polar_axes_is_that_of_the_plane(figure: Figure, closed: bool) -> None:
+    around = np.linspace(0, 2 * np.pi, 65, endpoint=closed)
+    theta, r = np.meshgrid(around, np.linspace(0.5, 2, 41))
+    field = FlowField.from_arrays((theta, r), np.stack([r**2, 0 * r], axis=-1), time_unit="s")
+    image = flowtex.axes(figure.add_subplot(projection="polar"), field, scalars="vorticity")
+    assert image.colour_label == "vorticity (1/s)"
+    vorticity = image.flow.scalars["vorticity"][0][1:-1, :65]
+    assert vorticity == pytest.approx(3 * r[1:-1], rel=1e-3)
+
+
+def test_polar_axes_begin_at_the_centre_and_may_be_elsewhere(figure: Figure) -> None:
+    ax: Any = figure.add_subplot(projection="polar", facecolor="#ff0000")
+    image = flowtex.axes(ax, ring(0.0), samples=3)
+    assert ax.get_ylim() == (0, 2) and ax.get_xlim() == pytest.approx((0, 2 * np.pi))
+    # A uniform flow goes through the centre.
+    x, y = image.flow.points[10, :, :2].T
+    assert x.mean() == pytest.approx(y.mean(), abs=0.01)
+    ax.set_rlim(5, 6)
+    x, y = ax.transData.transform((1.0, 5.5)).astype(int)
+    for _ in range(2):
+        assert tuple(pixels(figure)[-y, x]) == (255, 0, 0)
 
 
 def test_axes_of_another_kind_are_refused(figure: Figure) -> None:
-    with pytest.raises(FieldError, match=r"^ax .*; expected rectilinear matplotlib axes"):
-        flowtex.axes(figure.add_subplot(projection="polar"), edge())
+    with pytest.raises(FieldError, match=r"^ax .*; expected rectilinear or polar matplotlib axes"):
+        flowtex.axes(figure.add_subplot(projection="hammer"), edge())
 
 
 def test_a_curved_surface_has_no_axes(figure: Figure) -> None:
     with pytest.raises(ValueError, match=r"^the surface is curved"):
         flowtex.axes(figure.add_subplot(), flowtex.examples.delta_wing_field())
-    with pytest.raises(FieldError, match=r"^ax is None; expected rectilinear matplotlib axes"):
+    with pytest.raises(
+        FieldError, match=r"^ax is None; expected rectilinear or polar matplotlib axes"
+    ):
         flowtex.axes(None, edge())  # type: ignore[arg-type]
 
 
