@@ -128,7 +128,7 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
         if kind == TIME:
             times = None if lines[0] is None else np.atleast_1d(np.asarray(lines[0])[picks[0]])
         elif kind == LEVEL and lines[0] is not None and np.ndim(picks[0]) == 0:
-            level = _words(lines[0][picks[0]], arrays[0], dims[0])
+            level = _level_words(lines[0][picks[0]], arrays[0], dims[0])
         if note:
             notes.append(note)
         if np.ndim(picks[0]) == 0 and picks[0] != slice(None) and arrays[0].sizes[dims[0]] > 1:
@@ -152,8 +152,14 @@ def _level_beside(array: xr.DataArray) -> str:
     for name, coordinate in array.coords.items():
         is_number = not coordinate.dims and coordinate.dtype.kind in "fiu"
         if is_number and axis_kind(array, str(name)) == LEVEL:
-            return _words(coordinate.values[()], array, str(name))
+            return _level_words(coordinate.values[()], array, str(name))
     return ""
+
+
+def _level_words(value: Any, array: xr.DataArray, dim: str) -> str:
+    """Return a level as text, with the name of its axis where it has no unit."""
+    text = _words(value, array, dim)
+    return text if " " in text else f"{dim} {text}"
 
 
 def wet_at(

@@ -213,8 +213,17 @@ def _nameless(ds: Any) -> Any:
             "lon increases and decreases.*sortby",
         ),
         (_nameless, "Name the components, as in u="),
+        (lambda ds: ds.stack(cell=("lat", "lon")), "no variable has two axes.*If cell is the axis"),
     ],
-    ids=["one component", "no coordinates", "NaN", "no degrees", "scrambled", "no names"],
+    ids=[
+        "one component",
+        "no coordinates",
+        "NaN",
+        "no degrees",
+        "scrambled",
+        "no names",
+        "one axis",
+    ],
 )
 def test_what_cannot_be_told_is_one_error(change: Any, words: str) -> None:
     with pytest.raises(FieldError, match=words):

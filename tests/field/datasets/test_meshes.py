@@ -200,7 +200,7 @@ def test_a_source_offers_levels_and_maps() -> None:
     assert source.plane_of(-0.5) == "level=1"
     assert source.blocks[:2] == ("platecarree", "globe")
     field = source.field(plane="level=1", block="globe")
-    assert field.name == "-0.5" and field.surface.on_globe
+    assert field.name == "siglay -0.5" and field.surface.on_globe
     assert source.field(vectors="ua,va", block="globe").name == ""
 
 
