@@ -8,14 +8,13 @@
 
 import type { CustomLayerInterface, CustomRenderMethodInput, Map as MapLibreMap } from "maplibre-gl";
 import { BareView, type BareHost } from "./bareview.ts";
-import type { ColourChoice } from "./colours.ts";
 import { eastNorth } from "./lonlat.ts";
 import { MapPicture } from "./mappicture.ts";
 import { Mercator, placeOn, type MapLook } from "./mercator.ts";
 import { Player } from "./player.ts";
 import { pathThrough } from "./pointpath.ts";
 import { Programs } from "./programs.ts";
-import type { Header, Settings } from "./protocol.ts";
+import type { Header } from "./protocol.ts";
 import { Embedded, type PackedScene } from "./sources/embedded.ts";
 import { Stream } from "./sources/stream.ts";
 import type { Vector } from "./vectors.ts";
@@ -25,21 +24,31 @@ import type { Vector } from "./vectors.ts";
 const MOST_PIXELS = 4096;
 const MOST_SHARE = 4;
 
+// The declarations of what is public name no type of other modules: they are one file of the package.
+
+/** Settings of the texture, by their names in Python, such as `samples` and `contrast`. */
+export type FlowSettings = Record<string, boolean | number | string>;
+
+/** A scalar by its name, or one colour; a colour map, its range, and whether that is logarithmic. */
+export interface FlowColours {
+  scalars?: string | false;
+  cmap?: string;
+  clim?: [least: number, most: number] | "robust" | null;
+  log_scale?: boolean;
+}
+
 export interface LayerOptions {
   id: string;
   /** Address of the scene that `flowtex.export` has written, or the scene. */
-  scene: string | PackedScene;
+  scene: string | object;
   /** From 0 to 1; by default that of the scene. */
   opacity?: number;
-  /** Settings of the texture, by their names in Python, such as `samples` and `contrast`. */
-  settings?: Settings;
+  settings?: FlowSettings;
   /** The scene is here, so that its times and bounds are known. */
   onOpen?: () => void;
   /** The time, or the clock of a steady flow, has gone on. */
   onTime?: (time: number) => void;
 }
-
-type MapColours = Pick<ColourChoice, "scalars" | "cmap" | "clim" | "log_scale">;
 
 /** A point of the flow. */
 export interface FlowPoint {
@@ -55,7 +64,7 @@ export interface FlowPoint {
 /** What all pictures of a layer show. */
 interface Scene {
   header: Header;
-  settings: Settings;
+  settings: FlowSettings;
   player: Player;
   mercator: Mercator;
   add(): Promise<MapPicture>;
@@ -77,8 +86,8 @@ export class FlowtexLayer implements CustomLayerInterface {
   private globe = false;
   private shownOpacity = 1;
   /** Settings and colours that were chosen, also before the scene is here. */
-  private readonly own: Settings;
-  private readonly colours: MapColours = {};
+  private readonly own: FlowSettings;
+  private readonly colours: FlowColours = {};
 
   constructor(options: LayerOptions) {
     this.options = options;
@@ -109,7 +118,7 @@ export class FlowtexLayer implements CustomLayerInterface {
   private async open(gl: WebGL2RenderingContext): Promise<void> {
     const { scene: given, opacity } = this.options;
     const base = new URL(typeof given === "string" ? given : "", location.href).href;
-    const { headers, parts } = typeof given === "string" ? await fetched(base) : given;
+    const { headers, parts } = typeof given === "string" ? await fetched(base) : (given as PackedScene);
     if (this.gl !== gl) return; // the layer has gone
     const header = bare(headers[0]);
     const embedded = new Embedded(header, parts.flatMap(([n, info, text]) => (n ? [] : [[info, text]])), new Map(), new Map());
@@ -198,14 +207,14 @@ export class FlowtexLayer implements CustomLayerInterface {
   }
 
   /** Change settings of the texture, by their names in Python. */
-  set(settings: Settings): void {
+  set(settings: FlowSettings): void {
     Object.assign(this.own, settings);
     Object.assign(this.scene?.settings ?? {}, settings);
     this.change();
   }
 
   /** Colour by another scalar, with another map or range. */
-  setColours(choice: MapColours): void {
+  setColours(choice: FlowColours): void {
     Object.assign(this.colours, choice);
     for (const { view } of this.pictures) view.chooseColours(choice);
   }
