@@ -252,9 +252,8 @@ def truths(
 def cut(name: str, whole: bytes, share: float) -> bytes:
     """Return the beginning of a file."""
     end = int(share * len(whole))
-    last = re.search(rb"\S+\s*$", whole)
-    if name in FREE_TEXT and last and end > last.start():
-        end = last.start()
+    if name in FREE_TEXT:
+        end = min(end, whole.rindex(whole.split()[-1]))
     return whole[:end]
 
 
