@@ -40,7 +40,7 @@ def waving(rate: float, columns: int = 30) -> FlowField:
 
 @pytest.mark.parametrize("compose", [False, True])
 def test_forward_paths_are_those_of_the_flow_run_backward(compose: bool) -> None:
-    field = double_gyre_field(shape=(11, 21), time_varying=True)
+    field = double_gyre_field(shape=(11, 21), time_varying=True).at_steps(range(17))
     ahead = trace(field, lags=[0.25, 0.5, 1.0, 2.0, 4.0], compose=compose)
     back = trace(mirrored(field), lags=[0.25, 0.5, 1.0, 2.0, 4.0], compose=compose)
     np.testing.assert_allclose(ahead_of(ahead)[::-1], back.displacement, atol=2e-3)

@@ -37,7 +37,7 @@ def test_van_der_pol_has_one_orbit_of_its_period_and_amplitude() -> None:
     crosses.direction = -1  # type: ignore[attr-defined]
     found: Any = solve_ivp(rate, (0, 80), (2, 0), events=crosses, rtol=1e-10, atol=1e-10)
     times, amplitude = found.t_events[0], found.y_events[0][-1, 0]
-    field = flowtex.formula("y", "(1 - x**2) * y - x", x=(-3, 3), y=(-4, 4))
+    field = flowtex.formula("y", "(1 - x**2) * y - x", x=(-3, 3), y=(-4, 4), resolution=129)
     (orbit,) = flowtex.closed_orbits(field)
     assert orbit.stable
     assert orbit.period == pytest.approx(times[-1] - times[-2], rel=1e-3)
@@ -46,7 +46,7 @@ def test_van_der_pol_has_one_orbit_of_its_period_and_amplitude() -> None:
     # In the direction of the flow, which turns clockwise.
     x, y, _ = orbit.points.T
     assert np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) < 0
-    back = flowtex.formula("-y", "x - (1 - x**2) * y", x=(-3, 3), y=(-4, 4))
+    back = flowtex.formula("-y", "x - (1 - x**2) * y", x=(-3, 3), y=(-4, 4), resolution=129)
     (other,) = flowtex.closed_orbits(back)
     assert not other.stable and other.period == pytest.approx(orbit.period, rel=1e-3)
 

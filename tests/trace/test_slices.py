@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,7 @@ def displacements(field: FlowField, lags: Floats, step: int) -> Floats:
     return np.asarray(slices.displacement[0], dtype=float)
 
 
+@cache
 def compared(name: str, factor: int) -> dict[str, Floats]:
     """Mean errors in cells for lags of 1 to 10 steps, against the slices of the whole field.
 

@@ -60,7 +60,7 @@ def ends(field: FlowField, slices: TraceSlices, m: int) -> Floats:
 @pytest.mark.parametrize("index", [0.5, -0.5])
 def test_lines_around_half_a_turn_are_parabolas_or_their_like(index: float, sheared: bool) -> None:
     """Along a line r^(1 - index) sin((1 - index) phi) is constant, of the same sign or not."""
-    points = grid(61, sheared)
+    points = grid(41, sheared)
     field = turned_over(line_field(points, index))
     lags = np.array([0.05, 0.2, 0.5])
     slices = trace(field, lags=lags, unit=1.0)

@@ -90,7 +90,7 @@ def test_a_vortex_on_a_plane_is_followed_to_second_order() -> None:
 def test_a_rotation_of_a_sphere_is_followed_to_second_order(parameter: str) -> None:
     errors = []
     lags = np.linspace(0.3, 1.5, 9)
-    for count in (1000, 4000):
+    for count in (500, 2000):
         points, triangles = sphere(count)
         field = FlowField.from_triangles(points, triangles, spin(points))
         slices = trace(field, lags=lags, unit=1.0, parameter=parameter, tolerance=1e-5)
@@ -101,7 +101,7 @@ def test_a_rotation_of_a_sphere_is_followed_to_second_order(parameter: str) -> N
         assert np.isinf(slices.reach[0, 0, some]).all()
         off = np.stack([found(field, slices, m) - turned(p, -angle[m]) for m in range(9)])[:, some]
         errors.append(float(np.sqrt(np.mean(off**2))))
-    assert errors[1] < 5e-4
+    assert errors[1] < 1e-3
     # Four times as many nodes are half as far apart.
     assert 1.75 < np.log2(errors[0] / errors[1]) < 2.5
 

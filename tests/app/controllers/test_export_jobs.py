@@ -89,13 +89,16 @@ def test_a_larger_picture_is_finer_or_denser(scene: Viewport, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("times", [1, 2])
-def test_a_saved_picture_is_that_of_a_script(tmp_path: Path, times: int) -> None:
+def test_a_saved_picture_is_that_of_a_script(
+    tmp_path: Path, times: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.app.controllers.export_jobs.LARGEST_TILE_PX", 160)
     field = flowtex.examples.double_gyre_field(shape=(21, 41))
     marked: dict[str, Any] = {"samples": 5, "critical_points": True, "separatrices": True}
     view = Viewport(field, **marked)
     view.set_background("white")
-    size = (1200, 700)  # of several tiles
-    view.resize(600, 350)
+    size = (400, 240)  # of several tiles
+    view.resize(200, 120)
     view.home()
     saved = pixels(run(PictureJob(view, tmp_path / "a.png", size, supersampling=times)))
     view.close()
