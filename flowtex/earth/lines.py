@@ -174,7 +174,7 @@ def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats |
     """
     first, last, place = _pieces(lonlat, joined)
     torn = _is_torn(projection, first, last)
-    before, after = _tear(projection, first[torn], last[torn])
+    before, after = tear(projection, first[torn], last[torn])
     # Both parts of a torn piece follow each other, and are joined to what is not torn.
     gap = np.full(int(torn.sum()), np.nan)
     (left, right), (torn_left, torn_right) = place[~torn].T, place[torn].T
@@ -221,8 +221,8 @@ def _is_torn(projection: Projection, first: Floats, last: Floats) -> Bools:
     return np.asarray(beside | bent)
 
 
-def _tear(projection: Projection, first: Floats, last: Floats) -> tuple[Floats, Floats]:
-    """Longitude and latitude just before and just after the tear in each piece."""
+def tear(projection: Projection, first: Floats, last: Floats) -> tuple[Floats, Floats]:
+    """Return longitude and latitude just before and just after the tear in each piece, (N, 2)."""
     low, high = first.copy(), last.copy()
     for _ in range(HALVINGS):
         middle = (low + high) / 2

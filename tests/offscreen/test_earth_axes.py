@@ -193,6 +193,25 @@ def test_directions_on_maps_of_cartopy_are_those_that_it_computes(
     assert np.abs(turned).max() < np.radians(0.2)
 
 
+@pytest.mark.parametrize("middle", [0, -160, 13])  # tears on columns of the data, and between them
+def test_an_interrupted_map_is_drawn_up_to_where_it_is_torn(figure: Figure, middle: float) -> None:
+    ax, crs = _axes(figure, "InterruptedGoodeHomolosine", central_longitude=middle)
+    ax.set_facecolor("#ff0000")
+    figure.set_dpi(200)
+    data = winds(np.arange(-180.0, 180.0, 5.0), np.arange(-80.0, 81.0, 5.0))
+    flowtex.axes(ax, data, samples=3, cmap="viridis")
+    figure.canvas.draw()
+    shot = np.asarray(figure.canvas.buffer_rgba())[..., :3]  # type: ignore[attr-defined]
+    tears = {-40: 1, -100: -1, -20: -1, 80: -1}  # longitudes from the middle, north or south
+    beside, lat = np.meshgrid([-1.5, 1.5], np.arange(2, 76, 3))
+    for tear, side in tears.items():
+        lon = (tear + middle + beside + 180) % 360 - 180
+        places = ax.projection.transform_points(crs.PlateCarree(), lon, side * lat)[..., :2]
+        x, y = ax.transData.transform(places.reshape(-1, 2)).astype(int).T
+        bare = (shot[len(shot) - 1 - y, x] == (255, 0, 0)).all(axis=-1)
+        assert not bare.any(), (tear, lat.ravel()[bare], beside.ravel()[bare])
+
+
 def test_a_map_of_cartopy_keeps_its_extent_and_its_outline(figure: Figure) -> None:
     ax, crs = _axes(figure, "Robinson")
     ax.set_extent([-40, 60, -50, 50], crs.PlateCarree())

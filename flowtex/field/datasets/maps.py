@@ -7,8 +7,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from flowtex._util.array_types import Floats, Indices
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.earth import GLOBE, Projection
+from flowtex.earth.lines import tear
 from flowtex.field.datasets.places import Places
 
 #: The flat map that is drawn where none is chosen, and those on which an axis that goes around the
@@ -32,6 +33,10 @@ SCATTERED, SPHERE_DEGREES = 0.125, 203.0
 LARGEST = 4.0
 #: Edges between nodes are torn where they are longer by this factor than on the Earth.
 TORN = 8.0
+#: A step across a meridian is longer by this factor than one before it where the map is torn there.
+WIDER = 1.5
+#: Share of a cell beside a meridian along which a map is torn, up to which the flow is drawn.
+BESIDE = 0.02
 
 
 class Nodes(Protocol):
@@ -113,7 +118,14 @@ def on_map(places: Places, name: str | None) -> MapNodes:
         return MapNodes(projection, points, (slice(None), columns), periodic, lon, lat)
     points = shown_positions(projection, shown, lat)
     if not places.is_line or name not in (*CYLINDERS, "north", "south"):
-        points[_torn(points, shown, lat)] = np.nan
+        torn = _torn(points, shown, lat)
+        if places.is_line and torn.any():
+            (lon, shown), between, columns = _beside_tears(lines, projection, torn)
+            lat = np.broadcast_to(lines.lat[:, None], lon.shape)
+            points = shown_positions(projection, shown, lat)
+            points[between] = np.nan
+            torn = _torn(points, shown, lat)
+        points[torn] = np.nan
     kept = shown_rows(points)
     return MapNodes(projection, points[kept], (kept, columns), periodic, lon[kept], lat[kept])
 
@@ -214,6 +226,53 @@ def _middle(lon: Floats) -> tuple[float, float]:
         return 0.0, 360.0
     middle = values[(widest + 1) % len(values)] + span / 2
     return float((middle + 180.0) % 360.0 - 180.0), float(span)
+
+
+def _beside_tears(
+    lines: MapLines, projection: Projection, torn: Bools
+) -> tuple[Floats, Bools, Indices]:
+    """Return longitudes of nodes that reach to the meridians along which a map is torn.
+
+    Where it is, the nodes at either side of the meridian are moved to it, and one between them is
+    blank: otherwise nothing would be drawn in the cells beside. ``torn`` says after which nodes,
+    (J, I), the map is torn. The others are the longitudes, and those on the map, (2, J, I), the
+    nodes that are blank, and the numbers of the columns in the data.
+    """
+    lon, shown, columns = lines.lon, lines.shown, lines.columns
+    at = np.flatnonzero(torn[:, :-1].sum(axis=0) > 2)  # two rows say little of others
+    rows = np.argmax(torn, axis=0)[at], len(torn) - 1 - np.argmax(torn[::-1], axis=0)[at]
+    near = BESIDE * float(np.median(np.diff(shown)))
+    around = shown[at] - near, shown[at + 1] + near  # one may be on the meridian
+    first, last = (
+        tear(projection, *(np.stack([ends, lines.lat[row]], axis=-1) for ends in around))
+        for row in rows
+    )
+    meridians = np.sort(first[0][np.abs(first[0] - last[0])[:, 0] < near, 0])
+    meridians = meridians[np.diff(meridians, prepend=-np.inf) > near]
+    middles = []
+    for meridian in meridians:
+        middle = int(np.argmin(np.abs(shown - meridian)))
+        if abs(shown[middle] - meridian) > near:
+            number, middle = columns[middle], int(np.searchsorted(shown, meridian))
+            halfway = shown[middle - 1 : middle + 1].mean()
+            lon, shown = np.insert(lon, middle, halfway), np.insert(shown, middle, halfway)
+            columns = np.insert(columns, middle, number)
+        middles.append(middle)
+    both = np.repeat(np.stack([lon, shown])[:, None], len(lines.lat), axis=1)
+    blank = np.zeros(both.shape[1:], dtype=bool)
+    for meridian, middle in zip(meridians, middles, strict=True):
+        if not 0 < middle < len(shown) - 1:
+            continue
+        sides = meridian + near * np.array([-3.0, -1.0, 1.0])
+        places = projection.positions(sides, lines.lat[:, None])
+        before, across = np.linalg.norm(np.diff(places, axis=1), axis=-1).T
+        apart = across > WIDER * before
+        moved = apart.copy()  # so is the row before, or the cells up to it would be blank
+        moved[1:] |= apart[:-1]
+        moved[:-1] |= apart[1:]
+        both[:, moved, middle - 1 : middle + 2 : 2] = sides[1:]
+        blank[apart, middle] = True
+    return both, blank, columns
 
 
 def _torn(points: Floats, lon: Floats, lat: Floats) -> Any:
