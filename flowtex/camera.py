@@ -33,6 +33,9 @@ ASIDE, UP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
 WHOLE_GLOBE = (math.cos(math.radians(20)), 0.0, math.sin(math.radians(20)))
 #: Share of the radius from the middle of the globe, or its axis, from which a direction counts.
 LEAST_ASIDE = 0.2
+#: Two surfaces are seen by one camera where the larger one is at most so many times as large, and
+#: their middles are at most such a share of its extent apart.
+MOST_LARGER, MOST_APART = 4.0, 0.5
 #: Farthest and nearest that a camera may be, in extents of the surface: beyond, numbers end.
 FARTHEST_REACH, NEAREST_REACH = 1e9, 1e-9
 
@@ -491,6 +494,15 @@ class Camera:
         return bool(offsets.max() <= FARTHEST_REACH * surface.extent) and all(
             NEAREST_REACH <= size / surface.extent <= FARTHEST_REACH for size in sizes
         )
+
+
+def are_alike(one: Surface, other: Surface) -> bool:
+    """Return whether the camera of one surface shows the other one as well."""
+    smaller, larger = sorted((one.extent, other.extent))
+    apart = float(np.linalg.norm(one.center - other.center))
+    is_flat = one.frame is not None
+    near = apart <= MOST_APART * larger <= MOST_APART * MOST_LARGER * smaller
+    return near and is_flat == (other.frame is not None)
 
 
 def _side(center: Floats) -> tuple[Point, Point]:

@@ -383,6 +383,8 @@ export interface Header {
   clock: number;
   /** Counts the scenes that replaced one another. */
   generation?: number;
+  /** Names of the parts that are the same at all times, where a host sends only those that differ. */
+  surface?: string[];
   /** Settings in which two views differ, and those that are this view's own. */
   differs?: string[];
   own?: Settings;

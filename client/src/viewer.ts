@@ -156,10 +156,20 @@ export class Viewer implements User, View {
     if (old && old.generation !== header.generation) {
       // What is the same at all times is sent again only where it differs.
       this.held.clear((name) => (isElsewhere && !keepsCamera) || name.includes("/"));
+      if (header.surface?.length) this.keepParts(header.surface);
     }
     this.panel.build();
     this.resize(); // at once, so that no picture is drawn in the size without the bar
     this.change();
+  }
+
+  /** Remove what the scene before had besides parts of these names, and besides those of time steps. */
+  keepParts(names: string[]): void {
+    for (const name of [...this.parts.keys()]) {
+      if (name.includes("/") || names.includes(name)) continue;
+      this.held.remove(name);
+      this.scene?.forget(name);
+    }
   }
 
   /** Draw the same arrays in other colours, given by a part of the header. */

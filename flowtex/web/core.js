@@ -2028,62 +2028,64 @@ header.generation)return this.recolour(coloursOf(header));old&&this.holdDraft(ST
 ...this.grounded(header)},this.header=header,this.settings={...header.settings,...header.own},this.player.setHeader(header),
 this.requests.setHeader(header),this.painter.open?.(header);let isElsewhere=!old||!isSamePlace(old.geometry,header.geometry);
 isElsewhere&&(this.keptCamera=old&&keepsCamera?this.cameraState:null,[this.firstCamera,this.camera]=[this.keptCamera?null:
-header.camera,null]),old&&old.generation!==header.generation&&this.held.clear(name=>isElsewhere&&!keepsCamera||name.includes(
-"/")),this.panel.build(),this.resize(),this.change()}recolour(changes){if(!this.header)return;let colours=this.grounded(
-changes);Object.assign(this.header,colours),Object.assign(this.given??{},changes),this.scene?.forget("scalars"),this.tiles?.
-recolour(colours),this.panel.showLegend(),this.change()}grounded(colours){return this.page.update(),colours.background===
-void 0?colours:(this.isOnPage=colours.background===null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){
-if(this.options.onColours)return this.options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;
-let{colours,part}=recoloured(viewer.header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){
-let{name}=part,tile=tilePart(name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});this.held.set(
-part)&&(this.scene?.forget(name),this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(
-name)&&this.panel.showLegend(),this.change())}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(
-0,2))}setSettings(settings){Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(
-this.settings,settings),this.requests.follow(this.settings)&&this.renew(),this.panel.update(),this.change())}renew(){this.
-held.clear(name=>/^(flow|scalars|critical|separatrices)\//.test(name)),this.requests.stop(),this.header&&this.painter.open?.(
-this.header)}followSetting(name,value){name in(this.header?.own??{})||this.setSettings({[name]:value})}choose(name,value){
-this.holdDraft(),this.setSettings({[name]:value}),this.options.onSetting?.(name,value)}get cameraState(){let state=this.
-camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(state):null}setCamera(state){if(!state)this.firstCamera=
-this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,this.keptCamera]=[copyOf(state),null];else{if(isEqual2(
-this.camera.state,state))return;this.camera.state=copyOf(state)}this.change(!0)}reportCamera(){this.holdDraft(),this.change(
-!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){this.camera&&(this.place(),this.reportCamera())}place(){
-let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.parts.get("position")?.data;if(!header||!nodes)return;
-let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.pick=(x,y)=>this.point(x,y)?.position??this.ground(
-x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.showAxes(),(!first||!isEqual2(first,camera.start))&&
-this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.max(this.stage.clientWidth,1)/Math.max(this.stage.
-clientHeight,1)}get playing(){return this.player.playing}setTime(time){this.player.seek(time),this.panel.tick(),this.change()}followTime(time){
-let{timeShift=0}=this.header??{};if(timeShift===null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(
-first<=own&&own<=last?own:last)}step(count2){let{player,options}=this;if(options.follows)return options.follows.step(count2);
-player.varies&&(this.pause(),this.setTime(player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,
-options}=this,{first,last}=player.range(this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.
-setTime(value),options.onTime?.(player.time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.
-player.clock=seconds,this.panel.tick(),this.change()}play(){if(this.options.follows)return this.options.follows.play();this.
-playing||!this.header||(!this.player.varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),
-this.panel.update(),this.request(),this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.
-pause();this.playing&&(this.player.playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){
-let leader=this.options.follows??this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=
-performance.now()+duration}get isHeld(){return performance.now()<this.busyUntil}change(cameraOnly=!1){this.painter.restart?.(
-cameraOnly),this.card.draw(),this.panel.showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.
-setSharp(!1),this.request()}draw(){this.frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.
-dataset.drawn="true",isComplete&&(this.frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),this.playing&&
-(this.header?.slices.times.length??1)>1&&!this.options.reader&&this.card.update(),this.setSharp(isComplete&&!this.playing),
-this.sharp||this.request()}setSharp(sharp){sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&
-(this.card.update(),this.options.onFrame?.()))}request(){!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){
-let ratio=Math.max(window.devicePixelRatio||1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].
-map(n=>Math.max(Math.round(n*ratio),1));if(width===this.canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;
-painter.resize?painter.resize(width,height):[canvas.width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=
-this.aspect,isEqual2(this.camera.state,this.camera.start)&&this.place()),this.change()}get ratio(){return this.canvas.height/
-Math.max(this.stage.clientHeight,1)}lost(){this.header&&this.painter.open?.(this.header),this.setSharp(!1)}get scene(){return this.
-painter.scene??null}get tiles(){return this.painter.tiles??null}get shown(){return this.painter.shown??null}get lacking(){
-return this.painter.lacking??[]}lack(reason,tile,steps=[]){tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){
-if(!this.lifetime.isOver)try{this.painter.frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could \
-not be drawn.",String(error))}}advance(now){let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;
-!player.playing||!player.advance(now,isMade)||(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),
-this.panel.tick(),painter.restart?.(!1),this.setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||
-!camera)throw new Error("no scene is shown yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,
-player,rows:this.stage.clientHeight},shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.
-find(x,y)?.point??null}ground(x,y){let{header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){
-return this.canPick?this.painter.find?.(x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
+header.camera,null]),old&&old.generation!==header.generation&&(this.held.clear(name=>isElsewhere&&!keepsCamera||name.includes(
+"/")),header.surface?.length&&this.keepParts(header.surface)),this.panel.build(),this.resize(),this.change()}keepParts(names){
+for(let name of[...this.parts.keys()])name.includes("/")||names.includes(name)||(this.held.remove(name),this.scene?.forget(
+name))}recolour(changes){if(!this.header)return;let colours=this.grounded(changes);Object.assign(this.header,colours),Object.
+assign(this.given??{},changes),this.scene?.forget("scalars"),this.tiles?.recolour(colours),this.panel.showLegend(),this.
+change()}grounded(colours){return this.page.update(),colours.background===void 0?colours:(this.isOnPage=colours.background===
+null,{...colours,background:colours.background??this.page.colour})}chooseColours(choice){if(this.options.onColours)return this.
+options.onColours(choice);for(let viewer of this.together){if(!viewer.header)continue;let{colours,part}=recoloured(viewer.
+header,choice,viewer.parts);part&&viewer.setPart(part),viewer.recolour(colours)}}setPart(part){let{name}=part,tile=tilePart(
+name);if(tile)return void this.tiles?.setPart(tile[0],{...part,name:tile[1]});this.held.set(part)&&(this.scene?.forget(name),
+this.trim(),name==="cmap"&&this.tiles?.recolour(),["cmap","maps",...EARTH_LINES].includes(name)&&this.panel.showLegend(),
+this.change())}trim(){this.held.trim(this.header,this.options.source,this.player.moment.slice(0,2))}setSettings(settings){
+Object.entries(settings).every(([name,value])=>this.settings[name]===value)||(Object.assign(this.settings,settings),this.
+requests.follow(this.settings)&&this.renew(),this.panel.update(),this.change())}renew(){this.held.clear(name=>/^(flow|scalars|critical|separatrices)\//.
+test(name)),this.requests.stop(),this.header&&this.painter.open?.(this.header)}followSetting(name,value){name in(this.header?.
+own??{})||this.setSettings({[name]:value})}choose(name,value){this.holdDraft(),this.setSettings({[name]:value}),this.options.
+onSetting?.(name,value)}get cameraState(){let state=this.camera?.state??this.keptCamera??this.firstCamera;return state?copyOf(
+state):null}setCamera(state){if(!state)this.firstCamera=this.keptCamera=null,this.place();else if(!this.camera)[this.firstCamera,
+this.keptCamera]=[copyOf(state),null];else{if(isEqual2(this.camera.state,state))return;this.camera.state=copyOf(state)}this.
+change(!0)}reportCamera(){this.holdDraft(),this.change(!0),this.camera&&this.options.onCamera?.(copyOf(this.camera.state))}reset(){
+this.camera&&(this.place(),this.reportCamera())}place(){let{header,firstCamera:first,keptCamera:kept,aspect}=this,nodes=this.
+parts.get("position")?.data;if(!header||!nodes)return;let camera=this.camera=placedCamera(header,first,nodes,aspect);camera.
+pick=(x,y)=>this.point(x,y)?.position??this.ground(x,y),camera.state=kept??camera.state,this.keptCamera=null,this.panel.
+showAxes(),(!first||!isEqual2(first,camera.start))&&this.options.onCamera?.(copyOf(camera.state))}get aspect(){return Math.
+max(this.stage.clientWidth,1)/Math.max(this.stage.clientHeight,1)}get playing(){return this.player.playing}setTime(time){
+this.player.seek(time),this.panel.tick(),this.change()}followTime(time){let{timeShift=0}=this.header??{};if(timeShift===
+null)return;let[first,last]=this.player.span,own=time+timeShift;this.setTime(first<=own&&own<=last?own:last)}step(count2){
+let{player,options}=this;if(options.follows)return options.follows.step(count2);player.varies&&(this.pause(),this.setTime(
+player.stepFrom(count2)),options.onTime?.(player.time))}scrub(share){let{player,options}=this,{first,last}=player.range(
+this.settings),value=first+share*(last-first);this.holdDraft(),player.varies?(this.setTime(value),options.onTime?.(player.
+time)):(this.setClock(value),options.onClock?.(player.clock))}setClock(seconds){this.player.clock=seconds,this.panel.tick(),
+this.change()}play(){if(this.options.follows)return this.options.follows.play();this.playing||!this.header||(!this.player.
+varies&&this.settings.motion==="off"&&this.choose("motion","speed"),this.player.start(),this.panel.update(),this.request(),
+this.options.onPlaying?.(!0))}pause(){if(this.options.follows)return this.options.follows.pause();this.playing&&(this.player.
+playing=!1,this.panel.update(),this.change(),this.options.onPlaying?.(!1))}togglePlaying(){let leader=this.options.follows??
+this;leader.playing?leader.pause():leader.play()}holdDraft(duration=STILL_MS){this.busyUntil=performance.now()+duration}get isHeld(){
+return performance.now()<this.busyUntil}change(cameraOnly=!1){this.painter.restart?.(cameraOnly),this.card.draw(),this.panel.
+showAxes(),this.setSharp(!1),this.request()}refine(){this.painter.refine?.(),this.setSharp(!1),this.request()}draw(){this.
+frame(performance.now(),performance.now()+FRAME_MS)}painted(isComplete){this.root.dataset.drawn="true",isComplete&&(this.
+frames+=1,this.root.dataset.frames=String(this.frames),this.panel.clear()),this.playing&&(this.header?.slices.times.length??
+1)>1&&!this.options.reader&&this.card.update(),this.setSharp(isComplete&&!this.playing),this.sharp||this.request()}setSharp(sharp){
+sharp!==this.sharp&&(this.sharp=sharp,this.root.dataset.sharp=String(sharp),sharp&&(this.card.update(),this.options.onFrame?.()))}request(){
+!this.lifetime.isOver&&this.isVisible&&this.graphics.request(this)}resize(){let ratio=Math.max(window.devicePixelRatio||
+1,.1),{clientWidth,clientHeight}=this.stage,[width,height]=[clientWidth,clientHeight].map(n=>Math.max(Math.round(n*ratio),
+1));if(width===this.canvas.width&&height===this.canvas.height)return;let{painter,canvas}=this;painter.resize?painter.resize(
+width,height):[canvas.width,canvas.height]=[width,height],this.camera&&(this.camera.aspect=this.aspect,isEqual2(this.camera.
+state,this.camera.start)&&this.place()),this.change()}get ratio(){return this.canvas.height/Math.max(this.stage.clientHeight,
+1)}lost(){this.header&&this.painter.open?.(this.header),this.setSharp(!1)}get scene(){return this.painter.scene??null}get tiles(){
+return this.painter.tiles??null}get shown(){return this.painter.shown??null}get lacking(){return this.painter.lacking??[]}lack(reason,tile,steps=[]){
+tile!==void 0&&this.tiles?.fail(tile,steps),this.panel.tell(reason)}frame(now,until){if(!this.lifetime.isOver)try{this.painter.
+frame(now,until)}catch(error){this.pause(),this.panel.fail("The picture could not be drawn.",String(error))}}advance(now){
+let{player,options,painter}=this,isMade=steps=>painter.make?.(steps,now)??!0;!player.playing||!player.advance(now,isMade)||
+(player.varies?options.onTime?.(player.time):options.onClock?.(player.clock),this.panel.tick(),painter.restart?.(!1),this.
+setSharp(!1))}view(shown,density){let{header,camera,scene,player}=this;if(!header||!camera)throw new Error("no scene is \
+shown yet");let anchor=scene?.anchor??[0,0,0];return viewState({header,camera,anchor,player,rows:this.stage.clientHeight},
+shown,density)}get canPick(){return this.painter.canPick??!1}point(x,y){return this.find(x,y)?.point??null}ground(x,y){let{
+header,camera}=this;return header&&camera&&groundAt(header,camera,x,y)}find(x,y){return this.canPick?this.painter.find?.(
+x,y)??null:null}};var EVENTS={onCamera:"camera",onTime:"time",onClock:"clock",onPlaying:"playing",onSetting:"setting",onPoint:"point",onControls:"\
 controls",onAxes:"axes",onFrame:"frame",onError:"error"},FlowtexView=class extends HTMLElement{options={};viewers=[];shown=[];connectedCallback(){
 let{style}=this;this.classList.add("flowtex-views"),style.display||="flex",style.gap||="2px",style.width||="100%",style.
 height||="100%"}get first(){return this.viewers[0]}get scenes(){return this.shown}set scenes(scenes2){let sources=scenes2.

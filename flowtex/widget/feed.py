@@ -88,6 +88,8 @@ class Feed:
         #: Steps that are on their way, and until when they are not sent to who asks.
         self._coming: tuple[float, tuple[int, ...]] = (0.0, ())
         self._sent: dict[str, str] = {}
+        #: Names of the parts of a scene that replaced another one.
+        self._surface: list[str] = []
         self.picture: bytes | None = None
         self.pictured, self.settled = threading.Event(), threading.Event()
         self.scene = self._first()
@@ -101,7 +103,8 @@ class Feed:
     @property
     def header(self) -> Header:
         """Header of the present scene, without settings and camera."""
-        return {**self.scene.constants(), "generation": self._generation}
+        told = {"generation": self._generation, "surface": self._surface}
+        return {**self.scene.constants(), **told}
 
     def start(self) -> None:
         """Send what is shown first, without being asked, and then make the whole of it.
@@ -277,6 +280,10 @@ class Feed:
             self._source.close()
             self._source = TileSource(scene)
             self._generation += 1
+            self._surface = [name for name in parts if "/" not in name]
+            # A client removes all others.
+            kept = [name for name in self._sent if "/" in name or name in parts]
+            self._sent = {name: self._sent[name] for name in kept}
             self._announce(self.header)
             if self._live:
                 self._expect(scene)

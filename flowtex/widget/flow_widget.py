@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import traitlets
 
+from flowtex.camera import Camera, are_alike
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
@@ -79,7 +80,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     Attributes
     ----------
     field
-        The flow; ``widget.field = mesh`` shows another one with the same settings and camera.
+        The flow; ``widget.field = mesh`` shows another one with the same settings, and with the
+        same camera unless that would miss it.
     {appearance}
         Arguments of the constructor, which can be changed.
     camera
@@ -197,14 +199,20 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     @property
     def field(self) -> FlowField:
-        """The flow. Assign another flow or mesh to show it with the same camera and settings."""
+        """The flow. Assign another flow or mesh to show it with the same settings.
+
+        The camera stays as well, unless it would miss the other surface.
+        """
         return self.scene.field
 
     @field.setter
     def field(self, mesh: Any) -> None:
         reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
-        self._views.show(share_field(reading.field(mesh)))
+        before, field = self.field.surface, share_field(reading.field(mesh))
+        self._views.show(field)
         self._frame = None
+        if not are_alike(before, field.surface):
+            self.camera = Camera.fit(field.surface, PREVIEW[0] / PREVIEW[1]).to_dict()
 
     def set_image(self, image: Any) -> None:
         """Advect another image, given as for the argument ``image``."""

@@ -23,6 +23,7 @@ from waiting import PATIENCE_S, wait_until
 import flowtex
 from flowtex import FieldError, examples
 from flowtex._util.colours import colour_table
+from flowtex.camera import Camera
 from flowtex.earth import Projection
 from flowtex.examples._double_gyre import nodes as nodes_of
 from flowtex.settings import TABLE
@@ -577,6 +578,23 @@ def test_another_flow_takes_the_place_of_the_first(
     # Settings reach what is shown now.
     widget.noise = "spots"
     heard.wait(lambda: "noise" in heard.arrays)
+
+
+@pytest.mark.parametrize(
+    ("scale", "shift", "same"), [(2.0, 0.1, True), (5.0, 0.0, False), (1.0, 3.0, False)]
+)
+def test_a_camera_that_would_miss_another_flow_shows_it_whole(
+    make: Make, scale: float, shift: float, same: bool
+) -> None:
+    widget = make(gyre(), zoom=4.0)
+    camera, at = dict(widget.camera), scale * nodes_of((9, 9)) + shift
+    widget.field = flowtex.FlowField.from_arrays(at, at + 1)
+    whole = Camera.fit(widget.field.surface, 480 / 300).to_dict()
+    assert widget.camera == (camera if same else whole)
+    points, triangles = sphere(2)
+    points += widget.field.surface.center
+    widget.field = flowtex.FlowField.from_triangles(points, triangles, points[:, ::-1])
+    assert not widget.camera["parallel"]
 
 
 def test_a_mesh_is_read_as_the_first_one_was(make: Make) -> None:

@@ -208,6 +208,7 @@ class TrameView {
       try {
         const parts = await loads[n](null, [], undefined, undefined, name);
         if (this.scenes !== scenes) return;
+        if (!name) viewer.keepParts(parts.map((part) => part.name));
         for (const part of parts) viewer.setPart(part);
         this.loaded[n] = generation;
       } catch (error) {
