@@ -140,10 +140,24 @@ def cartopy() -> Picture:
         ax.gridlines(linewidth=0.3, color="k")
         ax.set_title(type(projection).__name__)
     figure.colorbar(image, ax=figure.axes, label=image.colour_label, shrink=0.6)
-    figure.canvas.draw()
-    picture = np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()  # type: ignore[attr-defined]
-    plt.close(figure)
-    return picture
+    return _drawn(figure)
+
+
+def polar() -> Picture:
+    """Draw a stream past a cylinder on polar axes, with the arrows of quiver."""
+    import matplotlib.pyplot as plt
+
+    angle, radius = np.linspace(0, 2 * np.pi, 97), np.linspace(0.5, 2, 41)
+    a, r = np.meshgrid(angle, radius)
+    u, v = -(1 + 0.25 / r**2) * np.sin(a), (1 - 0.25 / r**2) * np.cos(a)
+    field = flowtex.FlowField.from_arrays((angle, radius), np.stack([u, v], axis=-1))
+    figure, both = plt.subplots(1, 2, figsize=(9, 4), subplot_kw={"projection": "polar"})
+    both[1].set(theta_zero_location="N", theta_direction=-1, rorigin=-0.5)
+    few = slice(2, None, 6), slice(None, -1, 8)
+    for ax in both:
+        flowtex.axes(ax, field)
+        ax.quiver(a[few], r[few], (u / r)[few], v[few], angles="xy", color="w")
+    return _drawn(figure)
 
 
 def ocean() -> Picture:
@@ -507,9 +521,19 @@ def _coasts(color: str) -> dict[str, Any]:
 STILLS = (
     *(wake, globe, cartopy, ocean, zooms, critical, vortices, sphere, torus, level_of_detail),
     *(grain, levels, correction, kernels, arrows, structure, patterns, half_turns, gyre, nine),
-    webmap,
+    *(polar, webmap),
 )
 PICTURES: dict[str, Callable[[], Picture]] = {f.__name__: f for f in STILLS}
+
+
+def _drawn(figure: Any) -> Picture:
+    """Return the pixels of a figure of matplotlib, and close it."""
+    import matplotlib.pyplot as plt
+
+    figure.canvas.draw()
+    picture = np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()
+    plt.close(figure)
+    return picture
 
 
 def _row(pictures: list[Picture], gap: int = 8) -> Picture:

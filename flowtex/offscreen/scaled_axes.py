@@ -158,7 +158,8 @@ class AxesScales:
         if not self.polar or field.triangles is not None:
             return shown
         # The angle may go around.
-        closed = FlowField.from_arrays(shown.points, shown.velocity, valid=valid, scalars=known)
+        given: dict[str, Any] = {"valid": valid, "scalars": known, "sign_free": field.sign_free}
+        closed = FlowField.from_arrays(shown.points, shown.velocity, **given)
         names = ("points", "velocity", "valid", "has_position", "scalars", "periodic")
         return replace(shown, **{name: getattr(closed, name) for name in names})
 
