@@ -95,6 +95,26 @@ class AxesScales:
             raise _missed(values)
         return np.stack([values[known].min(axis=0), values[known].max(axis=0)])
 
+    def _slope(self, points: Floats, step: Floats) -> Floats:
+        """Return how a velocity goes on the axes, (..., 2, 2), from steps to either side."""
+        near = points.copy()
+        if self.polar:  # the centre has no direction along the angle
+            *_, origin, sign = self.polar
+            beside = np.maximum(sign * (near[..., 1] - origin), 2 * step[..., 1])
+            near[..., 1] = origin + sign * beside
+        # Columns are the ways on the axes for a unit of either value.
+        slope = np.stack(
+            [
+                (self.on_map(near + way) - self.on_map(near - way)) / (2 * step[..., n, None])
+                for n, way in enumerate(np.moveaxis(step[..., None] * np.eye(2), -1, 0))
+            ],
+            axis=-1,
+        )
+        if self.polar:  # a velocity along the angle has the unit of the radius
+            with np.errstate(all="ignore"):  # at radius 0 beyond a hole it has no rate
+                slope[..., 0] /= near[..., 1, None]
+        return slope
+
     def field(self, field: FlowField, frame: Floats) -> FlowField:
         """Return a flat field as the axes show it; nodes that these do not have are blanked.
 
@@ -110,24 +130,11 @@ class AxesScales:
         scaled = self.on_map(points)
         on_axes = np.isfinite(scaled).all(axis=-1)
         step = np.maximum(STEP * np.abs(points), LEAST_STEP * (high - low))
-        near = points.copy()
-        if self.polar:  # the centre has no direction along the angle
-            *_, origin, sign = self.polar
-            beside = np.maximum(sign * (near[..., 1] - origin), 2 * step[..., 1])
-            near[..., 1] = origin + sign * beside
-        # Columns are the ways on the axes for a unit of either value.
-        slope = np.stack(
-            [
-                (self.on_map(near + way) - self.on_map(near - way)) / (2 * step[..., n, None])
-                for n, way in enumerate(np.moveaxis(step[..., None] * np.eye(2), -1, 0))
-            ],
-            axis=-1,
-        )
-        if self.polar:  # a velocity along the angle has the unit of the radius
-            slope[..., 0] /= near[..., 1, None]
+        slope = self._slope(points, step)
         valid = field.valid & on_axes & np.isfinite(slope).all(axis=(-1, -2))
         if not valid.any():
             raise _missed(points)
+        slope[~valid] = 0.0
 
         def planar(two: AnyArray, blank: AnyArray) -> Floats:
             """Return vectors (..., 3) of two components, with others at nodes that are blanked."""

@@ -349,6 +349,10 @@ def test_polar_axes_begin_at_the_centre_and_may_be_elsewhere(figure: Figure) -> 
     # A uniform flow goes through the centre.
     x, y = image.flow.points[10, :, :2].T
     assert x.mean() == pytest.approx(y.mean(), abs=0.01)
+    ax.set_rorigin(-1)
+    pixels(figure)
+    assert image.flow.valid[1:].all() and not image.flow.valid[0].any(), "the angle has no rate"
+    ax.set_rorigin(None)
     ax.set_rlim(5, 6)
     x, y = ax.transData.transform((1.0, 5.5)).astype(int)
     for _ in range(2):
