@@ -275,7 +275,7 @@ def _serve(folder: Path) -> None:
         upload.parts.clear()
         return whole
 
-    FakeMultipart.complete = completed  # type: ignore[assignment]
+    FakeMultipart.complete = completed
     log = folder / "requests.txt"
     log.touch()
     app = _Told(DomainDispatcherApplication(create_backend_app), log)
