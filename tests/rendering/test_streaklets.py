@@ -19,7 +19,7 @@ from flowtex.rendering.uniforms import ViewState, is_sparse
 from flowtex.scene import Scene
 from flowtex.settings import Settings
 
-SIZE = (180, 120)
+SIZE = (120, 80)
 #: Pixels along the border that are not judged.
 BORDER = quality.SENSE_WINDOW // 2
 
