@@ -279,13 +279,7 @@ def _serve(folder: Path) -> None:
     log = folder / "requests.txt"
     log.touch()
     app = _Told(DomainDispatcherApplication(create_backend_app), log)
-    server = make_server(
-        "127.0.0.1",
-        0,
-        app,
-        threaded=True,
-        request_handler=MotoRequestHandler,
-    )
+    server = make_server("127.0.0.1", 0, app, threaded=True, request_handler=MotoRequestHandler)
     (folder / "port.txt").write_text(str(server.port), encoding="utf-8")
     server.serve_forever()
 

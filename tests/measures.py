@@ -92,11 +92,7 @@ def _half(g: Floats, start: Floats, places: Iterator[Floats]) -> float:
 
 
 def carried(
-    first: AnyArray,
-    second: AnyArray,
-    dx: Floats,
-    dy: Floats,
-    margin: int | Bools,
+    first: AnyArray, second: AnyArray, dx: Floats, dy: Floats, margin: int | Bools
 ) -> float:
     """Correlation of a picture, moved by (dx, dy) pixels right and down, with the next one.
 

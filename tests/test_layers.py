@@ -413,14 +413,7 @@ def loaded() -> dict[str, set[str]]:
     load a library of ``SLOW``, comes last.
     """
     names = [module_name(path, PACKAGE) for path in PACKAGE.rglob("*.py")]
-    rooms = (
-        *VTK.on_load,
-        "widget",
-        "display",
-        "cli",
-        "xarray",
-        "pyramid.objects",
-    )
+    rooms = (*VTK.on_load, "widget", "display", "cli", "xarray", "pyramid.objects")
     below = sorted(f"flowtex.{name}" for name in names if name and not is_in(name, rooms))
     assert "flowtex.diagnostics" in below and "flowtex.web.export" in below
     stages = {"flowtex": ["flowtex"], "below VTK": below, "flowtex.widget": ["flowtex.widget"]}

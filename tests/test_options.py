@@ -73,13 +73,7 @@ def test_what_a_call_has_no_use_for_is_refused() -> None:
 
 @pytest.mark.parametrize(
     "function",
-    [
-        flowtex.render,
-        flowtex.show,
-        flowtex.movie,
-        flowtex.export,
-        flowtex.FlowWidget.__init__,
-    ],
+    [flowtex.render, flowtex.show, flowtex.movie, flowtex.export, flowtex.FlowWidget.__init__],
 )
 def test_signature_and_docstring_show_every_option(function: Any) -> None:
     parameters = inspect.signature(function).parameters

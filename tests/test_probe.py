@@ -361,11 +361,7 @@ def test_a_path_around_a_ring_comes_back() -> None:
         ((1.0, 3.0), 0.0, r"pixel is 0\.0; expected a positive length"),
         ((1.0, 3.0), np.nan, "pixel is nan"),
         ((1.0, 3.0), Camera((0, 0, -1), (0, 0, -2), (0, 1, 0)), "is behind the camera"),
-        (
-            (1.0, 3.0),
-            Camera((0, -9, 0), (0, 0, 0), (0, 0, 1), parallel=True),
-            "seen edge-on",
-        ),
+        ((1.0, 3.0), Camera((0, -9, 0), (0, 0, 0), (0, 0, 1), parallel=True), "seen edge-on"),
     ],
 )
 def test_what_cannot_be_read_is_refused(

@@ -79,10 +79,7 @@ CALLS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "slices.downsample": (lambda **given: slices().downsample(**given), {"factor": 1}),
     "save": (lambda **given: slices().save(**given), {"path": "a.npz"}),
     "open": (TraceSlices.open, {"path": None}),
-    "Camera": (
-        flowtex.Camera,
-        {"position": (0, 0, 1), "focal_point": (0, 0, 0), "up": (0, 1, 0)},
-    ),
+    "Camera": (flowtex.Camera, {"position": (0, 0, 1), "focal_point": (0, 0, 0), "up": (0, 1, 0)}),
     "Settings": (flowtex.Settings, {name: row.default for name, row in TABLE.items()}),
     "Scene": (
         lambda **given: Scene.of(field(), **given),
@@ -95,10 +92,7 @@ CALLS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
         flowtex.extent,
         {"mesh": field, "size": (20, 10), "margin": 0.1, "zoom": 1.0, "focus": None},
     ),
-    "export": (
-        flowtex.export,
-        {"mesh": field, "path": "a.html", "steps": None, "store": None},
-    ),
+    "export": (flowtex.export, {"mesh": field, "path": "a.html", "steps": None, "store": None}),
     "build": (
         flowtex.pyramid.build,
         {"source": field, "store": "a.zarr", "lines": "auto", "memory": None},

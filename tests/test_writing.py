@@ -44,10 +44,7 @@ MEMORY = {
     "widget/views.py: Image.fromarray(np.hstack(columns)).save",
 }
 #: ... a file in a temporary folder, or one without a name, ...
-TEMPORARY = {
-    "app/server/uploads.py: path.open",
-    "offscreen/encoders.py: tempfile.TemporaryFile",
-}
+TEMPORARY = {"app/server/uploads.py: path.open", "offscreen/encoders.py: tempfile.TemporaryFile"}
 #: ... or belongs to the system.
 SYSTEM = {
     "_util/child/worker.py: Path('/proc/self/oom_score_adj').write_text",

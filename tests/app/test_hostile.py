@@ -548,11 +548,7 @@ def test_a_page_that_closes_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatc
             await until(lambda: "k=5" in gates)
             app.close()
             gates.setdefault("k=5", threading.Event()).set()
-            tasks = [
-                app.controllers.data._opening,
-                app.controllers.sharing._task,
-                reading,
-            ]
+            tasks = [app.controllers.data._opening, app.controllers.sharing._task, reading]
             await asyncio.wait([task for task in tasks if task is not None], timeout=PATIENCE_S)
             assert all(task is None or task.done() for task in tasks)
             assert app.controllers.data.choice.plane == "k=3"

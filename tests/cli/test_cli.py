@@ -84,7 +84,7 @@ def test_the_version_is_printed(run: Run) -> None:
     assert run("--version") == (0, flowtex.__version__, "")
 
 
-def test_every_setting_is_a_flag_with_its_sentence(run: Run) -> None:
+def test_every_setting_and_option_is_a_flag_with_its_sentence(run: Run) -> None:
     _, out, _ = run("render", "--help")
     plain = "".join(c for c in out if c.isalnum())
     for row in TABLE.values():
@@ -93,6 +93,11 @@ def test_every_setting_is_a_flag_with_its_sentence(run: Run) -> None:
         assert first in plain
         if row.kind is bool:
             assert f"--no-{row.name.replace('_', '-')}" in out
+    for kind in (FieldOptions, Appearance, ViewOptions):
+        for name in set(kind.__dataclass_fields__) - {"times"}:  # a file has its own
+            assert f"--{name.replace('_', '-')}" in out
+    for words in ("1 is opaque, 0 invisible", "[default: 1.0]", "--no-lighting"):
+        assert words in out
 
 
 @pytest.mark.parametrize("command", ["demo", "show"])
@@ -167,10 +172,7 @@ def test_flow_that_leaves_the_surface_is_told(
             "--isel is number=x; expected an axis and a whole number",
         ),
         ("render {gyre} -o {tmp}/a.png --isel number=2", "--isel applies to data of the Earth"),
-        (
-            "render {gyre} -o {tmp}/a.png --log-scale --clim 0,1",
-            "--log-scale is True",
-        ),
+        ("render {gyre} -o {tmp}/a.png --log-scale --clim 0,1", "--log-scale is True"),
         (
             "render {gyre} -o {tmp}/a.png --beside lod",
             "expected name=value, such as --beside lod=false",
@@ -433,19 +435,6 @@ def test_range_and_background_are_flags(run: Run, gyre: Path, tmp_path: Path) ->
     assert "--clim is '1'; expected two numbers" in run(*words, "--clim", "1")[2]
     assert "the colour 'blurple'" in run(*words, "--background", "blurple")[2]
     assert "axes is 'scale', but only browsers draw axes" in run(*words, "--axes", "scale")[2]
-
-
-def test_every_option_is_a_flag_with_its_sentence(run: Run) -> None:
-    _, out, _ = run("render", "--help")
-    for kind in (FieldOptions, Appearance, ViewOptions):
-        for name in set(kind.__dataclass_fields__) - {"times"}:  # a file has its own
-            assert f"--{name.replace('_', '-')}" in out
-    for words in (
-        "1 is opaque, 0 invisible",
-        "[default: 1.0]",
-        "--no-lighting",
-    ):
-        assert words in out
 
 
 @pytest.mark.parametrize(

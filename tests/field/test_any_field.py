@@ -103,10 +103,11 @@ def test_what_was_given_is_neither_changed_nor_kept() -> None:
         "points": damaged(PLANE, 1e20),
         "velocity": damaged(np.stack([WIND, WIND]), np.nan, (slice(None), 1, 1, 0)),
         "times": np.array([0.0, 1.0]),
+        "valid": np.ones((4, 4), bool),
         "scalars": {"p": damaged(PLANE[..., 0], 1e300, (1, 1))},
     }
     given["scalars"]["q"] = np.ma.masked_array(PLANE[..., 0], PLANE[..., 0] > 1)
-    before = {key: np.array(given[key]) for key in ("points", "velocity", "times")}
+    before = {key: np.array(given[key]) for key in ("points", "velocity", "times", "valid")}
     field = FlowField.from_arrays(**given)
     for key, array in before.items():
         np.testing.assert_array_equal(given[key], array)

@@ -10,7 +10,7 @@ from range_server import range_server
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.pyramid import PyramidError, is_store, open_store
-from flowtex.pyramid.places import fault_words, place_text, store_at
+from flowtex.pyramid.places import place_text, store_at
 
 pytest.importorskip("zarr")
 pytest.importorskip("obstore")
@@ -79,9 +79,3 @@ def test_nothing_is_written_to_the_web() -> None:
     assert not is_store(3) and not is_store("flow.vts")
     with pytest.raises(PyramidError, match="is read-only"):
         store_at("https://host/flow.zarr", read_only=False)
-
-
-def test_what_servers_say_is_not_repeated() -> None:
-    words = fault_words(OSError("status code: 418 body hidden"))
-    assert words == "could not be read: the server answered with status 418"
-    assert "hidden" not in fault_words(ValueError("hidden"))

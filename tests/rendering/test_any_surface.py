@@ -84,10 +84,7 @@ def test_a_graded_mesh_shows_what_a_grid_of_as_many_nodes_does() -> None:
         u, v = np.moveaxis(bend(px, py), -1, 0)
         one, other = (
             streaks(
-                flowtex.render(field, size=SIZE, zoom=zoom, focus=focus, scalars=False),
-                u,
-                v,
-                mask,
+                flowtex.render(field, size=SIZE, zoom=zoom, focus=focus, scalars=False), u, v, mask
             )
             for field in fields
         )

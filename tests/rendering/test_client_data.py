@@ -11,7 +11,6 @@ from triangle_meshes import sphere, surface_of
 import flowtex
 from flowtex import FlowField, examples
 from flowtex._util.colours import colour_table
-from flowtex.camera import Camera
 from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import part_info
@@ -167,30 +166,6 @@ def test_evenly_chosen_numbers() -> None:
     assert even_steps(4, 1) == (3,)
     with pytest.raises(ValueError, match=r"^steps is 0; expected 1 to 4"):
         even_steps(4, 0)
-
-
-@pytest.mark.parametrize("aspect", [1.5, 0.6])
-@pytest.mark.parametrize("make", [plane, ball])
-@pytest.mark.parametrize("view", [{}, {"zoom": 5.0}, {"zoom": 40.0, "focus": (0.3, 0.2, 0.1)}])
-def test_the_first_look_is_that_of_vtk(make: Any, view: Any, aspect: float, opengl: Any) -> None:
-    import pyvista as pv
-
-    from flowtex.plotting.vtk_camera import look
-
-    plotter = pv.Plotter(off_screen=True, window_size=[int(300 * aspect), 300])
-    field = make()
-    look(plotter, field, **view)
-    found, camera = Camera.fit(field.surface, aspect, **view), plotter.camera
-    for name in ("position", "focal_point", "up"):
-        np.testing.assert_allclose(getattr(found, name), getattr(camera, name), atol=1e-9)
-    assert found.parallel == bool(camera.parallel_projection)
-    if found.parallel:
-        assert found.parallel_scale == pytest.approx(camera.parallel_scale)
-    else:
-        assert found.view_angle == pytest.approx(camera.view_angle)
-    plotter.close()
-    if not view:
-        assert 0.8 < np.abs(found.project(field.surface.points[field.valid], aspect)).max() < 1.0
 
 
 def test_colour_maps_of_every_kind() -> None:

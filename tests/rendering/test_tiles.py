@@ -55,11 +55,7 @@ POLE = {"camera": [(0.9, 0.2, 1.9), (0, 0, 1), (0, 1, 0)]}
 #: than the whole, and the last lags of tiles are others. The middle of a curved surface is that of
 #: its root, and tiles of a flow that varies are integrated, not composed.
 CASES: dict[Any, list[tuple[dict[str, Any], float]]] = {
-    flat: [
-        (PLAIN, 1.6),
-        (NEAR | {"scalars": "speed"}, 0.9),
-        (PLAIN | NEAR | {"zoom": 60.0}, 0.5),
-    ],
+    flat: [(PLAIN, 1.6), (NEAR | {"scalars": "speed"}, 0.9), (PLAIN | NEAR | {"zoom": 60.0}, 0.5)],
     land: [(PLAIN | NEAR, 0.9)],
     varying: [(PLAIN | NEAR | {"time": 0.13}, 5.0)],
     sphere: [(PLAIN | POLE, 3.5)],

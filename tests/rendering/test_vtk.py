@@ -25,10 +25,7 @@ SIZE = (400, 300)
 
 def gyre(x: Any, y: Any) -> tuple[Any, Any]:
     a = 0.1 * np.pi
-    return (
-        -a * np.sin(np.pi * x) * np.cos(np.pi * y),
-        a * np.cos(np.pi * x) * np.sin(np.pi * y),
-    )
+    return (-a * np.sin(np.pi * x) * np.cos(np.pi * y), a * np.cos(np.pi * x) * np.sin(np.pi * y))
 
 
 @cache

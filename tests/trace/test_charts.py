@@ -206,16 +206,6 @@ def test_all_nodes_of_a_pole_hold_the_same_slopes() -> None:
         )
 
 
-def test_slopes_change_as_little_over_the_pole_as_elsewhere() -> None:
-    field = rotation(X, 61, 120)
-    textures = TextureSet.build(SliceStore(field), Settings())
-    rows, columns = textures.grid.rows, textures.grid.columns
-    for layer in textures.layers()[:-1, rows.before :, columns.before :]:
-        over = np.concatenate([layer[8:0:-1, 60:120], layer[:9, :60]])[..., :3]
-        steps = np.linalg.norm(np.diff(over, axis=0), axis=-1)
-        assert steps[6:10].max() < 2 * steps.max(where=np.arange(16)[:, None] < 6, initial=0) + 1e-2
-
-
 def test_the_first_meridian_is_also_the_last() -> None:
     field = rotation(TILTED)
     slices = trace(field)

@@ -71,23 +71,6 @@ def test_a_path_ends_where_it_meets_a_mask() -> None:
     assert np.isfinite(slices.displacement).all()
 
 
-def test_nan_blanks_as_a_mask_does() -> None:
-    valid = np.ones((9, 15), bool)
-    valid[4, 6] = False
-    points = plane(9, 15)
-    v = np.broadcast_to([1.0, 0.2], points.shape)
-    masked = trace(FlowField.from_arrays(points, v, valid=valid, periodic=""))
-    blank = trace(FlowField.from_arrays(points, np.where(valid[..., None], v, np.nan), periodic=""))
-    np.testing.assert_array_equal(masked.displacement, blank.displacement)
-    np.testing.assert_array_equal(masked.reach, blank.reach)
-
-
-def test_paths_along_a_border_do_not_leave() -> None:
-    slices = trace(wind(5, 21, (1.0, 0.0)), lags=[1.0, 8.0])
-    np.testing.assert_allclose(slices.reach[0, 0], slices.reach[0, 2])
-    np.testing.assert_allclose(slices.reach[0, -1], slices.reach[0, 2])
-
-
 @pytest.mark.parametrize("tilt", [1e-14, -1e-14])
 def test_rounding_does_not_push_a_path_over_the_border_it_follows(tilt: float) -> None:
     slices = trace(wind(5, 21, (1.0, tilt)), lags=[1.0, 8.0])

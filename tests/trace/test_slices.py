@@ -120,9 +120,6 @@ def test_positions_at_the_slices_are_the_slices(slices: TraceSlices) -> None:
         expected = slices.nodes + slices.displacement[0, m]
         np.testing.assert_allclose(slices.positions(lag)[inside], expected[inside], atol=1e-5)
     assert inside.sum() > 500
-
-
-def test_positions_at_lag_zero_are_the_nodes(slices: TraceSlices) -> None:
     np.testing.assert_array_equal(slices.positions(0.0), slices.nodes)
 
 
@@ -237,8 +234,7 @@ def broken(path: Path, kind: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "kind",
-    ["text", "empty", "cut", "array", "other arrays", "arrays missing", "damaged", "pickle"],
+    "kind", ["text", "empty", "cut", "array", "other arrays", "arrays missing", "damaged", "pickle"]
 )
 def test_files_of_another_kind_are_refused(tmp_path: Path, kind: str) -> None:
     path = tmp_path / "slices.npz"
@@ -288,10 +284,6 @@ def test_other_arguments_are_checked(options: dict[str, Any], message: str) -> N
         trace(field, **options)
 
 
-def test_a_time_varying_field_is_followed_by_time() -> None:
-    assert trace(double_gyre_field(True, shape=(6, 11))).parameter == "time"
-
-
 def test_unit_scales_the_lags() -> None:
     field = double_gyre_field(shape=(11, 21))
     one = trace(field, lags=[1.0, 4.0], unit=0.05)
@@ -302,7 +294,9 @@ def test_unit_scales_the_lags() -> None:
 
 def test_automatic_lags_of_a_time_varying_field_reach_its_steps() -> None:
     for field in (vortex_field(), double_gyre_field(True, shape=(21, 41))):
-        lags = trace(field, steps=[0]).lags
+        slices = trace(field, steps=[0])
+        lags = slices.lags
+        assert slices.parameter == "time"
         step = np.diff(field.times)[0]
         np.testing.assert_allclose(np.log2(lags / step) % 1, 0, atol=1e-6)
         assert lags[0] <= step < lags[-1]

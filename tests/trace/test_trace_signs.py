@@ -12,8 +12,6 @@ from measures import grey, streaks
 import flowtex
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import Floats
-from flowtex.camera import Camera
-from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
@@ -180,16 +178,3 @@ def test_no_cut_is_seen(opengl: Any, index: float) -> None:
         assert found["coherence"] > 0.9
     # Wherever the cut is, and even where every other node is turned over.
     assert np.abs(pictures[0] - pictures[1])[mask].mean() < 0.5
-
-
-def test_both_renderers_agree(opengl: Any) -> None:
-    field = turned_over(line_field(grid(21), 0.5))
-    settings = Settings(samples=9)
-    textures = TextureSet.build(SliceStore(field), settings)
-    x, y, _ = field.surface.center
-    half = 0.5 * float(np.ptp(field.points[..., 1])) / 0.92
-    camera = Camera((x, y, 5.0), (x, y, 0.0), (0, 1, 0), parallel=True, parallel_scale=half)
-    texture = np.asarray(render(textures, settings, camera, SIZE).value)
-    plain = drawn(field, samples=9)
-    inside = (slice(30, -30), slice(30, -30))
-    assert np.corrcoef(texture[inside].ravel(), plain[inside].ravel())[0, 1] > 0.97

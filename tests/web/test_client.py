@@ -378,8 +378,7 @@ def test_playing_goes_through_the_times_and_asks_for_what_is_missing(client: Cli
     assert needed == {("load", 2)}
     assert number(client, "viewers[0].player.time") < 0.4 + 1e-9
     client.page.evaluate(
-        "(parts) => unpack(parts).forEach((part) => viewers[0].setPart(part))",
-        late,
+        "(parts) => unpack(parts).forEach((part) => viewers[0].setPart(part))", late
     )
     client.page.wait_for_function("() => viewers[0].player.time > 0.42")
     number(client, "viewers[0].setTime(0.79)")

@@ -182,9 +182,7 @@ def test_tiles_in_other_colours_are_the_same(
 
 
 def test_errors_are_told_to_who_asked(
-    make: Callable[..., Client],
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     client = make(swirl())
 
@@ -219,8 +217,7 @@ def test_tiles_are_not_taken_for_time_steps(make: Callable[..., Client]) -> None
 
 
 @pytest.mark.parametrize(
-    "wrong",
-    [{"key": 1}, {"key": [0, "a", 0]}, {"key": [0, 0]}, {"steps": [0.5]}, {"request": 3}],
+    "wrong", [{"key": 1}, {"key": [0, "a", 0]}, {"key": [0, 0]}, {"steps": [0.5]}, {"request": 3}]
 )
 def test_what_cannot_be_meant_is_not_answered(make: Callable[..., Client], wrong: Any) -> None:
     client = make(swirl())

@@ -41,10 +41,7 @@ class Place:
 async def place(**request: str) -> AsyncIterator[Place]:
     secret, said = new_secret(), list[str]()
     open_session = process_opener(
-        "hosted_sessions:host",
-        ("hosted_sessions",),
-        {"secret": secret, **request},
-        said.append,
+        "hosted_sessions:host", ("hosted_sessions",), {"secret": secret, **request}, said.append
     )
     site = Site(Sessions(open_session, limit=4, idle=10.0), secret)
     await site.prepare()

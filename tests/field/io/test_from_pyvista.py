@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from flowtex import FlowField
 from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
-from flowtex.field.io.planes import nodes_to_keep, spread
+from flowtex.field.io.planes import nodes_to_keep
 
 pv = pytest.importorskip("pyvista")
 
@@ -244,17 +244,6 @@ def test_hidden_cells_leak_nothing(how: str) -> None:
     assert np.array_equal(field.surface.cells, ~hidden.reshape(5, 6))
 
 
-def test_a_wall_one_cell_thick_stays_shut() -> None:
-    grid = with_flow(structured(7, 6))
-    ghosts = np.zeros((5, 6), np.uint8)
-    ghosts[:, 3] = HIDDEN_CELL
-    grid.cell_data["vtkGhostType"] = ghosts.ravel()
-    field = FlowField.from_pyvista(grid)
-    assert not field.surface.cells[:, 3].any()
-    assert field.surface.cells[:, :2].all()
-    assert field.surface.cells[:, 5].all()
-
-
 def test_cells_are_kept_as_they_are_shown() -> None:
     """No hidden cell is drawn, and one that is two cells away from any is."""
     rng = np.random.default_rng(6)
@@ -275,14 +264,6 @@ def test_duplicates_of_a_neighbouring_piece_are_kept() -> None:
     grid.point_data["vtkGhostType"] = np.full(12, 1, np.uint8)
     grid.cell_data["vtkGhostType"] = np.full(6, 1, np.uint8)
     assert FlowField.from_pyvista(grid).valid.all()
-
-
-def test_means_go_round_a_seam() -> None:
-    layers, visible = np.arange(12.0).reshape(1, 4, 3), np.ones((1, 4, 3), bool)
-    nodes = spread(layers, visible, (True, False))
-    assert nodes[:, 0].tolist() == [4.5, 1.5, 4.5, 7.5, 4.5]
-    open_nodes = spread(layers, visible, (False, False))
-    assert open_nodes[:, 0].tolist() == [0, 1.5, 4.5, 7.5, 9]
 
 
 def annulus() -> Any:
@@ -533,11 +514,7 @@ def moved() -> Any:
             "nodes along two of the axes",
         ),
         *(
-            (
-                empty,
-                {},
-                "the mesh has no nodes; check the file or filter that made it",
-            )
+            (empty, {}, "the mesh has no nodes; check the file or filter that made it")
             for empty in (pv.StructuredGrid(), pv.ImageData(), pv.RectilinearGrid())
         ),
         (
