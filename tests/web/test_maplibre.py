@@ -340,8 +340,10 @@ def test_the_map_asks_for_the_tiles_that_it_shows(
     currents_shown: Shown, server: RangeServer
 ) -> None:
     shown = currents_shown
+    shown.load()
+    shown.wait()
     server.reset(server.folder)
-    # The first views have shown the others; each tile is one object for the flow.
+    # The first view has shown the others; each tile is one object for the flow.
     shown.go(center=[12.0, 50.0], zoom=5)
     assert [path.split("/c/")[1] for path in server.paths if "0/flow/c/" in path] == ["0/1/2/0"]
     assert len(gzip.compress(asset("maplibre.js").read_bytes())) < MOST_BYTES
