@@ -93,6 +93,8 @@ def __getattr__(name: str) -> Any:
         return importlib.import_module(f"flowtex.{name}")
     if name in _DRAWS:
         importlib.import_module("flowtex.diagnostics").begin_trial()
+        if name != "show":  # in notebooks the browser draws
+            importlib.import_module("flowtex._util.extras").require_pyvista(f"flowtex.{name}")
     if name in _LAZY:
         return getattr(importlib.import_module(f"flowtex.{_LAZY[name]}"), name)
     msg = f"module 'flowtex' has no attribute {name!r}"

@@ -22,7 +22,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal
@@ -122,7 +122,9 @@ def begin_trial() -> Future[OpenGLReport]:
     trial = _trials.get(os.getpid())
     if trial is None:
         prefer_headless()
-        trial = ThreadPoolExecutor(1, "flowtex OpenGL").submit(run_trial, TRIAL_COMMAND)
+        from flowtex._util.threads import pool
+
+        trial = pool(1, "flowtex OpenGL").submit(run_trial, TRIAL_COMMAND)
         _trials[os.getpid()] = trial
     return trial
 

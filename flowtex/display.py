@@ -6,6 +6,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from flowtex._util.arguments import checked_size
+from flowtex._util.extras import require_pyvista
 from flowtex.errors import FieldError
 from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 
@@ -60,6 +61,7 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
         return _show_widget(mesh, size, options)
     from flowtex.diagnostics import has_display, prefer_headless, require_opengl
 
+    require_pyvista("a window or a page with a server")
     prefer_headless()
     require_opengl()
     if has_display():

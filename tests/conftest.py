@@ -19,6 +19,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import barred
 import numpy as np
 import pytest
 
@@ -43,6 +44,35 @@ sys.dont_write_bytecode = False
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # With it jsonschema, which Jupyter loads, builds parsers of addresses for four seconds.
 sys.modules["rfc3987_syntax"] = None  # type: ignore[assignment]
+if barred.WANTED:
+    barred.bar()
+
+
+def pytest_ignore_collect(collection_path: Path) -> bool | None:
+    """Leave out the files that load what is barred."""
+    file = barred.WANTED and collection_path.suffix == ".py"
+    return True if file and barred.needs_them(collection_path) else None
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_setup() -> Iterator[None]:
+    """Skip a test whose fixtures need what is barred."""
+    yield from _skipped_where_barred()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call() -> Iterator[None]:
+    """Skip a test that needs what is barred."""
+    yield from _skipped_where_barred()
+
+
+def _skipped_where_barred() -> Iterator[None]:
+    try:
+        yield
+    except Exception as error:
+        if barred.WANTED and (asker := barred.asker_of(error)):
+            pytest.skip(f"barred: {asker} asked for it ({error})")
+        raise
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -56,6 +86,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker("browser")
+        if barred.WANTED and item.get_closest_marker("threads"):
+            item.add_marker(pytest.mark.skip("barred: threads"))
     items.sort(key=lambda item: ("browser" in item.keywords, item.path not in slow))
 
 
@@ -105,17 +137,18 @@ class VtkLog:
 
 
 @pytest.fixture(scope="session")
-def vtk_log(tmp_path_factory: pytest.TempPathFactory) -> VtkLog:
-    """VTK's log; ``take()`` returns, and so forgives, what came since it was last called."""
-    return VtkLog(tmp_path_factory.mktemp("vtk") / "log.txt")
+def vtk_log(tmp_path_factory: pytest.TempPathFactory) -> VtkLog | None:
+    """VTK's log, if there is VTK; ``take()`` returns, and so forgives, what came since."""
+    return None if barred.WANTED else VtkLog(tmp_path_factory.mktemp("vtk") / "log.txt")
 
 
 @pytest.fixture(autouse=True)
-def _vtk_is_silent(request: pytest.FixtureRequest, vtk_log: VtkLog) -> Iterator[None]:
+def _vtk_is_silent(request: pytest.FixtureRequest, vtk_log: VtkLog | None) -> Iterator[None]:
     """Fail the test on any line that VTK logs; ``vtk_log_allowed(reason)`` excuses it."""
-    vtk_log.take()
+    if vtk_log is not None:
+        vtk_log.take()
     yield
-    logged = vtk_log.take()
+    logged = vtk_log.take() if vtk_log is not None else ""
     if logged and request.node.get_closest_marker("vtk_log_allowed") is None:
         pytest.fail(f"VTK logged:\n{logged}", pytrace=False)
 

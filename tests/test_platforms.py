@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import os
 import re
+import subprocess
 import sys
 from pathlib import Path, PureWindowsPath
 from typing import Any
@@ -40,6 +42,41 @@ def test_a_file_is_not_called_as_a_device_of_windows(name: str) -> None:
     files = pytest.importorskip("flowtex.app.server.files")
     assert not PureWindowsPath(files.plain_name(name)).is_reserved()
     assert files.plain_name("console.vts") == "console.vts"
+
+
+#: Tests of fields, paths, widgets and pages, which the same tests with everything barred end soon.
+BARRED = ("field/test_field.py", "trace/test_paths.py", "widget", "web/test_export.py")
+
+
+@pytest.mark.slow
+def test_the_core_needs_neither_vtk_nor_threads_nor_processes() -> None:
+    options = ("-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-rfE")
+    environment = {**os.environ, "FLOWTEX_BARRED": "1"}
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", *options, *(f"tests/{name}" for name in BARRED)],
+        cwd=PACKAGE.parent,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout
+    passed = re.search(r"(\d+) passed", done.stdout)
+    assert passed is not None and int(passed[1]) >= 150, done.stdout
+
+
+@pytest.mark.parametrize("missing", ["render", "movie", "axes"])
+def test_what_needs_vtk_says_what_does_without(
+    monkeypatch: pytest.MonkeyPatch, missing: str
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    told = rf"^flowtex\.{missing} needs PyVista and VTK.*pip install pyvista.*flowtex\.FlowWidget"
+    with pytest.raises(ModuleNotFoundError, match=told):
+        getattr(flowtex, missing)
+    with pytest.raises(ModuleNotFoundError, match=r"^a flow from an object of type list needs"):
+        flowtex.FlowField.from_pyvista([])
+    with pytest.raises(ModuleNotFoundError, match=r"^a mesh needs PyVista and VTK"):
+        flowtex.examples.double_gyre(0.0)
 
 
 def test_what_a_console_cannot_show_ends_nothing(

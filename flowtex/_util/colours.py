@@ -38,11 +38,15 @@ def rgb(colour: Any) -> tuple[float, float, float]:
         # A text such as "0.5" is a grey to matplotlib, and no colour to PyVista.
         if is_color_like(colour) and not colour.replace(".", "", 1).isdecimal():
             return to_rgb(colour)
-    import pyvista as pv
-
+    shares = np.asarray(colour) if isinstance(colour, tuple) else np.empty(0)
+    if shares.shape == (3,) and shares.dtype == float and ((shares >= 0) & (shares <= 1)).all():
+        red, green, blue = np.rint(shares * 255) / 255  # as PyVista rounds them
+        return float(red), float(green), float(blue)
     try:
+        import pyvista as pv
+
         red, green, blue = pv.Color(colour).float_rgb
-    except (TypeError, ValueError, OverflowError) as error:
+    except (TypeError, ValueError, OverflowError, ModuleNotFoundError) as error:
         msg = (
             f"the colour {colour!r} does not exist; expected a name such as black, #rrggbb, or "
             "(r, g, b)"
@@ -76,9 +80,9 @@ def _named_table(name: Any) -> Bytes:
     if callable(known):
         # Rounded down, as PyVista does, so that all renderers have the same colours.
         return np.asarray(np.asarray(known(np.linspace(0, 1, ENTRIES))) * 255, dtype=np.uint8)
-    import pyvista as pv
-
     try:
+        import pyvista as pv
+
         return _resampled(np.asarray(pv.LookupTable(name, n_values=ENTRIES).values))
     except (TypeError, ValueError, ModuleNotFoundError) as error:
         hint = near_names(name, colormaps, CMAPS) if isinstance(name, str) else "expected a name"

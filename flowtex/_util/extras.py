@@ -1,4 +1,4 @@
-"""The command that installs an optional part of flowtex."""
+"""What installs an optional part of flowtex, or does for it where there is none."""
 
 from __future__ import annotations
 
@@ -16,6 +16,20 @@ def import_extra(module: str, extra: str) -> Any:
     except ModuleNotFoundError as error:
         msg = f"{module} is missing; install it with {install_extra(extra)}"
         raise ModuleNotFoundError(msg, name=module) from error
+
+
+def require_pyvista(what: str) -> None:
+    """Import PyVista; the error says what does without it, as Python in a browser has to."""
+    try:
+        import_module("pyvista")
+    except ModuleNotFoundError as error:
+        msg = (
+            f"{what} needs PyVista and VTK, but {error.name} is missing; install it with "
+            "python -m pip install pyvista. Python in a browser has neither: make a field there "
+            "with FlowField.from_arrays or from_xarray, and draw it with flowtex.FlowWidget or "
+            "flowtex.export"
+        )
+        raise ModuleNotFoundError(msg, name=error.name) from error
 
 
 def install_extra(extra: str) -> str:

@@ -1,7 +1,7 @@
 """Progress bars for work of more than a second, and a way to cancel work in a thread.
 
-The bar is drawn by rich, in a terminal or a notebook. Work inside :func:`stoppable` is cancelled at
-its next call of :func:`check`.
+The bar is drawn by rich, in a terminal or a notebook, in a thread of its own; without threads there
+is none. Work inside :func:`stoppable` is cancelled at its next call of :func:`check`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from contextvars import ContextVar
 from typing import TYPE_CHECKING, TypeVar
 
 from flowtex._util.terminal.console import terminal
+from flowtex._util.threads import has_threads
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -56,7 +57,8 @@ def waiting(text: str) -> Iterator[Callable[[], None]]:
     status = terminal(stderr=True).status(Text(text))
     _waiting.append(status)
     try:
-        status.start()
+        if has_threads():
+            status.start()
         yield status.stop
     finally:
         status.stop()
@@ -65,7 +67,7 @@ def waiting(text: str) -> Iterator[Callable[[], None]]:
 
 def track(items: Iterable[T], total: int, text: str, *, show: bool = True) -> Iterator[T]:
     """Yield the items, with a progress bar once they have taken a second."""
-    start = time.monotonic()
+    show, start = show and has_threads(), time.monotonic()
     bar = task = None
     try:
         for count, item in enumerate(items):

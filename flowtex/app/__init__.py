@@ -23,6 +23,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from flowtex._util.extras import require_pyvista
+
 if TYPE_CHECKING:
     from flowtex.app.controllers.library import Choice, Library
     from flowtex.app.flow_app import FlowApp, serve
@@ -44,6 +46,8 @@ _HOMES = {
 
 def __getattr__(name: str) -> Any:
     if name in _HOMES:
+        if name in ("FlowApp", "FlowArea"):
+            require_pyvista(f"flowtex.app.{name}")
         return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
     msg = f"module {__name__!r} has no attribute {name!r}"
     raise AttributeError(msg)

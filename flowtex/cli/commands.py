@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError
 
-from flowtex._util.ending import Ended, ended_by_signals
+from flowtex._util.terminal.ending import Ended, ended_by_signals
 from flowtex.cli import page
 from flowtex.cli.console import complain
 from flowtex.cli.formula import formula

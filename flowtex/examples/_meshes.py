@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flowtex._util.arguments import checked_number
+from flowtex._util.extras import require_pyvista
 from flowtex.examples._double_gyre import EPSILON, nodes
 from flowtex.examples._fields import (
     airfoil_field,
@@ -215,6 +216,7 @@ def to_grid(field: FlowField, step: int = -1) -> pv.StructuredGrid:
     >>> field = flowtex.examples.cylinder_field()
     >>> flowtex.examples.to_grid(field, step=0).save("first.vts")
     """
+    require_pyvista("a mesh")
     import pyvista as pv
 
     rows, columns = field.shape

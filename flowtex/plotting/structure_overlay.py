@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from typing import Any
 
 import numpy as np
 import pyvista as pv
 
 from flowtex._util.array_types import Floats
+from flowtex._util.threads import pool
 from flowtex.plotting.overlay import Overlay, piece_mesh
 from flowtex.rendering.structure_marks import (
     DOT_PX,
@@ -26,7 +27,7 @@ from flowtex.scene import Scene
 from flowtex.trace.structure import CriticalPoints
 
 #: Structures are found one after the other, beside what else goes on.
-_pool = ThreadPoolExecutor(1, thread_name_prefix="flowtex-structure")
+_pool = pool(1, "flowtex-structure")
 
 
 class StructureOverlay(Overlay):

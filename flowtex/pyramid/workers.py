@@ -7,7 +7,7 @@ import io
 import os
 import traceback
 from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, wait
 from contextlib import suppress
 from functools import cache
 from itertools import islice
@@ -15,6 +15,7 @@ from typing import Any
 
 from flowtex._util.extras import import_extra
 from flowtex._util.notices import notify
+from flowtex._util.threads import pool
 from flowtex.errors import FieldError
 from flowtex.pyramid.places import PyramidError, plain_faults
 
@@ -85,16 +86,16 @@ class Threads:
             return result
 
         count, left = self.count(need), iter(tasks)
-        with ThreadPoolExecutor(count, thread_name_prefix="flowtex-pyramid") as pool:
+        with pool(count, "flowtex-pyramid") as threads:
             # No more tasks wait than keep all workers busy: the caller may stop after a failure.
-            running = {pool.submit(tried, task) for task in islice(left, 2 * count)}
+            running = {threads.submit(tried, task) for task in islice(left, 2 * count)}
             try:
                 while running:
                     done, running = wait(running, return_when=FIRST_COMPLETED)
-                    running |= {pool.submit(tried, task) for task in islice(left, len(done))}
+                    running |= {threads.submit(tried, task) for task in islice(left, len(done))}
                     yield from [future.result() for future in done]
             finally:
-                pool.shutdown(wait=True, cancel_futures=True)
+                threads.shutdown(wait=True, cancel_futures=True)
 
     def close(self) -> None:
         """Nothing is kept open."""

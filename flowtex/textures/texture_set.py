@@ -26,13 +26,14 @@ from __future__ import annotations
 import contextvars
 import os
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats32, Halves
+from flowtex._util.threads import pool
 from flowtex._util.vectors import dot, norm
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -219,8 +220,8 @@ class TextureSet:
             nodal = self._nodal(slices, tangent, layer)
             self.geometry.write_texels(np.clip(nodal, -HALF_MAX, HALF_MAX, nodal), result[layer])
 
-        with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, 8)) as pool:
-            list(pool.map(make, range(count)))
+        with pool(min(os.cpu_count() or 1, 8), "flowtex-layers") as threads:
+            list(threads.map(make, range(count)))
         return result
 
     def _nodal(self, slices: TraceSlices, tangent: AnyArray, layer: int) -> Floats32:
@@ -325,7 +326,7 @@ class LayerPrefetch:
 
     def __init__(self, textures: TextureSet) -> None:
         self._textures = textures
-        self._pool: ThreadPoolExecutor | None = None
+        self._pool: Executor | None = None
         self._ready: tuple[tuple[int, int | None], Future[Halves]] | None = None
 
     def prepare(self, step: int, lags: int | None = None) -> None:
@@ -340,7 +341,7 @@ class LayerPrefetch:
         if self._ready is not None:
             self._ready[1].cancel()
         if self._pool is None:
-            self._pool = ThreadPoolExecutor(max_workers=1, thread_name_prefix="flowtex-prefetch")
+            self._pool = pool(1, "flowtex-prefetch")
         make = contextvars.copy_context().run
         self._ready = (step, lags), self._pool.submit(make, self._textures.layers, step, lags)
 

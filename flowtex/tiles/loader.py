@@ -11,7 +11,7 @@ import os
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import Executor, Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
@@ -21,6 +21,7 @@ import numpy as np
 from flowtex._util.array_types import Halves
 from flowtex._util.cache import ByteCache
 from flowtex._util.progress import Stopped, check, stoppable
+from flowtex._util.threads import pool
 from flowtex.textures import TextureSet, TriangleGeometry
 from flowtex.tiles.pyramid import Pyramid, TileKey
 
@@ -117,8 +118,8 @@ class TileLoader:
         self._wanted: dict[TileKey, float] = {}
         self._asked = 0.0
         self._running: dict[tuple[TileKey, int], Future[None]] = {}
-        self._lock = threading.Lock()
-        self._pool: ThreadPoolExecutor | None = None
+        self._lock = threading.RLock()
+        self._pool: Executor | None = None
 
     def keeps(self, key: TileKey) -> bool:
         """Whether a tile is in memory."""
@@ -163,9 +164,10 @@ class TileLoader:
 
     def _submit(self, job: tuple[TileKey, int]) -> None:
         if self._pool is None:
-            threads = min(os.cpu_count() or 1, MOST_THREADS)
-            self._pool = ThreadPoolExecutor(threads, thread_name_prefix="flowtex-tile")
-        self._running[job] = self._pool.submit(self._make, *job)
+            self._pool = pool(min(os.cpu_count() or 1, MOST_THREADS), "flowtex-tile")
+        made = self._pool.submit(self._make, *job)
+        if not made.done():  # a thread waits for the lock before it ends
+            self._running[job] = made
 
     @property
     def busy(self) -> bool:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -20,6 +19,7 @@ from numpy.typing import ArrayLike
 from flowtex._util.arguments import check_field, checked_array, checked_number
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import track
+from flowtex._util.threads import pool
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import nearest_known
@@ -266,11 +266,11 @@ def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sample
 @contextmanager
 def _threads() -> Iterator[Map]:
     """Give what maps a function over blocks in threads, and a single block in this one."""
-    with ThreadPoolExecutor(max_workers=min(os.cpu_count() or 1, MOST_THREADS)) as pool:
+    with pool(min(os.cpu_count() or 1, MOST_THREADS), "flowtex-trace") as threads:
 
         def run(work: Callable[[Any], Any], blocks: Iterable[Any]) -> Iterable[Any]:
             blocks = list(blocks)
-            return map(work, blocks) if len(blocks) == 1 else pool.map(work, blocks)
+            return map(work, blocks) if len(blocks) == 1 else threads.map(work, blocks)
 
         yield run
 

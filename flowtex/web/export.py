@@ -15,6 +15,7 @@ import base64
 import hashlib
 import html
 import json
+import math
 import string
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -22,8 +23,6 @@ from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from flowtex._util.arguments import checked_target
 from flowtex._util.array_types import AnyArray
@@ -230,7 +229,7 @@ def page_data(views: Sequence[WebView], *, traces: bool = True) -> list[ClientDa
 
 def _times_larger(pyramid: Pyramid, level: int) -> float:
     """How many times as many nodes a level has as the root."""
-    return float(np.prod(pyramid.shape(level)) / np.prod(pyramid.shape(pyramid.depth)))
+    return math.prod(pyramid.shape(level)) / math.prod(pyramid.shape(pyramid.depth))
 
 
 def _arrays_bytes(scene: ClientData, steps: int) -> int:

@@ -16,12 +16,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import partial
 
 from flowtex._util.cache import ByteCache
 from flowtex._util.progress import check, stoppable, track
+from flowtex._util.threads import pool
 from flowtex.field.derived import steps_of
 from flowtex.rendering.webgl import ClientData, Packing, packing_of, tile_parts
 from flowtex.rendering.webgl.protocol import Parts
@@ -33,9 +34,9 @@ BUDGET_BYTES, NODE_BYTES = 400_000_000, 200
 #: Parts that are made at once, for all browsers together.
 MOST_THREADS = max(os.cpu_count() or 1, 4)
 
-_pool = ThreadPoolExecutor(MOST_THREADS, thread_name_prefix="flowtex-tile")
+_pool = pool(MOST_THREADS, "flowtex-tile")
 #: Marks take seconds, for which no tile has to wait.
-_marks_pool = ThreadPoolExecutor(1, thread_name_prefix="flowtex-marks")
+_marks_pool = pool(1, "flowtex-marks")
 
 
 @dataclass(frozen=True, eq=False)

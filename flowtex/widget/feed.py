@@ -10,6 +10,7 @@ shows the same mesh many times holds it once, and asks for what it lacks.
 
 from __future__ import annotations
 
+import math
 import re
 import threading
 import time
@@ -21,10 +22,9 @@ from contextlib import suppress
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import Stopped
+from flowtex._util.threads import has_threads
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
@@ -113,7 +113,8 @@ class Feed:
         """
         self._send_first(urgency=2)
         self._answers.do(self._refine)
-        self._timer.start()
+        if has_threads():
+            self._timer.start()
 
     def draw(self, size: tuple[int, int], camera: dict[str, Any]) -> None:
         """Draw a small picture, once, as soon as there is time; ``pictured`` tells when."""
@@ -231,18 +232,18 @@ class Feed:
         is_whole = self._view.scene.pyramid is None
         if field.triangles is not None or (is_whole and self._nodes <= LARGE_NODES):
             return self._view.data()
-        if is_whole and np.prod(self._view.shape) <= LARGE_NODES:
+        if is_whole and math.prod(self._view.shape) <= LARGE_NODES:
             # Where the client traces, no more times are sent than the paths lead through.
             data = self._view.data()
             steps = len(data.moment(self._moment()))
-            if data.traced and steps * np.prod(self._view.shape) <= VERY_LARGE_NODES:
+            if data.traced and steps * math.prod(self._view.shape) <= VERY_LARGE_NODES:
                 return data
         return self._view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
 
     @property
     def _nodes(self) -> int:
         """Nodes of the whole, at all times together."""
-        return int(np.prod(self._view.shape)) * len(self._view.field.times)
+        return math.prod(self._view.shape) * len(self._view.field.times)
 
     def _refine(self) -> None:
         """Replace a coarse scene by one between, where the whole takes long, and by the whole."""

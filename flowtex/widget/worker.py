@@ -11,6 +11,8 @@ import itertools
 import threading
 from collections.abc import Callable
 
+from flowtex._util.threads import start
+
 Job = Callable[[], None]
 #: Urgency as a number that is least for what comes first, order of asking, for whom, and what.
 Entry = tuple[int, int, "Worker", Job]
@@ -35,7 +37,7 @@ class WorkerPool:
             if self._threads == self._size:
                 return
             self._threads += 1
-        threading.Thread(target=self._work, name=self._name, daemon=True).start()
+        start(self._work, self._name)
 
     def has(self, worker: Worker) -> bool:
         """Whether a job of a worker waits or runs."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import pyvista as pv
 from numpy.typing import NDArray
 
 from flowtex import FlowField
@@ -116,6 +115,8 @@ def test_means_of_directions_do_not_cancel() -> None:
 
 
 def test_vectors_on_cells_come_to_the_nodes() -> None:
+    import pyvista as pv
+
     mesh = pv.ImageData(dimensions=(9, 7, 1))
     mesh.cell_data["axis"] = flipped(np.tile([0.6, 0.8, 0.0], (48, 1)))
     field = FlowField.from_pyvista(mesh, vectors="axis", sign_free=True)

@@ -126,7 +126,10 @@ def test_every_kind_of_numbers_and_shape_is_taken(image: Any) -> None:
         (np.zeros((0, 4)), r"^the image is empty, of shape \(0, 4\); expected at least one"),
         (np.array([[0.0, np.nan]]), r"^the image has 1 values that are NaN or infinite; replace"),
         (np.array([[0.0, 255.0]]), r"floats range from 0 to 255; expected 0 to 1: divide by"),
-        (np.array([[0, 1]]), r"^the image holds int64; expected uint8, or floats from 0 to 1$"),
+        (
+            np.array([[0, 1]], np.int64),
+            r"^the image holds int64; expected uint8, or floats from 0 to 1$",
+        ),
         (np.array([["red"]]), r"^the image holds <U3; expected uint8"),
     ],
 )

@@ -36,6 +36,7 @@ def counted(made: TextureSet, monkeypatch: pytest.MonkeyPatch) -> list[tuple[int
     return found
 
 
+@pytest.mark.threads
 def test_what_is_ready_is_not_made_again(made: TextureSet, counted: list[tuple[int, str]]) -> None:
     prefetch = LayerPrefetch(made)
     prefetch.prepare(2)

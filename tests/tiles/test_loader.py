@@ -62,6 +62,7 @@ class Source:
         return Textures(key, self)
 
 
+@pytest.mark.threads
 def test_a_tile_is_there_once_it_is_made() -> None:
     source: Any = Source()
     told: list[int] = []
@@ -83,6 +84,7 @@ def test_a_tile_is_there_once_it_is_made() -> None:
     loader.close()
 
 
+@pytest.mark.threads
 def test_what_nobody_wants_is_given_up() -> None:
     source: Any = Source()
     now = [0.0]
@@ -132,6 +134,7 @@ def test_tiles_fit_into_their_memory() -> None:
     loader.close()
 
 
+@pytest.mark.threads
 def test_what_is_asked_for_now_comes_before_what_was(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("flowtex.tiles.loader.MOST_THREADS", 1)
     source: Any = Source()
@@ -145,6 +148,7 @@ def test_what_is_asked_for_now_comes_before_what_was(monkeypatch: pytest.MonkeyP
     loader.close()
 
 
+@pytest.mark.threads
 def test_all_loaders_together_make_so_many(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("flowtex.tiles.loader._turns", threading.BoundedSemaphore(2))
     sources: list[Any] = [Source() for _ in range(4)]

@@ -305,6 +305,7 @@ def test_automatic_lags_of_a_time_varying_field_reach_its_steps() -> None:
 # --- progress, and the store ----------------------------------------------------------------
 
 
+@pytest.mark.threads
 @pytest.mark.parametrize(
     ("seconds", "show", "has_bar"), [(0.3, True, True), (0.001, True, False), (0.3, False, False)]
 )

@@ -131,6 +131,7 @@ def test_marks_are_made_when_they_are_asked_for(make: Callable[..., Client]) -> 
     assert "separatrices/1" not in client.arrays
 
 
+@pytest.mark.threads
 def test_what_is_given_up_is_neither_made_nor_sent(
     make: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -243,6 +244,7 @@ def test_a_worker_may_be_closed_by_a_collection_while_a_pool_chooses() -> None:
     assert done.wait(PATIENCE_S)
 
 
+@pytest.mark.threads
 def test_a_pool_that_is_busy_does_the_urgent_jobs_of_all_workers_first() -> None:
     pool, done, may = WorkerPool("a test", 1), list[str](), threading.Event()
     first, other = (Worker(pool, lambda error: done.append(str(error))) for _ in range(2))

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import pyvista as pv
 from page_reader import Reader
 from PIL import Image
 from triangle_meshes import sphere, surface_of
@@ -206,6 +205,7 @@ def refine(monkeypatch: pytest.MonkeyPatch) -> Iterator[threading.Event]:
     may.set()
 
 
+@pytest.mark.threads
 def test_a_large_field_comes_coarse_first(
     make: Make, monkeypatch: pytest.MonkeyPatch, refine: threading.Event
 ) -> None:
@@ -254,6 +254,7 @@ def test_triangles_come_at_once_and_have_tiles(make: Make, monkeypatch: pytest.M
     assert widget.point == told
 
 
+@pytest.mark.threads
 def test_a_field_that_takes_long_has_a_form_between(
     make: Make, monkeypatch: pytest.MonkeyPatch, refine: threading.Event
 ) -> None:
@@ -330,6 +331,7 @@ def test_a_panel_has_every_setting_and_follows(make: Make) -> None:
     assert widget.settings.samples == 33
 
 
+@pytest.mark.threads
 def test_a_notebook_that_is_read_elsewhere_has_a_picture(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -484,6 +486,7 @@ def test_it_is_written_as_a_page_from_where_it_is(
     assert "height: 400px" in frame and "width: 100%" in frame
 
 
+@pytest.mark.threads
 def test_messages_of_any_thread_have_the_session_of_the_widget(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -598,6 +601,8 @@ def test_a_camera_that_would_miss_another_flow_shows_it_whole(
 
 
 def test_a_mesh_is_read_as_the_first_one_was(make: Make) -> None:
+    import pyvista as pv
+
     def block(scale: float) -> pv.ImageData:
         mesh = pv.ImageData(dimensions=(8, 7, 4))
         for name, turn in (("wind", scale), ("water", 0.0)):
@@ -613,6 +618,8 @@ def test_a_mesh_is_read_as_the_first_one_was(make: Make) -> None:
 
 
 def test_a_flow_that_does_not_fit_leaves_what_is_shown(make: Make) -> None:
+    import pyvista as pv
+
     at = nodes_of((9, 9))
     warm = flowtex.FlowField.from_arrays(at, at, scalars={"heat": at[..., 0]})
     widget = make(warm, beside={"scalars": "heat"})

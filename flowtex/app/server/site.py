@@ -31,7 +31,7 @@ from typing import Any
 from aiohttp import web
 
 from flowtex._util.arguments import checked_number
-from flowtex._util.ending import SIGNALS, Ended, announce_end
+from flowtex._util.terminal.ending import SIGNALS, Ended, announce_end
 from flowtex.app.server.bounded_log import bounded_log
 from flowtex.app.server.connections import LimitedServer, keep
 from flowtex.app.server.files import add_route

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 from numpy.typing import ArrayLike
 
+from flowtex._util.extras import require_pyvista
 from flowtex.field.io.arrays import FieldArrays
 
 if TYPE_CHECKING:
@@ -116,6 +117,7 @@ class FieldConstructors:
         """
         from flowtex.field.io.from_pyvista import read_meshes
 
+        require_pyvista(f"a flow from an object of type {type(mesh).__name__}")
         options: dict[str, Any] = {"periodic": periodic, "sign_free": sign_free, "block": block}
         options |= {"plane": plane, "slice": slice, "contour": contour, "times": times}
         return cls.of(read_meshes(mesh, vectors=vectors, name=name, **options))

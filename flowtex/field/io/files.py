@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from flowtex._util.extras import require_pyvista
 from flowtex.errors import FieldError
 from flowtex.field.datasets.files import common_name, dataset_paths, open_datasets
 from flowtex.field.datasets.pairs import two_names
@@ -124,6 +125,7 @@ def open_file(path: str | Path) -> OpenFile:
     file = Path(path).expanduser()
     _check_path(file)
     inspect_file(file)
+    require_pyvista("its format")
     grid = plot3d.find_grid(file) or file
     layout = None
     if grid.suffix.lower() in plot3d.GRID_SUFFIXES:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import ParseError
@@ -28,7 +29,8 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
     """Name the file in what readers raise and VTK logs, one thread at a time."""
     file = Path(path).expanduser()
     cause: Exception | None = None
-    with _VTK_GLOBALS, _vtk_log() as catcher:
+    has_vtk = find_spec("pyvista") is not None  # what others read needs none
+    with _VTK_GLOBALS, _vtk_log() if has_vtk else nullcontext() as catcher:
         try:
             yield
         except (ValueError, RuntimeError, OSError, KeyError, ImportError, ParseError) as error:
@@ -43,7 +45,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
             if not type(error).__module__.startswith("gribapi"):
                 raise
             cause = error
-    if catcher.error_events:
+    if catcher and catcher.error_events:
         # VTK continues after an error and gives a part of the data, or none: the cause is here.
         first = _first_line(catcher.error_events[0].alert)
         msg = (
@@ -57,7 +59,8 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
         reason = str(cause) or type(cause).__name__
         msg = f"{file}: cannot be read: {reason}"
         raise FieldError(msg) from cause
-    for warning in dict.fromkeys(_first_line(event.alert) for event in catcher.warning_events):
+    warnings = catcher.warning_events if catcher else []
+    for warning in dict.fromkeys(_first_line(event.alert) for event in warnings):
         notify(f"{file}: VTK reports: {warning}", UserWarning)
 
 

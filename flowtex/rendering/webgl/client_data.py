@@ -9,6 +9,7 @@ Positions and scalars keep single precision.
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
@@ -354,7 +355,7 @@ class ClientData:
     def nbytes_of_step(self) -> int:
         """Bytes of the flow of one destination time, known before anything is traced."""
         geometry = self.textures.geometry
-        texels = int(np.prod(geometry.size))
+        texels = math.prod(geometry.size)
         if self.traced:
             return velocity.NODE_BYTES * geometry.field.valid.size
         numbers = self.textures.count * self.packing.channels + len(self.packing.extra)
@@ -363,7 +364,7 @@ class ClientData:
     @property
     def nbytes_of_values(self) -> int:
         """Bytes of the values of one time that colours may have."""
-        return 4 * int(np.prod(self.textures.geometry.shape)) * len(self._values)
+        return 4 * math.prod(self.textures.geometry.shape) * len(self._values)
 
     @property
     def _values(self) -> dict[int, Floats]:

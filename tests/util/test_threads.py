@@ -1,0 +1,59 @@
+"""Threads where there are some, and the calling one where there are none."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import flowtex
+from flowtex._util import threads
+
+PACKAGE = Path(flowtex.__file__).parent
+#: Where threads are made otherwise: they serve or end processes, and keep stores.
+OTHERS = ("app", "_util/threads.py", "_util/child", "_util/terminal", "pyramid/lease.py")
+
+
+@pytest.fixture
+def _no_threads(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    def refuse(_: threading.Thread) -> None:
+        msg = "can't start new thread"
+        raise RuntimeError(msg)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(threading.Thread, "start", refuse)
+        threads.has_threads.cache_clear()
+        yield
+    threads.has_threads.cache_clear()
+
+
+@pytest.mark.usefixtures("_no_threads")
+def test_without_threads_the_caller_does_it_at_once() -> None:
+    done: list[str] = []
+    threads.start(lambda: done.append(threading.current_thread().name), "a thread")
+    assert done == [threading.current_thread().name]
+    with threads.pool(4, "threads") as pool:
+        assert list(pool.map(abs, [-1, -2])) == [1, 2]
+        wrong = pool.submit(int, "two")
+        assert wrong.done()
+        with pytest.raises(ValueError, match="two"):
+            wrong.result()
+
+
+@pytest.mark.threads
+def test_threads_have_the_name_of_their_pool() -> None:
+    with threads.pool(2, "some") as pool:
+        assert pool.submit(lambda: threading.current_thread().name).result().startswith("some")
+
+
+def test_whatever_a_browser_runs_asks_here_for_threads() -> None:
+    files = [path for path in PACKAGE.rglob("*.py")]
+    made = {
+        path.relative_to(PACKAGE).as_posix()
+        for path in files
+        if re.search(r"\b(Thread|ThreadPoolExecutor)\(", path.read_text(encoding="utf-8"))
+    }
+    assert {name for name in made if not name.startswith(OTHERS)} == set()
