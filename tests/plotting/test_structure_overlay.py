@@ -74,7 +74,9 @@ def test_points_and_lines_stand_where_they_are() -> None:
 
 def test_stable_and_unstable_orbits_have_their_colors() -> None:
     rate = "(1 - x**2 - y**2) * (x**2 + y**2 - 2.25)"
-    field = flowtex.formula(f"x*({rate}) - y", f"y*({rate}) + x", x=(-4, 4), y=(-2, 2))
+    field = flowtex.formula(
+        f"x*({rate}) - y", f"y*({rate}) + x", x=(-4, 4), y=(-2, 2), resolution=129
+    )
     scale = Camera.fit(field.surface, 2.0).height
     picture = whole(field, separatrices=True)
     for name, radius in (("unstable orbit", 1.0), ("stable orbit", 1.5)):

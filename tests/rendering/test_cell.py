@@ -71,7 +71,7 @@ def test_a_path_beside_a_critical_point_is_exact(
     scene = Scene(field, Settings(parameter=parameter))
     # Far enough from a point where paths end, in pixels.
     starts = [[3.0, 8.0], [-14.0, 5.0]] if name in ("saddle", "centre") else [[20.0, 30.0]]
-    for cells, start in product([0.02, 4e-3, 1e-3], np.array(starts)):
+    for cells, start in product([0.02, 1e-3], np.array(starts)):
         place = locate(field, [*(CELL * (POINT + cells * start)), 0.0])
         assert place is not None
         found = probe(scene, place, pixel=cells * CELL)

@@ -205,14 +205,14 @@ def test_a_frame_has_as_many_triangles_as_the_view_needs(plotter: Any) -> None:
 
 
 def crooked_grid() -> flowtex.FlowField:
-    s, t = np.meshgrid(np.linspace(0, 1, 240), np.linspace(0, 1, 120))
+    s, t = np.meshgrid(np.linspace(0, 1, 160), np.linspace(0, 1, 80))
     wave = 0.03 * np.sin(np.pi * s) * np.sin(np.pi * t)
     x, y = 2 * (s + wave * np.sin(20 * t)), t + wave * np.sin(20 * s)
     return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(gyre(x, y), -1))
 
 
 def globe() -> flowtex.FlowField:
-    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 241), np.linspace(-np.pi / 2, np.pi / 2, 121))
+    a, b = np.meshgrid(np.linspace(0, 2 * np.pi, 161), np.linspace(-np.pi / 2, np.pi / 2, 81))
     x, y, z = points = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)])
     flow = np.stack([-y, x + 0.7 * z, -0.7 * y])  # around an axis that is not the poles'
     return flowtex.FlowField.from_arrays(np.moveaxis(points, 0, -1), np.moveaxis(flow, 0, -1))

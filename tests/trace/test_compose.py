@@ -78,7 +78,7 @@ def test_stretched_cells_in_which_the_unit_of_lag_varies() -> None:
 def test_fields_that_vary_in_time(name: str) -> None:
     vortex = name == "vortex"
     field = (
-        vortex_field().at_steps(range(16)) if vortex else double_gyre_field(True, shape=(41, 81))
+        vortex_field().at_steps(range(12)) if vortex else double_gyre_field(True, shape=(41, 81))
     )
     composed = trace(field)
     for step in (len(field.times) - 1, 9):
