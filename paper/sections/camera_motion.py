@@ -32,7 +32,7 @@ def _panned(view: View, pixels: float) -> View:
 
 
 def _moving(bench: Bench) -> Finding:
-    size = bench.pick((360, 300), (105, 87))
+    size = bench.pick((360, 300), (90, 75))
     moving, after = bench.pick((12, 24), (6, 10))
     first = view_of(bench, bench.gyre, size, zoom=ZOOM, focus=POINT)
     image = ImageSpace(first.camera, first.size, bench.gyre, blend=0.1, pixels=2.0, seed=bench.seed)

@@ -59,7 +59,7 @@ def _evenness(view: View, resolution: int) -> tuple[list[Panel], dict[str, dict[
 
 
 def _figure6(bench: Bench) -> Finding:
-    flat = view_of(bench, bench.stretched, bench.pick((440, 230), (225, 117)))
+    flat = view_of(bench, bench.stretched, bench.pick((440, 230), (180, 94)))
     noise, even = _evenness(flat, bench.pick(256, 128))
     view = wing_view(bench, bench.pick((440, 340), (150, 116)), 3.0)
     pictures = _pictures(bench, view)
