@@ -1,0 +1,100 @@
+"""The scripts of tools/, and the targets of the Makefile."""
+
+from __future__ import annotations
+
+import contextlib
+import runpy
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def concerned_tests() -> Iterator[Callable[[set[str]], list[str]]]:
+    """One for all, as it keeps what it has read of each file."""
+    with contextlib.chdir(ROOT):
+        yield runpy.run_path("tools/changed_tests.py")["concerned_tests"]
+
+
+def test_a_module_concerns_its_folder_and_who_imports_it(
+    concerned_tests: Callable[[set[str]], list[str]],
+) -> None:
+    found = concerned_tests({"flowtex/tiles/boxes.py"})
+    assert {"tests/tiles", "tests/test_layers.py"} <= set(found)
+    assert "tests/cli" not in found
+    assert not [path for path in found if path.startswith("tests/tiles/")]
+    assert "tests/test_settings.py" in concerned_tests({"flowtex/settings.py"})
+
+
+def test_what_tests_share_concerns_those_that_import_it(
+    concerned_tests: Callable[[set[str]], list[str]],
+) -> None:
+    found = concerned_tests({"tests/strategies.py"})
+    assert "tests/trace/test_any_trace.py" in found
+    assert "tests/test_release.py" not in found
+
+
+def test_a_test_concerns_itself(concerned_tests: Callable[[set[str]], list[str]]) -> None:
+    assert concerned_tests({"tests/test_camera.py"}) == ["tests/test_camera.py"]
+    assert concerned_tests({"tests/test_gone.py", "CHANGELOG.md"}) == []
+
+
+def test_files_beside_the_package_have_tests(
+    concerned_tests: Callable[[set[str]], list[str]],
+) -> None:
+    assert concerned_tests({"docs/guide.md"}) == ["tests/test_docs.py"]
+    assert "tests/test_release.py" in concerned_tests({".github/workflows/tests.yml"})
+
+
+@pytest.fixture(scope="module")
+def uv_settings() -> Callable[[str], dict[str, str]]:
+    found: Callable[[str], dict[str, str]] = runpy.run_path(str(ROOT / "tools" / "run_uv.py"))[
+        "uv_settings"
+    ]
+    return found
+
+
+def test_a_mirror_of_pip_is_one_of_uv(uv_settings: Callable[[str], dict[str, str]]) -> None:
+    listed = r"""global.cert='/etc/certs/own.pem'
+global.index-url='https://mirror.example/simple'
+global.extra-index-url='\nhttps://one.example/simple\nfile:///two/simple'
+global.find-links='/wheels /more wheels'
+global.quiet='1'
+freeze.index-url='https://other.example/simple'"""
+    assert uv_settings(listed) == {
+        "SSL_CERT_FILE": "/etc/certs/own.pem",
+        "UV_DEFAULT_INDEX": "https://mirror.example/simple",
+        "UV_FIND_LINKS": "/wheels,/more,wheels",
+        "UV_INDEX": "https://one.example/simple file:///two/simple",
+        "UV_INDEX_STRATEGY": "unsafe-best-match",
+    }
+
+
+def test_settings_prevail_as_in_pip(uv_settings: Callable[[str], dict[str, str]]) -> None:
+    listed = """:env:.index-url='https://environment.example'
+:env:.timeout='9'
+global.index-url='https://file.example'
+global.trusted-host='file.example'
+install.index-url='https://command.example'
+install.trusted-host='command.example'"""
+    assert uv_settings(listed) == {
+        "UV_DEFAULT_INDEX": "https://environment.example",
+        "UV_HTTP_TIMEOUT": "9",
+        "UV_INSECURE_HOST": "command.example",
+    }
+
+
+def test_nothing_is_set_for_a_plain_pip(uv_settings: Callable[[str], dict[str, str]]) -> None:
+    assert uv_settings("") == {}
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
+def test_help_lists_every_target() -> None:
+    said = subprocess.run(["make", "help"], cwd=ROOT, capture_output=True, text=True, check=True)
+    targets = (ROOT / "Makefile").read_text().split(".PHONY: ")[1].split("\n")[0].split()
+    assert [name for name in targets if f"  make {name} " not in said.stdout] == []
