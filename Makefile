@@ -16,7 +16,7 @@ SETUP := pyproject.toml tools/setup.sh tools/run_uv.py tools/common.sh tools/loc
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check coverage fuzz integrations lint format docs site gallery client paper paper-quick wheel clean
+.PHONY: help demo test check coverage fuzz integrations api lint format docs site gallery client paper paper-quick wheel clean
 
 help: ## list the targets
 	@echo "flowtex. Choose an interpreter with PYTHON=python3.12, tests with PYTEST_ARGS='-k trace'."
@@ -46,6 +46,10 @@ fuzz: $(VENV)/.ready-test ## try ten thousand random fields, settings, links, fi
 integrations: $(VENV)-integrations/.ready ## show a flow in hosts such as Notebook 7, Panel and MyST, and results of other libraries, in a separate environment
 	@sh tools/browsers.sh $(VENV)-integrations/bin/python
 	$(VENV)-integrations/bin/python -m pytest tests/integrations $(PYTEST_ARGS)
+
+api: $(VENV)/.ready-test ## list public names and arguments that have gone since the last release
+	@last=$$(git describe --tags --match 'v*' --abbrev=0 2>/dev/null) || { echo "flowtex: there is no release yet"; exit 0; }; \
+	$(BIN)/griffe check flowtex --against "$$last" && echo "flowtex: all that $$last has is there"
 
 lint: $(VENV)/.ready-test ## style, format, types and the browser client, without the tests
 	@sh tools/check.sh $(BIN) none
