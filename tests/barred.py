@@ -2,7 +2,7 @@
 
 Zarr is not there either, as it reads in a thread of its own.
 
-``FLOWTEX_BARRED=1 pytest -n 0`` runs the tests there. A test that needs one of these itself, or by
+``FLOWTEX_BARRED=1 pytest`` runs the tests there. A test that needs one of these itself, or by
 a room of the package whose business it is, is skipped; where any other room asks for it, it fails.
 """
 
@@ -61,7 +61,7 @@ def bar() -> None:
     for kind, refusal in zip(replaced, (_no_thread, _no_process), strict=True):
         kind.start = refusal
     os.environ["DASK_SCHEDULER"] = "sync"  # as Dask chooses there
-    waiting.PATIENCE_S = 0.0
+    waiting.PATIENCE_S = 5.0  # what is not done at once is never done
     waited: Any = threading.Condition
     waited.wait = _no_end
     process: Any = subprocess.Popen
