@@ -471,7 +471,7 @@ class Options:
                 if "sel" in known and not near.startswith("did you mean"):
                     what = f"an axis of a dataset, use sel={{{name!r}: {values[name]!r}}}"
                     path = "a group of a file, give its path, such as 'model.nc/ocean'"
-                    near = f"{near}; for {path if name == 'group' else what}"
+                    near = f"for {path if name == 'group' else what}; {near}"
                 msg = f"the setting or argument {name!r} does not exist; {near}"
                 raise SettingsError(msg)
         return cls(**parts, settings=values)

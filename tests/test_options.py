@@ -47,8 +47,9 @@ def test_each_argument_goes_where_it_belongs() -> None:
         ),
         (
             {"qqqq": 2},
-            r"^the setting or argument 'qqqq' does not exist; expected one of: samples, ",
+            r"^the setting .* 'qqqq' does not exist; for an .* expected one of: samples, ",
         ),
+        ({"proj": "north"}, r"'proj' does not exist; did you mean 'projection'\?$"),
         ({"opacity": 2}, r"^opacity is 2; expected a number from 0 to 1$"),
         ({"opacity": None}, r"^opacity is None; expected a number from 0 to 1$"),
         ({"clim": (1, 2, 3)}, r"^clim is \(1, 2, 3\); expected two numbers, \(low, high\), "),

@@ -100,7 +100,8 @@ def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> st
     Of many names only the ``usual`` ones are listed.
     """
     names, some = tuple(known), ", ".join(usual)
-    close = difflib.get_close_matches(name, names, n=2)
+    begun = [known for known in names if len(name) > 2 and known.startswith(name)]  # as in "proj"
+    close = begun[:2] or difflib.get_close_matches(name, names, n=2)
     if close:
         return f"did you mean {' or '.join(map(repr, close))}?"
     if some:

@@ -96,7 +96,16 @@ def formula(
         title, expressions, known = _known(expressions[0])
         name = name or title
         x, y = x or known.pop("x"), y or known.pop("y")
-        parameters = {**{k: p for k, p in known.items() if k not in ("x", "y")}, **parameters}
+        known = {key: value for key, value in known.items() if key not in ("x", "y")}
+        for key in parameters:
+            if key not in known:
+                msg = f"{title} has no parameter {key!r}; {near_names(key, known)}"
+                raise FieldError(msg)
+        parameters = {**known, **parameters}
+    elif expressions and isinstance(expressions[0], str) and expressions[0] in KNOWN:
+        rest = " and ".join(map(repr, expressions[1:]))
+        msg = f"{expressions[0]!r} is a known formula and takes no other expression; omit {rest}"
+        raise FieldError(msg)
     steps = None if times is None else _times(times)
     ranges = {"x": x, "y": y, "u": u, "v": v}
     made = Formula.of(expressions, surface, ranges, parameters, timed=steps is not None)

@@ -231,6 +231,10 @@ def test_what_does_not_fit_is_refused(given: dict[str, Any], words: str) -> None
         FieldError, match="not the name of a known formula; did you mean 'pendulum'"
     ):
         flowtex.formula("pendulu")
+    with pytest.raises(FieldError, match=r"^Pendulum has no parameter 'c'; expected one of: b$"):
+        flowtex.formula("pendulum", c=1)
+    with pytest.raises(FieldError, match=r"^'pendulum' is a known formula and .*; omit 'on'$"):
+        flowtex.formula("pendulum", "on")
 
 
 @pytest.mark.parametrize(
