@@ -159,7 +159,7 @@ const CLIENT = `data:text/javascript,
       Object.assign(this, { log, own, header: null, playing: false, root: {}, stage: {}, canvas: { width: 300, height: 200 } });
       this.panel = { fail: (...values) => log.push(["fail", ...values]) };
       for (const name of ["setHeader", "followSetting", "setCamera", "setTime", "followTime", "setClock",
-        "setPart", "play", "pause", "change", "resize"])
+        "setPart", "keepParts", "play", "pause", "change", "resize"])
         this[name] = (...values) => this.log.push([name, ...values]);
     }
   }
@@ -223,6 +223,7 @@ test("the view shows what the server hands over, and follows it", async () => {
   const seen = taken();
   assert.deepEqual(seen[0], ["setHeader", one.header]);
   assert.ok(seen.some(([name, part]) => name === "setPart" && part === "/one.whole"));
+  assert.ok(seen.some(([name]) => name === "keepParts")); // what another flow had besides is gone
   take({ settings: { grain: 4 }, camera: { position: [1, 2, 3] }, time: 2, playing: true });
   assert.deepEqual(taken(), [
     ["followSetting", "grain", 4],
@@ -235,7 +236,9 @@ test("the view shows what the server hands over, and follows it", async () => {
   assert.deepEqual(taken(), [["pause"]]);
   take({ scenes: [{ ...one, parts: "/coloured." }] });
   await rested();
-  assert.ok(taken().some(([name, part]) => name === "setPart" && part === "/coloured.colours"));
+  const coloured = taken();
+  assert.ok(coloured.some(([name, part]) => name === "setPart" && part === "/coloured.colours"));
+  assert.ok(!coloured.some(([name]) => name === "keepParts"));
   const two = scene("two");
   take({ scenes: [one, two], timeBeside: 5 });
   await rested();
