@@ -157,6 +157,7 @@ def polar() -> Picture:
     for ax in both:
         flowtex.axes(ax, field)
         ax.quiver(a[few], r[few], (u / r)[few], v[few], angles="xy", color="w")
+        ax.set_rticks([1, 2])
     return _drawn(figure)
 
 
