@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -94,15 +94,19 @@ def check_field(field: Any, kind: type) -> None:
         raise FieldError(msg)
 
 
+def closest(name: str, names: Sequence[str]) -> list[str]:
+    """Return up to two names that begin with a text, such as "proj", or else resemble it."""
+    begun = [known for known in names if len(name) > 2 and known.startswith(name)]
+    return begun[:2] or difflib.get_close_matches(name, names, n=2)
+
+
 def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> str:
     """Say which of the known names are near one that does not exist, or list them.
 
     Of many names only the ``usual`` ones are listed.
     """
     names, some = tuple(known), ", ".join(usual)
-    begun = [known for known in names if len(name) > 2 and known.startswith(name)]  # as in "proj"
-    close = begun[:2] or difflib.get_close_matches(name, names, n=2)
-    if close:
+    if close := closest(name, names):
         return f"did you mean {' or '.join(map(repr, close))}?"
     if some:
         return f"expected one of {len(names)} names, such as {some}"

@@ -12,12 +12,12 @@ import signal
 import sys
 import warnings
 from collections.abc import Sequence
-from difflib import get_close_matches
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError
 
+from flowtex._util.arguments import closest
 from flowtex._util.terminal.ending import Ended, ended_by_signals
 from flowtex.cli import page
 from flowtex.cli.console import complain
@@ -108,10 +108,10 @@ def _explained(error: Exception) -> Exception:
     off = "--no-" if flag.startswith("--no-") else "--"
     names = [name for argument in error.argument_collection or () for name in argument.names]
     words = [name.removeprefix(off) for name in names if name.startswith(off)]
-    near = get_close_matches(flag.removeprefix(off), words, n=1)
+    near = " or ".join(off + word for word in closest(flag.removeprefix(off), words))
     command = " ".join(error.command_chain or ())
     help_ = f"`{' '.join(['flowtex', *command.split()])} --help` lists all options"
-    hint = f"did you mean {off}{near[0]}?" if near else help_
+    hint = f"did you mean {near}?" if near else help_
     return UsageError(f"{command or 'flowtex'} has no option {flag}; {hint}")
 
 

@@ -188,6 +188,8 @@ def test_flow_that_leaves_the_surface_is_told(
         ),
         ("render {gyre}", "--output"),
         ("render {gyre} --opacty 1", "did you mean --opacity?"),
+        ("render {gyre} --proj north", "did you mean --projection?"),
+        ("render {gyre} --slize z=0", "did you mean --size or --slice?"),
         ("export {gyre} -o {tmp}/page.png", "page.png: expected a name that ends in .html"),
         ("export {gyre} -o {tmp}/nowhere/page.html", "does not exist; create it"),
         ("export {gyre} -o {tmp}/page.html --steps 0", "--steps is 0; expected 1 to 1"),
