@@ -136,7 +136,8 @@ def _fitting(field: FlowField, options: Options, steps: int | None) -> tuple[Web
     if steps is not None or len(field.times) == 1:
         return views
     one, all_of_them = (
-        estimate(page_data(some)) for some in (web_views(field, options, steps=1), views)
+        estimate(page_data(some), client="")  # which all scenes of the site share
+        for some in (web_views(field, options, steps=1), views)
     )
     step = (all_of_them - one) / (len(field.times) - 1)
     fitting = 1 + int((SCENE_BYTES - one) / step)
