@@ -33,8 +33,8 @@ ASIDE, UP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
 WHOLE_GLOBE = (math.cos(math.radians(20)), 0.0, math.sin(math.radians(20)))
 #: Share of the radius from the middle of the globe, or its axis, from which a direction counts.
 LEAST_ASIDE = 0.2
-#: Two surfaces are seen by one camera where the larger one is at most so many times as large, and
-#: their middles are at most such a share of its extent apart.
+#: Limits for two surfaces to share a camera: the ratio of their extents, and the distance of their
+#: centres over the larger extent.
 MOST_LARGER, MOST_APART = 4.0, 0.5
 #: Farthest and nearest that a camera may be, in extents of the surface: beyond, numbers end.
 FARTHEST_REACH, NEAREST_REACH = 1e9, 1e-9
@@ -496,8 +496,8 @@ class Camera:
         )
 
 
-def are_alike(one: Surface, other: Surface) -> bool:
-    """Return whether the camera of one surface shows the other one as well."""
+def can_share_camera(one: Surface, other: Surface) -> bool:
+    """Return whether a camera that shows one surface shows the other one as well."""
     smaller, larger = sorted((one.extent, other.extent))
     apart = float(np.linalg.norm(one.center - other.center))
     is_flat = one.frame is not None

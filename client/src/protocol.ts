@@ -383,7 +383,7 @@ export interface Header {
   clock: number;
   /** Counts the scenes that replaced one another. */
   generation?: number;
-  /** Names of the parts that are the same at all times, where a host sends only those that differ. */
+  /** Names of the time-independent parts; the view removes all others. */
   surface?: string[];
   /** Settings in which two views differ, and those that are this view's own. */
   differs?: string[];

@@ -163,7 +163,7 @@ export class Viewer implements User, View {
     this.change();
   }
 
-  /** Remove what the scene before had besides parts of these names, and besides those of time steps. */
+  /** Remove the time-independent parts of the previous scene that are not among these names. */
   keepParts(names: string[]): void {
     for (const name of [...this.parts.keys()]) {
       if (name.includes("/") || names.includes(name)) continue;

@@ -1,4 +1,4 @@
-"""What installs an optional part of flowtex, or does for it where there is none."""
+"""Errors for missing optional packages, with the command that installs them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def import_extra(module: str, extra: str) -> Any:
 
 
 def require_pyvista(what: str) -> None:
-    """Import PyVista; the error says what does without it, as Python in a browser has to."""
+    """Import PyVista, or raise an error that names the functions that work without it."""
     try:
         import_module("pyvista")
     except ModuleNotFoundError as error:

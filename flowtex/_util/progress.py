@@ -1,7 +1,7 @@
 """Progress bars for work of more than a second, and a way to cancel work in a thread.
 
-The bar is drawn by rich, in a terminal or a notebook, in a thread of its own; without threads there
-is none. Work inside :func:`stoppable` is cancelled at its next call of :func:`check`.
+rich draws the bar from a background thread, in a terminal or a notebook; without threads no bar is
+shown. Work inside :func:`stoppable` is cancelled at its next call of :func:`check`.
 """
 
 from __future__ import annotations

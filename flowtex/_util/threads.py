@@ -1,4 +1,4 @@
-"""Threads, and what does their work where a platform has none, as Python in a browser."""
+"""Thread pools; on platforms without threads, such as WebAssembly, the caller does the work."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ def has_threads() -> bool:
 
 
 def pool(size: int, name: str) -> Executor:
-    """Return so many threads with a name; without threads, what is submitted is done at once."""
+    """Return an executor with ``size`` threads; without threads it runs each call at once."""
     return ThreadPoolExecutor(size, name) if has_threads() else _Caller()
 
 
 def start(work: Callable[[], None], name: str) -> None:
-    """Do some work in a thread that a process does not wait for; without threads at once."""
+    """Run a function in a daemon thread; without threads, run it at once."""
     if has_threads():
         threading.Thread(target=work, name=name, daemon=True).start()
     else:
@@ -35,10 +35,10 @@ def start(work: Callable[[], None], name: str) -> None:
 
 
 class _Caller(Executor):
-    """Does in the calling thread what is submitted."""
+    """Run each submitted call at once, in the calling thread."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Return the future of a call that has ended."""
+        """Run a call and return its finished future."""
         future: Future[Any] = Future()
         try:
             future.set_result(fn(*args, **kwargs))

@@ -81,12 +81,12 @@ class AxesScales:
         return np.asarray(self._placed.inverted().transform(pixels) * (1.0, self.stretch))
 
     def extent(self, field: FlowField, frame: Floats) -> Floats:
-        """Return the least and the greatest values of a field, of those that the scales have.
+        """Return the ends of the coordinates that the scales can show, (2, 2): lower, then upper.
 
         Raises
         ------
         FieldError
-            When they have none.
+            When the scales can show no node.
         """
         values = (field.points @ frame.T).reshape(-1, 2)
         with np.errstate(all="ignore"):
@@ -96,13 +96,13 @@ class AxesScales:
         return np.stack([values[known].min(axis=0), values[known].max(axis=0)])
 
     def _slope(self, points: Floats, step: Floats) -> Floats:
-        """Return how a velocity goes on the axes, (..., 2, 2), from steps to either side."""
+        """Return the Jacobian of positions on the axes, (..., 2, 2), by central differences."""
         near = points.copy()
-        if self.polar:  # the centre has no direction along the angle
+        if self.polar:  # at the centre the angle has no direction
             *_, origin, sign = self.polar
             beside = np.maximum(sign * (near[..., 1] - origin), 2 * step[..., 1])
             near[..., 1] = origin + sign * beside
-        # Columns are the ways on the axes for a unit of either value.
+        # Column n is the derivative along coordinate n.
         slope = np.stack(
             [
                 (self.on_map(near + way) - self.on_map(near - way)) / (2 * step[..., n, None])
@@ -111,7 +111,7 @@ class AxesScales:
             axis=-1,
         )
         if self.polar:  # a velocity along the angle has the unit of the radius
-            with np.errstate(all="ignore"):  # at radius 0 beyond a hole it has no rate
+            with np.errstate(all="ignore"):  # undefined at radius 0
                 slope[..., 0] /= near[..., 1, None]
         return slope
 
@@ -172,7 +172,7 @@ class AxesScales:
 
 
 def with_polar_scalars(field: FlowField, frame: Floats, name: str | None) -> FlowField:
-    """Return a field by angle and radius with a scalar that is derived in their plane."""
+    """Return a field in polar coordinates with a derived scalar, computed in the plane."""
     if name not in DERIVED or name in field.scalars or field.sign_free:
         return field
     plane = AxesScales(Figure().add_subplot(projection="polar")).field(field, frame)

@@ -138,7 +138,7 @@ class FieldSource(Source):
         return Nodes(field.points[at], field.valid[at], velocity, scalars, known)
 
     def with_uncertainty(self, value: Any) -> Source:
-        """Return the source of a field that has it."""
+        """Return the source of the field with this uncertainty."""
         return FieldSource(with_uncertainty(self.field, value))
 
     def ranges(self) -> dict[str, list[Any]]:
@@ -208,7 +208,7 @@ class RegionSource(Source):
         return chosen_lines(some, lines)
 
     def with_uncertainty(self, value: Any) -> Source:
-        """Set it; here it is the name of a scalar, whose values are read by region."""
+        """Set the uncertainty: the name of a scalar, which is read by region."""
         unread = dict.fromkeys(self.scalars, np.zeros((1, 1, 1)))
         field = with_uncertainty(replace(self.field, scalars=unread), value)
         self.field = replace(field, scalars={})
@@ -235,8 +235,8 @@ def source_of(given: Any, uncertainty: Any = None, **options: Any) -> Source:
 
 def _source_of(given: Any, uncertainty: Any, **options: Any) -> Source:
     # An array has a value for each node; a name may be a dimension to average over.
-    read: dict[str, Any] = {"regions": uncertainty is None or isinstance(uncertainty, str)}
-    read["uncertainty"] = uncertainty
+    regions = uncertainty is None or isinstance(uncertainty, str)
+    read: dict[str, Any] = {"regions": regions, "uncertainty": uncertainty}
     if isinstance(given, (FlowField, Source)):
         refuse(options, "the data of a field")
         return given if isinstance(given, Source) else FieldSource(given)

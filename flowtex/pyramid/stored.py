@@ -38,8 +38,8 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
         programs: a multiscale group of xarray datasets, as of ndpyramid and topozarr, or a Zarr
         dataset.
     uncertainty
-        As for :meth:`flowtex.FlowField.from_xarray`. A store of flowtex has only that with which it
-        was built, which is also used by default.
+        As for :meth:`flowtex.FlowField.from_xarray`. A store that flowtex built uses the
+        uncertainty with which it was built, and refuses another one.
     **options
         For stores of other programs: arguments of :meth:`flowtex.FlowField.from_xarray`, such as
         ``u``, ``v``, ``globe`` or ``level``.

@@ -88,7 +88,7 @@ class Feed:
         #: Steps that are on their way, and until when they are not sent to who asks.
         self._coming: tuple[float, tuple[int, ...]] = (0.0, ())
         self._sent: dict[str, str] = {}
-        #: Names of the parts of a scene that replaced another one.
+        #: Names of the time-independent parts of the scene; empty for the first scene.
         self._surface: list[str] = []
         self.picture: bytes | None = None
         self.pictured, self.settled = threading.Event(), threading.Event()
@@ -282,7 +282,7 @@ class Feed:
             self._source = TileSource(scene)
             self._generation += 1
             self._surface = [name for name in parts if "/" not in name]
-            # A client removes all others.
+            # The client removes all other parts.
             kept = [name for name in self._sent if "/" in name or name in parts]
             self._sent = {name: self._sent[name] for name in kept}
             self._announce(self.header)

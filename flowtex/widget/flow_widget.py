@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import traitlets
 
-from flowtex.camera import Camera, are_alike
+from flowtex.camera import Camera, can_share_camera
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
@@ -80,8 +80,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     Attributes
     ----------
     field
-        The flow; ``widget.field = mesh`` shows another one with the same settings, and with the
-        same camera unless that would miss it.
+        The flow; ``widget.field = mesh`` shows another one with the same settings. The
+        camera stays too, unless the other flow would be out of view.
     {appearance}
         Arguments of the constructor, which can be changed.
     camera
@@ -201,7 +201,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     def field(self) -> FlowField:
         """The flow. Assign another flow or mesh to show it with the same settings.
 
-        The camera stays as well, unless it would miss the other surface.
+        The camera stays too, unless the other flow would be out of view.
         """
         return self.scene.field
 
@@ -211,7 +211,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         before, field = self.field.surface, share_field(reading.field(mesh))
         self._views.show(field)
         self._frame = None
-        if not are_alike(before, field.surface):
+        if not can_share_camera(before, field.surface):
             self.camera = Camera.fit(field.surface, PREVIEW[0] / PREVIEW[1]).to_dict()
 
     def set_image(self, image: Any) -> None:

@@ -23,7 +23,7 @@ class WorkerPool:
 
     def __init__(self, name: str, size: int) -> None:
         self._name, self._size = name, size
-        # A collection of garbage closes widgets in any thread, also in one that has the lock.
+        # Garbage collection may close a widget in a thread that holds the lock.
         self._lock = threading.RLock()
         self._count = itertools.count()
         self._waiting: list[Entry] = []

@@ -231,10 +231,10 @@ def _middle(lon: Floats) -> tuple[float, float]:
 def _beside_tears(
     lines: MapLines, projection: Projection, torn: Bools
 ) -> tuple[Floats, Bools, Indices]:
-    """Return longitudes of nodes that reach to the meridians along which a map is torn.
+    """Return longitudes with nodes moved to the meridians where the map is interrupted.
 
-    Where it is, the nodes at either side of the meridian are moved to it, and one between them is
-    blank: otherwise nothing would be drawn in the cells beside. ``torn`` says after which nodes,
+    At such a meridian the nodes on both sides move to it, and a node between them is blank;
+    otherwise the cells beside it would not be drawn. ``torn`` says after which nodes,
     (J, I), the map is torn. The others are the longitudes, and those on the map, (2, J, I), the
     nodes that are blank, and the numbers of the columns in the data.
     """

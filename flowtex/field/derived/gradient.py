@@ -26,7 +26,7 @@ from flowtex.field.triangles.surface import TriangleSurface
 COLLAPSED_AREA = 1e-10
 #: Neighbours that a quadratic fit needs, and its regularisation as a share of the largest entry.
 QUADRATIC_NEIGHBOURS, REGULARISATION = 5, 1e-12
-#: About how many nodes of a grid tell the side of a surface.
+#: Approximate number of nodes by which the side of a surface is determined.
 MOST_JUDGED = 40_000
 
 
