@@ -69,7 +69,7 @@ site: $(VENV)/.ready-site ## build the site into out/site, and check its links, 
 	@sh tools/browsers.sh $(BIN)/python
 	@sh tools/site.sh $(BIN)
 
-gallery: $(VENV)/.ready-test ## draw the pictures of the README and the gallery
+gallery: client ## draw the pictures of the README and the gallery
 	$(BIN)/python docs/make_pictures.py
 
 paper: $(VENV)/.ready-demo ## compute the paper's tables and figures into out/paper, in a few minutes
