@@ -17,7 +17,7 @@ from playwright.sync_api import TimeoutError as PlaywrightTimeoutError
 from playwright.sync_api import sync_playwright
 
 import flowtex
-from flowtex.camera import CAMERA_LIMITS
+from flowtex.rendering.camera import CAMERA_LIMITS
 
 #: Software drawing: Mesa's, which is several times as fast as Chromium's own.
 MESA = ["--use-angle=gl-egl", "--ignore-gpu-blocklist"]

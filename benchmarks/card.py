@@ -83,7 +83,7 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
     from flowtex.rendering.mesh_levels import MeshLevels, Region, join
     from flowtex.rendering.tile_choice import finer_part
     from flowtex.rendering.uniforms import ViewState, uniforms
-    from flowtex.tiles import TILE_BLOCKS
+    from flowtex.textures.tiles import TILE_BLOCKS
 
     whole, settings = replace(view.data(), traces=True), view.scene.settings
     header, pyramid = whole.header(settings), whole.pyramid
@@ -173,8 +173,8 @@ def drawings(meshes: list[str], samples: list[int]) -> Iterator[Drawing]:
     """Make what is drawn of each mesh with each number of samples, coloured by speed."""
     from scenes import gyre_field
 
-    from flowtex.camera import Camera
-    from flowtex.options import Options
+    from flowtex.rendering.camera import Camera
+    from flowtex.scene.options import Options
     from flowtex.web.view import web_views
 
     for mesh in meshes:

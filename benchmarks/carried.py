@@ -21,7 +21,7 @@ from rich.table import Table
 from scenes import gyre_field
 
 from flowtex import examples
-from flowtex.options import Options
+from flowtex.scene.options import Options
 
 #: Rows and columns of nodes, the cylinder's wake along pathlines, and winds.
 MESHES = ("70x120", "250x500", "500x1000", "wake", "globe")

@@ -21,10 +21,10 @@ from rich.console import Console
 from rich.table import Table
 
 import flowtex
-from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Parts
-from flowtex.tiles import TileKey
+from flowtex.scene.options import Options
+from flowtex.textures.tiles import TileKey
 from flowtex.web.source import TileSource
 from flowtex.web.view import web_views
 

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 import flowtex
-from flowtex.tiles import Pyramid
+from flowtex.textures.tiles import Pyramid
 from flowtex.trace import paths, trace
 
 Floats = NDArray[np.float64]

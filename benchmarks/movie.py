@@ -17,8 +17,8 @@ from rich.table import Table
 
 import flowtex
 from flowtex.diagnostics import require_opengl
-from flowtex.offscreen.encoders import write_movie
-from flowtex.offscreen.movie import frames
+from flowtex.plotting.offscreen.encoders import write_movie
+from flowtex.plotting.offscreen.movie import frames
 
 EXAMPLES = ("double_gyre", "vortex", "cylinder", "airfoil", "delta_wing")
 

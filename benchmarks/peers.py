@@ -225,8 +225,8 @@ def measure_surface(case: str, name: str, size: tuple[int, int]) -> dict[str, fl
     from surfaces import SURFACES, surface_view
 
     import flowtex.plotting.component  # noqa: F401 plotter.flowtex
-    from flowtex.camera import Camera
     from flowtex.diagnostics import prefer_headless
+    from flowtex.rendering.camera import Camera
 
     prefer_headless()
     field = SURFACES[name]()

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import flowtex
-from flowtex.camera import Camera
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.raster import cover
 
 Floats = NDArray[np.float64]

@@ -66,7 +66,7 @@ nb_mime_priority_overrides = [("html", "text/html", 0)]
 templates_path = ["_templates"]
 autosummary_generate = True
 # On disks that do not tell capitals from small letters it would be the file of probe.
-autosummary_filename_map = {"flowtex.probe.Probe": "flowtex.probe.Probe-class"}
+autosummary_filename_map = {"flowtex.scene.probe.Probe": "flowtex.scene.probe.Probe-class"}
 autodoc_typehints = "none"
 numpydoc_class_members_toctree = False
 numpydoc_show_class_members = False

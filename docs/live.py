@@ -37,8 +37,8 @@ from sphinx.util.docutils import SphinxDirective
 
 import flowtex
 from flowtex.field import FlowField
-from flowtex.offscreen.plotter import add_scenes, new_plotter, point_camera
-from flowtex.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter, point_camera
+from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
 from flowtex.web.assets import asset
 from flowtex.web.export import estimate, page_data
 from flowtex.web.view import WebView, web_views

@@ -501,7 +501,7 @@ def webmap() -> Picture:
 
 def _coasts(color: str) -> dict[str, Any]:
     """Return a style of MapLibre's with coasts, which asks for nothing from the network."""
-    from flowtex.earth import Projection, coastlines
+    from flowtex.field.earth import Projection, coastlines
 
     lines = coastlines(Projection("globe"))
     x, y, z = lines.points.T

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from flowtex._version import __version__ as __version__
+from flowtex._util import __version__ as __version__
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.settings import Settings
@@ -18,13 +18,13 @@ from flowtex.trace import TraceSlices, trace
 
 if TYPE_CHECKING:
     from flowtex import examples, pyramid, quality
-    from flowtex.camera import Camera
-    from flowtex.display import show
+    from flowtex.app.display import show
     from flowtex.field.formula.make import formula
-    from flowtex.offscreen.dynamic import dynamic_map
-    from flowtex.offscreen.figure import axes, extent
-    from flowtex.offscreen.movie import movie
-    from flowtex.offscreen.render import render
+    from flowtex.plotting.offscreen.dynamic import dynamic_map
+    from flowtex.plotting.offscreen.figure import axes, extent
+    from flowtex.plotting.offscreen.movie import movie
+    from flowtex.plotting.offscreen.render import render
+    from flowtex.rendering.camera import Camera
     from flowtex.trace.structure import (
         ClosedOrbit,
         CriticalPoints,
@@ -64,22 +64,22 @@ __all__ = [
 
 #: Names that are imported when they are first used: what they need is slow to load, or optional.
 _LAZY = {
-    "Camera": "camera",
+    "Camera": "rendering.camera",
     "ClosedOrbit": "trace.structure",
     "CriticalPoints": "trace.structure",
     "FlowWidget": "widget",
     "Separatrices": "trace.structure",
-    "axes": "offscreen.figure",
+    "axes": "plotting.offscreen.figure",
     "closed_orbits": "trace.structure",
     "critical_points": "trace.structure",
-    "dynamic_map": "offscreen.dynamic",
+    "dynamic_map": "plotting.offscreen.dynamic",
     "export": "web.export",
-    "extent": "offscreen.figure",
+    "extent": "plotting.offscreen.figure",
     "formula": "field.formula.make",
-    "movie": "offscreen.movie",
-    "render": "offscreen.render",
+    "movie": "plotting.offscreen.movie",
+    "render": "plotting.offscreen.render",
     "separatrices": "trace.structure",
-    "show": "display",
+    "show": "app.display",
 }
 #: Those that need OpenGL: it is tried while they are imported.
 _DRAWS = ("axes", "dynamic_map", "movie", "render", "show")

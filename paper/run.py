@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util import __version__
 from flowtex._util.progress import track
-from flowtex._version import __version__
 from paper.bench import Bench
 from paper.findings import Claim, Finding, Panel, Report, Section
 from paper.page import write_page

@@ -15,8 +15,8 @@ from scipy import ndimage
 from flowtex import quality
 from flowtex._util.array_types import Bools, Bytes, Floats
 from flowtex._util.blocks import block_means
-from flowtex.camera import Camera
 from flowtex.field import FlowField
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.raster import cover
 from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.cpu.shade import shade

@@ -35,11 +35,11 @@ from flows import (
 
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
-from flowtex.camera import Camera
-from flowtex.options import Appearance
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
-from flowtex.scene import Scene
+from flowtex.scene.options import Appearance
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
 #: Root mean square in steps of 8 bits, and share of pixels that differ by more than 8 of them.

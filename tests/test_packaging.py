@@ -163,7 +163,7 @@ def test_wheel_declares_command_and_plotter_component(wheel: Path) -> None:
     # PyVista hands the value to import_module, so it must name a module and nothing in it.
     assert "flowtex = flowtex.plotting.component\n" in f"{declared}\n"
     # Here PyVista loads the value itself, so it must name a function.
-    assert "flowtex = flowtex.plotting.jupyter_backend:show_plotter" in declared
+    assert "flowtex = flowtex.app.jupyter_backend:show_plotter" in declared
 
 
 def test_installed_wheel_reads_its_own_shaders(wheel: Path, tmp_path: Path) -> None:

@@ -13,9 +13,9 @@ import pytest
 
 import flowtex
 from flowtex import FieldError, FlowField, TraceSlices
-from flowtex.options import Appearance
-from flowtex.probe import locate, values_at
-from flowtex.scene import Scene
+from flowtex.scene.options import Appearance
+from flowtex.scene.probe import locate, values_at
+from flowtex.scene.scene import Scene
 from flowtex.settings import TABLE
 
 PACKAGE = Path(__file__).resolve().parents[1] / "flowtex"

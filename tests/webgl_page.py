@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from flowtex.camera import Camera
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Parts, part_info, parts_file
-from flowtex.tiles import TileKey
+from flowtex.textures.tiles import TileKey
 from flowtex.web.assets import client_module
 from flowtex.web.source import TileSource
 

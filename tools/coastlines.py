@@ -1,4 +1,4 @@
-"""Write ``flowtex/earth/coastlines.npz``: the coasts of Natural Earth, packed.
+"""Write ``flowtex/field/earth/coastlines.npz``: the coasts of Natural Earth, packed.
 
     python tools/coastlines.py land-50m.json
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats
 
-TARGET = Path(__file__).resolve().parents[1] / "flowtex" / "earth" / "coastlines.npz"
+TARGET = Path(__file__).resolve().parents[1] / "flowtex" / "field" / "earth" / "coastlines.npz"
 #: What is stored for a degree; a step is 1.1 km.
 STEPS_PER_DEGREE = 100
 #: South of it lies the edge of the map, at the pole, and no coast.

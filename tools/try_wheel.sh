@@ -35,4 +35,4 @@ cd flowtex-*
 # Neither the folder nor pyproject.toml puts the archive's package before the wheel.
 PYTHONSAFEPATH=1 "$bin/python" -m pytest -q -n 2 --dist loadfile -o pythonpath=tests \
     -m "not browser and not slow" \
-    tests/test_settings.py tests/test_camera.py tests/test_packaging.py tests/textures tests/rendering/test_vtk.py
+    tests/test_settings.py tests/rendering/test_camera.py tests/test_packaging.py tests/textures tests/rendering/test_vtk.py

@@ -1,4 +1,4 @@
-// The camera: how it is moved, and how it sees. flowtex/camera.py does the same in Python.
+// The camera: how it is moved, and how it sees. flowtex/rendering/camera.py does the same in Python.
 
 import {
   add,
@@ -35,7 +35,7 @@ export interface Surface {
   reach?: number;
 }
 
-/** How far a camera may go: CameraLimits of flowtex/camera.py. */
+/** How far a camera may go: CameraLimits of flowtex/rendering/camera.py. */
 export interface CameraLimits {
   /** Deepest and farthest zoom, relative to the whole surface. */
   deepest_zoom: number;

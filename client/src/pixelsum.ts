@@ -26,7 +26,7 @@ export interface PixelPlace {
   rows: number;
 }
 
-/** The same as flowtex/probe.py computes. */
+/** The same as flowtex/scene/probe.py computes. */
 export interface PixelSum {
   /** In the order in which the flow passes them. */
   samples: Sample[];

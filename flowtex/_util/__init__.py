@@ -1,1 +1,5 @@
-"""Helpers of the whole package: array types, caches, colours, files, progress, extras."""
+"""What knows nothing of flows; and the version, as every room can read it here."""
+
+from __future__ import annotations
+
+__version__ = "0.1.0"

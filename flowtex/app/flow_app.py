@@ -24,7 +24,7 @@ from flowtex.app.streaming.viewport import Viewport
 from flowtex.app.ui.layout import build_page
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.options import ViewOptions
+from flowtex.scene.options import ViewOptions
 
 #: Arguments that choose a part of a file or a mesh, and those that change how it is read.
 CHOICE_ARGUMENTS = tuple(f.name for f in fields(Choice))

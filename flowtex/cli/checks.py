@@ -11,7 +11,7 @@ from typing import Any
 from flowtex._util.arguments import checked_target
 from flowtex._util.extras import install_extra
 from flowtex.cli.options import UsageError, arguments
-from flowtex.options import Options
+from flowtex.scene.options import Options
 from flowtex.textures.images import load_image
 
 
@@ -41,7 +41,7 @@ def check_page_file(output: Path) -> None:
 
 def check_movie_file(output: Path, size: tuple[int, int], fps: float | None, quality: int) -> None:
     """Raise an error if the movie could not be written, before anything is drawn."""
-    from flowtex.offscreen.encoders import check_movie, default_fps
+    from flowtex.plotting.offscreen.encoders import check_movie, default_fps
 
     try:
         check_movie(output, size, default_fps(output) if fps is None else fps, quality)

@@ -14,7 +14,7 @@ from flowtex._util.notices import Notice
 from flowtex._util.progress import waiting
 from flowtex._util.terminal.console import terminal
 from flowtex.cli.options import UsageError, flag_names
-from flowtex.options import FieldOptions
+from flowtex.scene.options import FieldOptions
 
 if TYPE_CHECKING:
     from flowtex.field import FlowField

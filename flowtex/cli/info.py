@@ -161,7 +161,7 @@ def _span(array: ArraySummary) -> tuple[str, str]:
 def _field_table(field: FlowField) -> Table:
     import numpy as np
 
-    from flowtex.tiles import has_pyramid
+    from flowtex.textures.tiles import has_pyramid
 
     table = _pairs(
         "What would be drawn by default" if has_pyramid(field) else "What would be drawn"

@@ -1,6 +1,6 @@
 """Flags of the command line: of the file, the picture, the page, and the settings.
 
-Most are made from the option classes of :mod:`flowtex.options` and from
+Most are made from the option classes of :mod:`flowtex.scene.options` and from
 :data:`flowtex.settings.TABLE`; this module adds those of the shell only.
 """
 
@@ -17,7 +17,7 @@ from cyclopts.validators import Number
 
 from flowtex._util.written import Form, UnreadableError, number_or_text
 from flowtex.errors import FieldError
-from flowtex.options import Appearance, FieldOptions, ViewOptions
+from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
 from flowtex.settings import TABLE, Setting
 
 FLOW, PICTURE = Group("The flow", sort_key=1), Group("The picture", sort_key=2)

@@ -75,8 +75,8 @@ def serve_processes(page: ServeFlags | None) -> bool:
 def serve_library(library: Library, page: ServeFlags | None, options: dict[str, Any]) -> int:
     """Serve flows as a page, or, in a process that is a session, have it show them."""
     from flowtex.app.flow_app import app_maker, first_choice, serve
-    from flowtex.options import Appearance
-    from flowtex.scene import Scene
+    from flowtex.scene.options import Appearance
+    from flowtex.scene.scene import Scene
 
     page = page or ServeFlags()
     with waiting(f"Reading {library.names[0]}"):

@@ -164,8 +164,8 @@ def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | N
     the flags choose more than the page can.
     """
     from flowtex.app import Library
-    from flowtex.earth import GLOBE, NAMES
     from flowtex.field.datasets.files import dataset_paths
+    from flowtex.field.earth import GLOBE, NAMES
 
     known = {"vectors", "projection", "globe", "level"}
     if not dataset_paths(files) or set(choice) - known:

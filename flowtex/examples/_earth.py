@@ -10,7 +10,7 @@ import scipy
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.extras import import_extra
-from flowtex.earth import EARTH_RADIUS, Projection, coastlines
+from flowtex.field.earth import EARTH_RADIUS, Projection, coastlines
 
 if TYPE_CHECKING:
     import xarray as xr

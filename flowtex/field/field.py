@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.notices import notify
-from flowtex.earth import Projection
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds
 from flowtex.field.derived import (
@@ -28,6 +27,7 @@ from flowtex.field.derived import (
     followed_steps,
     speed_unit,
 )
+from flowtex.field.earth import Projection
 from flowtex.field.formula import Formula
 from flowtex.field.gaps import filled_gaps
 from flowtex.field.grids.arrays import grid_nodes

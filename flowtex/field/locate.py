@@ -198,7 +198,7 @@ def locate(
     Examples
     --------
     >>> import flowtex
-    >>> from flowtex.probe import locate
+    >>> from flowtex.scene.probe import locate
     >>> field = flowtex.examples.double_gyre_field()  # 101 x 201 nodes on [0, 2] x [0, 1]
     >>> [round(number, 6) for number in locate(field, (0.5, 0.25))]
     [25.0, 50.0]

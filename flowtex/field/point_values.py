@@ -31,7 +31,7 @@ class PointValues:
     Examples
     --------
     >>> import flowtex
-    >>> from flowtex.probe import values_at
+    >>> from flowtex.scene.probe import values_at
     >>> values = values_at(flowtex.examples.double_gyre_field(), (25, 50))
     >>> [round(float(x), 2) for x in values.position], round(values.speed, 3)
     ([0.5, 0.25, 0.0], 0.222)
@@ -67,7 +67,7 @@ def values_at(field: FlowField, index: ArrayLike, time: Any = None) -> PointValu
     field
         The flow.
     index
-        (j, i) in cells; :func:`~flowtex.probe.locate` returns it for a point in space.
+        (j, i) in cells; :func:`~flowtex.scene.probe.locate` returns it for a point in space.
     time
         Time in the field's unit; or a date, as text, ``numpy.datetime64``, ``datetime`` or of
         cftime, if the times are dates. The last one by default.
@@ -80,7 +80,7 @@ def values_at(field: FlowField, index: ArrayLike, time: Any = None) -> PointValu
     Examples
     --------
     >>> import flowtex
-    >>> from flowtex.probe import locate, values_at
+    >>> from flowtex.scene.probe import locate, values_at
     >>> field = flowtex.examples.cylinder_field()
     >>> at = locate(field, (2.0, 0.5))
     >>> sorted(values_at(field, at, time=field.times[3]).scalars)

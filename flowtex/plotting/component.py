@@ -15,12 +15,12 @@ import pyvista as pv
 from flowtex._util.notices import notify
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.options import Appearance, FieldOptions, accepts_options
 from flowtex.plotting.bodies import read_bodies
 from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.vtk_camera import look, read_camera
 from flowtex.rendering.webgl.bodies import Bodies
-from flowtex.scene import Scene
+from flowtex.scene.options import Appearance, FieldOptions, accepts_options
+from flowtex.scene.scene import Scene
 from flowtex.textures.images import as_image
 
 __all__ = ["FlowHandle", "FlowtexComponent"]

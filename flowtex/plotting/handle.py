@@ -11,13 +11,13 @@ import pyvista as pv
 
 from flowtex._util.arguments import checked_number
 from flowtex._util.colours import colour_table
-from flowtex.options import NO_VALUE_COLOR, Appearance, AppearanceAttributes, FieldOptions
 from flowtex.plotting.map_overlay import MapOverlay
 from flowtex.plotting.scalar_bar import SCALAR_BAR, arrange_with
 from flowtex.plotting.structure_overlay import StructureOverlay
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
-from flowtex.scene import Change, Scene, share_field
+from flowtex.scene.options import NO_VALUE_COLOR, Appearance, AppearanceAttributes, FieldOptions
+from flowtex.scene.scene import Change, Scene, share_field
 
 #: A lit surface: dark sides stay bright enough to read the texture there.
 LIGHT: dict[str, Any] = {"ambient": AMBIENT_LIGHT, "diffuse": DIFFUSE_LIGHT}

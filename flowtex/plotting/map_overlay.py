@@ -8,14 +8,14 @@ import numpy as np
 import pyvista as pv
 
 from flowtex._util.array_types import Bools
-from flowtex.earth import MapLines
 from flowtex.field import FlowField
+from flowtex.field.earth import MapLines
 from flowtex.plotting.overlay import Overlay, piece_mesh
 from flowtex.plotting.vtk_camera import read_camera
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.map_overlay import SPACINGS, STROKES, globe_radius, land_cells, map_lines
 from flowtex.rendering.vtk import FlowSurface
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 
 #: How much farther than the surface land is, as a share of the distance.
 LAND_FARTHER = 2e-4

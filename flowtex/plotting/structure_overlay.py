@@ -23,7 +23,7 @@ from flowtex.rendering.structure_marks import (
     RIM_OPACITY,
 )
 from flowtex.rendering.vtk import FlowSurface
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 from flowtex.trace.structure import CriticalPoints
 
 #: Structures are found one after the other, beside what else goes on.

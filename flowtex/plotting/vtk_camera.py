@@ -1,11 +1,11 @@
-"""Between :class:`~flowtex.camera.Camera` and the camera of a VTK renderer."""
+"""Between :class:`~flowtex.rendering.camera.Camera` and the camera of a VTK renderer."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 
 
 def read_camera(vtk_camera: Any) -> Camera:

@@ -55,8 +55,8 @@ from flowtex.pyramid.tasks import (
     mend,
 )
 from flowtex.pyramid.workers import PART_BYTES, TILE_BYTES, Cluster, Threads
-from flowtex.tiles import TileKey
-from flowtex.tiles.pyramid import level_lines, level_shape
+from flowtex.textures.tiles import TileKey
+from flowtex.textures.tiles.pyramid import level_lines, level_shape
 
 #: So many failures one after the other end a build: the store is full, or write-protected.
 MOST_FAILURES = 20

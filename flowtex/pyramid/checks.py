@@ -18,7 +18,7 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import digest
 from flowtex.field.steps import Nodes
 from flowtex.pyramid.places import FORMAT, DamageError, PyramidError
-from flowtex.tiles.pyramid import level_shape
+from flowtex.textures.tiles.pyramid import level_shape
 
 #: Nodes along an axis, steps, levels, characters of a text, and scalars, at most.
 MOST_NODES, MOST_STEPS, MOST_LEVELS, MOST_LETTERS, MOST_SCALARS = 10**7, 10**6, 40, 10_000, 1000

@@ -30,7 +30,7 @@ from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl import ClientData, Colours, can_trace, single, tile_parts
 from flowtex.rendering.webgl.protocol import Parts, parts_file
 from flowtex.textures import TextureSet
-from flowtex.tiles import TileKey, widened
+from flowtex.textures.tiles import TileKey, widened
 from flowtex.trace import SliceStore
 
 #: What of the slices is the same in all tiles, and told by the page.

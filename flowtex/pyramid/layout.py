@@ -36,17 +36,17 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from flowtex._util import __version__
 from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.extras import import_extra
-from flowtex._version import __version__
-from flowtex.earth import Projection
 from flowtex.field import FlowField
 from flowtex.field.dates import date_of, written_date
+from flowtex.field.earth import Projection
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.places import FORMAT
 from flowtex.pyramid.source import Source
-from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS
-from flowtex.tiles.pyramid import level_shape, root_level
+from flowtex.textures.tiles import BLOCK_CELLS, TILE_BLOCKS
+from flowtex.textures.tiles.pyramid import level_shape, root_level
 
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.

@@ -33,8 +33,8 @@ from flowtex.pyramid.layout import (
 from flowtex.pyramid.places import DamageError, PyramidError, ReadFault, place_text, store_at, sync
 from flowtex.pyramid.samples import SAMPLES, create_samples
 from flowtex.rendering.webgl.protocol import file_infos
-from flowtex.tiles import TileKey
-from flowtex.tiles.pyramid import level_shape
+from flowtex.textures.tiles import TileKey
+from flowtex.textures.tiles.pyramid import level_shape
 
 #: What of an array's metadata decides on the meaning of its bytes.
 FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_value", "codecs")

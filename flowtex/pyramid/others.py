@@ -24,7 +24,7 @@ from flowtex.field.datasets.regions import Regions
 from flowtex.field.steps import LazySteps, Nodes
 from flowtex.pyramid.places import PyramidError, ReadFault, fault_words
 from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, source_of
-from flowtex.tiles.pyramid import ROOT_NODES, level_lines, root_level
+from flowtex.textures.tiles.pyramid import ROOT_NODES, level_lines, root_level
 
 #: Nodes of a level may be so many times as far apart as those that are drawn.
 WIDER = 1.5

@@ -24,7 +24,7 @@ from flowtex.pyramid.layout import (
     create_array,
     parts_along,
 )
-from flowtex.tiles import ends_of
+from flowtex.textures.tiles import ends_of
 
 SAMPLES = "samples"
 #: Nodes of a sample of one quantity at one time.

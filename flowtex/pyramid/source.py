@@ -38,7 +38,7 @@ from flowtex.pyramid.places import (
     place_text,
     store_at,
 )
-from flowtex.tiles import Pyramid, drawn_speeds, ends_of
+from flowtex.textures.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
 
 #: Nodes up to which a dataset is opened as a whole.

@@ -20,8 +20,8 @@ from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.others import OtherLevels, levels_of_others
 from flowtex.pyramid.places import PyramidError, is_store, place_text
 from flowtex.textures import TextureSet
-from flowtex.tiles import Pyramid, TileKey, attach_pyramid
-from flowtex.tiles.pyramid import averaged
+from flowtex.textures.tiles import Pyramid, TileKey, attach_pyramid
+from flowtex.textures.tiles.pyramid import averaged
 
 
 def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) -> FlowField:

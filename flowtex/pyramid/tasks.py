@@ -32,8 +32,8 @@ from flowtex.pyramid.places import ChangedError, DamageError, store_at, sync
 from flowtex.pyramid.samples import write_samples
 from flowtex.pyramid.source import Source
 from flowtex.pyramid.stored import StoredPyramid, root_of
-from flowtex.tiles import TileKey
-from flowtex.tiles.pyramid import averaged, beside, level_lines
+from flowtex.textures.tiles import TileKey
+from flowtex.textures.tiles.pyramid import averaged, beside, level_lines
 
 
 class TileTask(NamedTuple):

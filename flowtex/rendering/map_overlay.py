@@ -10,8 +10,8 @@ import scipy
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.blocks import bounds
 from flowtex._util.vectors import norm
-from flowtex.earth import EARTH_RADIUS, MapLines, coastlines, graticule
 from flowtex.field import FlowField
+from flowtex.field.earth import EARTH_RADIUS, MapLines, coastlines, graticule
 
 
 class Stroke(NamedTuple):

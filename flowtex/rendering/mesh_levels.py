@@ -21,7 +21,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices, Ints
 from flowtex._util.vectors import dot, norm
 from flowtex.textures import TextureSet
-from flowtex.tiles import BLOCK_CELLS, block_places
+from flowtex.textures.tiles import BLOCK_CELLS, block_places
 
 #: Distance on the screen between a node and the triangle that replaces it.
 MAX_ERROR_PIXELS = 0.05

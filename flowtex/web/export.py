@@ -24,16 +24,16 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
+from flowtex._util import __version__
 from flowtex._util.arguments import checked_target
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
-from flowtex._version import __version__
 from flowtex.errors import FieldError
-from flowtex.options import Appearance, FieldOptions, ViewOptions, accepts_options
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
-from flowtex.tiles import Pyramid
+from flowtex.scene.options import Appearance, FieldOptions, ViewOptions, accepts_options
+from flowtex.textures.tiles import Pyramid
 from flowtex.web import preview
 from flowtex.web.assets import asset, client_script
 from flowtex.web.linked import StoreLink, first_parts, linked_data, store_header
@@ -277,9 +277,9 @@ def page_pieces(
 ) -> Iterator[str]:
     """Give the text of a page piece by piece; each array is packed when it is reached.
 
-    ``axes`` is that of :class:`~flowtex.options.ViewOptions`. Camera, time and clock are those of
-    :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page has drawn;
-    made here if missing. ``link`` says where the rest is; ``scenes`` are then of
+    ``axes`` is that of :class:`~flowtex.scene.options.ViewOptions`. Camera, time and clock are
+    those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page
+    has drawn; made here if missing. ``link`` says where the rest is; ``scenes`` are then of
     :func:`linked_data`.
     """
     now = {"camera": camera, "time": time, "clock": clock}

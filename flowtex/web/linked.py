@@ -11,7 +11,7 @@ from flowtex.errors import FieldError
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts
-from flowtex.tiles import shared_pyramid
+from flowtex.textures.tiles import shared_pyramid
 from flowtex.web.view import WebView
 
 #: What a name of a server may have, of which nothing means anything in a policy of a page.

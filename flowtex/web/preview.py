@@ -15,13 +15,13 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Bytes, Floats
 from flowtex._util.colours import rgb
-from flowtex.camera import Camera
 from flowtex.field.interpolation import steps_around
-from flowtex.options import NO_VALUE_COLOR
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.map_overlay import SPACING_PX, SPACINGS, STROKES, map_lines
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData
+from flowtex.scene.options import NO_VALUE_COLOR
 from flowtex.settings import Settings
 from flowtex.web.view import WebView
 

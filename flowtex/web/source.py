@@ -27,7 +27,7 @@ from flowtex.field.derived import steps_of
 from flowtex.rendering.webgl import ClientData, Packing, packing_of, tile_parts
 from flowtex.rendering.webgl.protocol import Parts
 from flowtex.textures import TextureSet
-from flowtex.tiles import TileKey
+from flowtex.textures.tiles import TileKey
 
 #: Memory of the tiles that are kept to be sent again, and of a node of them, in bytes.
 BUDGET_BYTES, NODE_BYTES = 400_000_000, 200

@@ -12,13 +12,13 @@ from flowtex._util.colours import colour_table, rgb
 from flowtex.field import FlowField
 from flowtex.field.datasets.notices import notify_section
 from flowtex.field.derived import steps_of
-from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.rendering.webgl.marks import MARK_PARTS, Marks
-from flowtex.scene import Scene, share_field
+from flowtex.scene.options import Options
+from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import TABLE
-from flowtex.tiles import Pyramid
+from flowtex.textures.tiles import Pyramid
 
 
 class WebView:

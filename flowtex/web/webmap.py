@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-from flowtex._version import __version__
+from flowtex._util import __version__
 from flowtex.errors import FieldError
 from flowtex.web.assets import asset
 from flowtex.web.view import WebView

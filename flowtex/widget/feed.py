@@ -28,8 +28,8 @@ from flowtex._util.threads import has_threads
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
-from flowtex.scene import Change
-from flowtex.tiles import TileKey
+from flowtex.scene.scene import Change
+from flowtex.textures.tiles import TileKey
 from flowtex.web import preview
 from flowtex.web.source import TileSource
 from flowtex.web.view import WebView

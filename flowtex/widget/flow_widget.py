@@ -16,18 +16,18 @@ from typing import Any
 import numpy as np
 import traitlets
 
-from flowtex.camera import Camera, can_share_camera
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
-from flowtex.options import (
+from flowtex.rendering.camera import Camera, can_share_camera
+from flowtex.scene.options import (
     Appearance,
     AppearanceAttributes,
     FieldOptions,
     ViewOptions,
     accepts_options,
 )
-from flowtex.scene import NO_IMAGE, Change, Scene, share_field
+from flowtex.scene.scene import NO_IMAGE, Change, Scene, share_field
 from flowtex.settings import TABLE
 from flowtex.textures.images import load_image
 from flowtex.web.assets import client_module

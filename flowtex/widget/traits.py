@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import traitlets
 
-from flowtex.camera import Camera
 from flowtex.errors import FieldError
+from flowtex.rendering.camera import Camera
 from flowtex.settings import TABLE, Setting, SettingsError
 
 __all__ = ["CameraTrait", "SettingTrait", "SettingTraits", "SizeTrait", "TraitValueError"]

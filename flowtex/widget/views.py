@@ -17,8 +17,8 @@ import numpy as np
 from flowtex.field import FlowField
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
-from flowtex.scene import Scene, follow, lay_image
-from flowtex.tiles import TileKey
+from flowtex.scene.scene import Scene, follow, lay_image
+from flowtex.textures.tiles import TileKey
 from flowtex.web.view import WebView
 from flowtex.widget.feed import Feed
 

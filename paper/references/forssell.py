@@ -21,8 +21,8 @@ from numpy.typing import ArrayLike
 from scipy import ndimage
 
 from flowtex._util.array_types import Floats
-from flowtex.camera import Camera
 from flowtex.field import FlowField
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.raster import cover
 from paper.references.lic import lic
 

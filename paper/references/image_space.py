@@ -25,9 +25,9 @@ import numpy as np
 from scipy import ndimage
 
 from flowtex._util.array_types import Floats
-from flowtex.camera import Camera
 from flowtex.errors import raise_faults
 from flowtex.field import FlowField
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.raster import cover
 
 #: Frames in which a grain of the noise blinks once.

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex.camera import Camera
 from flowtex.examples import double_gyre_velocity
 from flowtex.field import FlowField
+from flowtex.rendering.camera import Camera
 from paper import measures
 from paper.bench import PAPER, Bench
 from paper.findings import Block, Claim, Finding, Panel, Plate, Section, Table

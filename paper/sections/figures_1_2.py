@@ -9,8 +9,8 @@ import numpy as np
 from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex._util.blocks import block_means
 from flowtex.field import FlowField
-from flowtex.probe import Probe, probe
-from flowtex.scene import Scene
+from flowtex.scene.probe import Probe, probe
+from flowtex.scene.scene import Scene
 from flowtex.trace import trace
 from paper.bench import PAPER, Bench
 from paper.findings import Block, Claim, Finding, Plot, Section, Table
@@ -263,7 +263,7 @@ SECTIONS = [
         "A fragment looks up the slices at its own texture coordinates, and with what it finds "
         "there the noise; K such texels are averaged.",
         "One pixel of the gyre, by the paper's method with ten contributions: what it looked up, "
-        "written down by the renderer itself (flowtex.probe).",
+        "written down by the renderer itself (flowtex.scene.probe).",
         _figure2,
     ),
 ]

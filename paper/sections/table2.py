@@ -53,10 +53,10 @@ def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float
         return {}
     import pyvista as pv
 
-    from flowtex.options import Appearance
     from flowtex.plotting.handle import FlowHandle
     from flowtex.plotting.vtk_camera import look
-    from flowtex.scene import Scene
+    from flowtex.scene.options import Appearance
+    from flowtex.scene.scene import Scene
 
     plotter: Any = pv.Plotter(off_screen=True, window_size=list(PICTURE_SIZE))
     try:

@@ -28,7 +28,7 @@ from flowtex.app.streaming.painter import MOST_PIXELS
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 from flowtex.field.source import FlowSource, Source
-from flowtex.probe import probe
+from flowtex.scene.probe import probe
 from flowtex.settings import Settings
 
 pytestmark = pytest.mark.usefixtures("opengl")

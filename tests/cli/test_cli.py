@@ -16,7 +16,7 @@ from PIL import Image
 from flowtex import diagnostics, examples
 from flowtex.cli import commands, main
 from flowtex.cli.console import in_flags
-from flowtex.options import Appearance, FieldOptions, ViewOptions
+from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
 from flowtex.settings import TABLE
 
 Run = Callable[..., tuple[int, str, str]]

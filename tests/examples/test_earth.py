@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from flowtex import FlowField, examples
-from flowtex.earth import EARTH_RADIUS
+from flowtex.field.earth import EARTH_RADIUS
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("pyproj")

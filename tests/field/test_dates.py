@@ -12,7 +12,7 @@ from flowtex import FlowField
 from flowtex._util.notices import Notice
 from flowtex.errors import FieldError
 from flowtex.field.dates import date_text
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 
 xr: Any = pytest.importorskip("xarray")
 pytest.importorskip("cftime")

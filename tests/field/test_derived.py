@@ -9,8 +9,8 @@ from scipy.spatial import ConvexHull, Delaunay
 import flowtex
 from flowtex import FieldError, FlowField
 from flowtex._util.array_types import Floats
-from flowtex.earth import EARTH_RADIUS, Projection
 from flowtex.field.derived import DERIVED
+from flowtex.field.earth import EARTH_RADIUS, Projection
 from flowtex.field.steps import LazySteps
 
 Made = tuple[FlowField, dict[str, Floats]]

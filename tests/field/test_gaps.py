@@ -12,7 +12,7 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.gaps import NO_DATA
 from flowtex.field.steps import LazySteps
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 
 X, Y = np.meshgrid(np.linspace(0, 3, 30), np.linspace(0, 2, 20))
 TRIANGLES = np.array([[0, 1, 2], [1, 3, 2]])

@@ -15,7 +15,7 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds, date_text, seconds_since
 from flowtex.field.steps import LazySteps, map_steps
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 from flowtex.trace import SliceStore
 
 cftime: Any = pytest.importorskip("cftime")

@@ -12,14 +12,14 @@ from small_tiles import shrink
 
 from flowtex import FlowField, quality
 from flowtex._util.array_types import Floats
-from flowtex.camera import Camera
 from flowtex.errors import FieldError
 from flowtex.field.uncertainty import UNCERTAINTY, unknown_share, with_uncertainty
-from flowtex.options import FieldOptions
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import Picture, render
-from flowtex.scene import Scene, share_field
+from flowtex.scene.options import FieldOptions
+from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import Settings
-from flowtex.tiles import Pyramid
+from flowtex.textures.tiles import Pyramid
 
 
 def straight() -> FlowField:

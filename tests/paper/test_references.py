@@ -11,7 +11,7 @@ from measures import streaks
 from numpy.typing import NDArray
 
 from flowtex import FlowField
-from flowtex.camera import Camera
+from flowtex.rendering.camera import Camera
 from paper.references import ImageSpace, draw_texture, forssell_lic, lic
 
 Floats = NDArray[np.float64]

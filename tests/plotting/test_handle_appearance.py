@@ -12,8 +12,8 @@ from flows import gyre
 
 import flowtex
 from flowtex import FieldError
-from flowtex.options import NO_VALUE_COLOR
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
+from flowtex.scene.options import NO_VALUE_COLOR
 
 pytestmark = pytest.mark.usefixtures("opengl")
 

@@ -15,13 +15,13 @@ from small_tiles import shrink
 import flowtex
 from flowtex._util.array_types import Floats
 from flowtex._util.colours import rgb
-from flowtex.camera import Camera
-from flowtex.earth import EARTH_RADIUS, Projection
-from flowtex.options import LAND_COLOR
+from flowtex.field.earth import EARTH_RADIUS, Projection
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
 from flowtex.plotting.vtk_camera import read_camera
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.map_overlay import globe_radius, land_cells, map_lines
 from flowtex.rendering.vtk import FlowSurface
+from flowtex.scene.options import LAND_COLOR
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -152,7 +152,7 @@ def test_land_has_its_colour_or_none(plotter: Any) -> None:
 def test_islands_that_only_finer_levels_have_are_land(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 300)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 300)
     shrink(monkeypatch.setattr)
     lon, lat = np.linspace(5, 20, 151), np.linspace(5, 15, 101)
     data = winds_on_lines(lon, lat)

@@ -11,7 +11,7 @@ from mesh_data import Globe, globe, icon, ugrid
 
 import flowtex
 from flowtex import FlowField
-from flowtex.earth import EARTH_RADIUS
+from flowtex.field.earth import EARTH_RADIUS
 from flowtex.rendering.map_overlay import globe_radius, land_cells, map_lines
 
 pytestmark = [

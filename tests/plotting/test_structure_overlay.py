@@ -14,11 +14,11 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.colours import rgb
-from flowtex.camera import Camera
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.structure_marks import KIND_MARKS, LINE_COLORS
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 from flowtex.settings import SettingsError
-from flowtex.tiles import structure
+from flowtex.textures.tiles import structure
 from flowtex.trace.structure import KINDS
 
 #: A picture of four units by two, one of which is this many pixels.

@@ -24,7 +24,7 @@ from flowtex.pyramid import Built, PyramidError, build, client_parts, is_store, 
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.stored import StoredPyramid
-from flowtex.tiles import Pyramid, TileKey, shared_pyramid
+from flowtex.textures.tiles import Pyramid, TileKey, shared_pyramid
 from flowtex.trace.store import shared_store
 
 zarr = pytest.importorskip("zarr")
@@ -32,7 +32,7 @@ zarr = pytest.importorskip("zarr")
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1000)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1000)
 
 
 def grid(rows: int, columns: int) -> tuple[Floats, Floats]:

@@ -21,7 +21,7 @@ from flowtex.pyramid import PyramidError, build, open_store, tasks, verify
 from flowtex.pyramid.build import MOST_FAILURES
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.workers import MOST_TRIALS, Threads
-from flowtex.tiles import TileKey
+from flowtex.textures.tiles import TileKey
 
 zarr = pytest.importorskip("zarr")
 
@@ -164,7 +164,7 @@ def test_tasks_that_fail_keep_no_memory() -> None:
 def test_a_build_of_which_all_fails_ends_soon(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 250)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 250)
     tried = []
 
     def full(*given: Any) -> Any:

@@ -16,11 +16,11 @@ from packed import parts_of
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray
 from flowtex.field.derived import steps_of
-from flowtex.options import Options
 from flowtex.pyramid import build
 from flowtex.pyramid.layout import FILE_CHUNK
 from flowtex.rendering.webgl import tile_parts
-from flowtex.tiles import Pyramid
+from flowtex.scene.options import Options
+from flowtex.textures.tiles import Pyramid
 from flowtex.web.view import web_views
 
 zarr = pytest.importorskip("zarr")
@@ -28,7 +28,7 @@ zarr = pytest.importorskip("zarr")
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
 
 
 def flat() -> FlowField:

@@ -14,7 +14,7 @@ from waiting import PATIENCE_S
 
 from flowtex.pyramid import PyramidError, build, open_store, workers
 from flowtex.pyramid.places import store_at
-from flowtex.tiles import TileKey, shared_pyramid
+from flowtex.textures.tiles import TileKey, shared_pyramid
 
 distributed = pytest.importorskip("distributed")
 xr = pytest.importorskip("xarray")
@@ -56,7 +56,7 @@ def flow(rows: int = 128, columns: int = 256) -> Any:
 def test_workers_build_what_threads_build_though_one_is_killed(
     tmp_path: Path, storage: ObjectStorage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", ROOT_NODES)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", ROOT_NODES)
     source, place = "s3://flows/source.zarr", "s3://flows/deep/flow.zarr"
     flow().to_zarr(store_at(source, read_only=False), consolidated=False)
     data = xr.open_zarr(store_at(source), consolidated=False)
@@ -129,7 +129,7 @@ def _pid() -> int:
 
 
 def _small_roots() -> None:
-    from flowtex.tiles import pyramid
+    from flowtex.textures.tiles import pyramid
 
     pyramid.ROOT_NODES = ROOT_NODES
 

@@ -14,8 +14,8 @@ import flowtex
 from flowtex import FlowField
 from flowtex.cli import main
 from flowtex.pyramid import build
-from flowtex.scene import Scene, share_field
-from flowtex.tiles import has_pyramid
+from flowtex.scene.scene import Scene, share_field
+from flowtex.textures.tiles import has_pyramid
 
 zarr = pytest.importorskip("zarr")
 
@@ -25,7 +25,7 @@ VIEW: dict[str, Any] = {"size": (200, 120), "focus": (3.2, 1.4), "samples": 9}
 @pytest.fixture(autouse=True, scope="module")
 def _small_roots(small_tiles: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
+        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
         yield
 
 

@@ -24,7 +24,7 @@ from flowtex.errors import FieldError
 from flowtex.pyramid import PyramidError, build, open_store
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.levels import Levels
-from flowtex.tiles import Pyramid, TileKey, TileLoader, shared_pyramid
+from flowtex.textures.tiles import Pyramid, TileKey, TileLoader, shared_pyramid
 
 pytest.importorskip("zarr")
 
@@ -57,7 +57,7 @@ def flow() -> FlowField:
 def whole(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Path:
     place = tmp_path_factory.mktemp("whole") / "flow.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 312)
+        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 312)
         build(flow(), place, progress=False)
     return place
 

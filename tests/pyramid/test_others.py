@@ -17,7 +17,7 @@ from flowtex.cli import main
 from flowtex.errors import FieldError
 from flowtex.pyramid import is_store, open_store
 from flowtex.pyramid.source import has_parts
-from flowtex.tiles import TileKey, shared_pyramid
+from flowtex.textures.tiles import TileKey, shared_pyramid
 
 zarr = pytest.importorskip("zarr")
 xr = pytest.importorskip("xarray")
@@ -33,7 +33,7 @@ TOLD: dict[str, Any] = {
 @pytest.fixture(autouse=True, scope="module")
 def _small(small_tiles: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 500)
+        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 500)
         for module in ("others", "source"):
             patch.setattr(f"flowtex.pyramid.{module}.WHOLE_NODES", 1000)
         yield

@@ -13,7 +13,7 @@ import flowtex
 from flowtex import FlowField
 from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.pyramid import build, open_store
-from flowtex.tiles import has_pyramid, shared_pyramid
+from flowtex.textures.tiles import has_pyramid, shared_pyramid
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
@@ -33,7 +33,7 @@ def test_pictures_are_those_of_the_files(
     name: str, data_dir: Path, tmp_path: Path, opengl: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The files are small, so that there would be no levels.
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1000)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1000)
     files = [tmp_path / file for file in FILES[name]]
     for file in files:
         with xr.open_dataset(data_dir / file.name, decode_cf=False) as whole:

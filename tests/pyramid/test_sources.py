@@ -18,7 +18,6 @@ from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
 from flowtex.field.datasets.regions import Regions
 from flowtex.field.steps import Nodes
-from flowtex.options import FieldOptions
 from flowtex.pyramid import build, layout, open_store, verify
 from flowtex.pyramid.checks import sealed
 from flowtex.pyramid.layout import FILE_CHUNK
@@ -27,9 +26,10 @@ from flowtex.pyramid.places import ChangedError, PyramidError
 from flowtex.pyramid.source import RegionSource, source_of
 from flowtex.pyramid.workers import OWN_BYTES, PART_BYTES, TILE_BYTES, Threads
 from flowtex.rendering.webgl.protocol import file_infos
-from flowtex.scene import Scene
+from flowtex.scene.options import FieldOptions
+from flowtex.scene.scene import Scene
 from flowtex.textures.texture_set import UNCERTAIN_LAYER
-from flowtex.tiles import TileKey, shared_pyramid
+from flowtex.textures.tiles import TileKey, shared_pyramid
 
 zarr = pytest.importorskip("zarr")
 xr = pytest.importorskip("xarray")
@@ -37,7 +37,7 @@ xr = pytest.importorskip("xarray")
 
 @pytest.fixture(autouse=True)
 def _small(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
 
 
 def dataset(lon: Floats, lat: Floats, *, steps: int = 1, plane: bool = False) -> Any:

@@ -13,7 +13,7 @@ from flowtex._util.array_types import Bytes
 from flowtex.plotting.vtk_camera import apply_camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.webgl import ClientData, Colours
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 
 #: Whether Chromium draws with the WebGL that it brings, which filters with fewer digits.
 OWN = """(({ gl }) => gl.getExtension('WEBGL_debug_renderer_info') !== null

@@ -12,14 +12,14 @@ from strategies import field_arguments, field_of, property_test, setting_values
 
 import flowtex
 from flowtex import FlowField
-from flowtex.camera import Camera
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.mesh_levels import MeshLevels
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl.client_data import ClientData, Colours
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from flowtex.tiles import STRUCTURE
+from flowtex.textures.tiles import STRUCTURE
 
 SIZE = (15, 10)
 #: Greatest number in half precision.

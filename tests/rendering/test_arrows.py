@@ -15,10 +15,10 @@ from scipy.spatial import cKDTree
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
-from flowtex.camera import Camera
 from flowtex.field.grids.surface import GridSurface
 from flowtex.quality import spacing
 from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.tile_choice import TileView
 from flowtex.rendering.uniforms import ARROW_LEAST
 from flowtex.textures.geometry import SurfaceGeometry

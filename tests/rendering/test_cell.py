@@ -16,10 +16,10 @@ from triangle_meshes import random_plane, soup
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.locate import locate
-from flowtex.probe import probe
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState, is_near
-from flowtex.scene import Scene
+from flowtex.scene.probe import probe
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
 #: In cells of a grid of 40 by 40 nodes; neither on a node nor in the middle of a cell.

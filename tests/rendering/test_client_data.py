@@ -11,11 +11,11 @@ from triangle_meshes import sphere, surface_of
 import flowtex
 from flowtex import FlowField, examples
 from flowtex._util.colours import colour_table
-from flowtex.options import Options
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import part_info
+from flowtex.scene.options import Options
 from flowtex.settings import TABLE, Settings
-from flowtex.tiles import coarsened_field
+from flowtex.textures.tiles import coarsened_field
 from flowtex.web.view import WebView, even_steps, web_views
 
 
@@ -202,7 +202,7 @@ def test_a_coarse_surface_of_triangles_has_means(monkeypatch: pytest.MonkeyPatch
     places = coarse.points[0]
     np.testing.assert_allclose(coarse.velocity[0, 0], np.cross([0.0, 0, 1], places), atol=1e-9)
     assert coarsened_field(fine, 10**6) is fine
-    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 1000)
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 1000)
     assert coarsened_field(fine, 500) is fine  # its levels come one after the other anyway
 
 

@@ -22,12 +22,11 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Indices
 from flowtex._util.colours import colour_table
-from flowtex.camera import CAMERA_LIMITS, Camera
-from flowtex.earth import MapLines, Projection
 from flowtex.field.dates import date_text
+from flowtex.field.earth import MapLines, Projection
 from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
-from flowtex.probe import probe
 from flowtex.rendering.arrow_seeds import ArrowSeeds, seed_limits
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.noise import noise_lattice, octave
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.map_overlay import map_lines
@@ -38,12 +37,13 @@ from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.marks import Marks
 from flowtex.rendering.webgl.velocity import velocity_part
-from flowtex.scene import Scene
+from flowtex.scene.probe import probe
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet, as_picture
-from flowtex.tiles import TILE_BLOCKS, Pyramid, TileKey, shared_structure
-from flowtex.tiles.structure import DRAWN_EXTENTS
-from flowtex.tiles.triangle_pyramid import TrianglePyramid
+from flowtex.textures.tiles import TILE_BLOCKS, Pyramid, TileKey, shared_structure
+from flowtex.textures.tiles.structure import DRAWN_EXTENTS
+from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
 from flowtex.trace import SliceStore
 from flowtex.trace.structure import critical_points, separatrices
 
@@ -470,8 +470,8 @@ def tiled_triangles(seed: int) -> dict[str, Any]:
 
 
 def test_tiles_of_triangles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 150)
-    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.MOST_OVERLAP", 4.0)
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 150)
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.MOST_OVERLAP", 4.0)
     expected = tiled_triangles(1)
     assert expected["pyramid"]["depth"] > 1
     assert any(len(view["shown"]) > 1 for view in expected["views"])
@@ -479,7 +479,7 @@ def test_tiles_of_triangles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_tiles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 5000)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 5000)
     expected = tiled(1)
     assert all(len(view["shown"]) > 1 for view in expected["views"])
     check("tiles.json", expected)

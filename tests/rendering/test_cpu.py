@@ -12,7 +12,7 @@ from scipy import ndimage
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.camera import Camera
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu import raster
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.mipmaps import Mips

@@ -15,10 +15,10 @@ from triangle_meshes import cube, random_plane, soup, surface_of
 
 import flowtex
 from flowtex import FlowField
-from flowtex.camera import Camera
 from flowtex.plotting.vtk_camera import apply_camera
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.triangle_blocks import TriangleBlocks
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 from flowtex.settings import SettingsError
 from flowtex.textures import TriangleGeometry
 

@@ -11,7 +11,7 @@ import pytest
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field import FlowField
 from flowtex.rendering.mesh_levels import MAX_ERROR_PIXELS, MeshLevels, Region, join
-from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
+from flowtex.textures.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
 
 SHAPES = [(2, 2), (65, 65), (66, 130), (64, 200), (3, 300), (100, 2)]
 
@@ -176,7 +176,7 @@ def _mixed(pyramid: Pyramid, rng: np.random.Generator) -> list[tuple[Region, Mes
 
 @pytest.mark.parametrize("seed", range(5))
 def test_tiles_of_different_levels_join_without_cracks(seed: int, monkeypatch: Any) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 5000)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 5000)
     rng = np.random.default_rng(seed)
     shape = (int(rng.integers(200, 700)), int(rng.integers(200, 900)))
     points = grid(shape)

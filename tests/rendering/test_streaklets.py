@@ -11,12 +11,12 @@ from scipy import ndimage
 
 from flowtex import FlowField, quality
 from flowtex._util.array_types import Floats
-from flowtex.camera import Camera
 from flowtex.field.locate import locator
 from flowtex.rendering import constants as const
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.uniforms import ViewState, is_sparse
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
 SIZE = (120, 80)

@@ -13,15 +13,15 @@ from waiting import PATIENCE_S
 import flowtex
 from flowtex.field import FlowField
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
-from flowtex.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
-from flowtex.tiles.shared import _pyramids
+from flowtex.textures.tiles import BLOCK_CELLS, TILE_BLOCKS, Pyramid, TileKey
+from flowtex.textures.tiles.shared import _pyramids
 
 SIZE = (320, 240)
 
 
 @pytest.fixture
 def _tiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 3000)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 3000)
 
 
 def flat(rows: int = 300, columns: int = 420) -> FlowField:
@@ -66,7 +66,7 @@ CASES: dict[Any, list[tuple[dict[str, Any], float]]] = {
 def test_tiles_draw_what_the_whole_draws(make: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     field, pictures = make(), []
     for root in (10**9, 3000):
-        monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", root)
+        monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", root)
         _pyramids._values.clear()
         pictures.append([flowtex.render(field, size=SIZE, **how) for how, _ in CASES[make]])
     for whole, tiles, (_, most) in zip(*pictures, CASES[make], strict=True):

@@ -16,8 +16,8 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats
 from flowtex.cli import main
-from flowtex.options import Appearance
-from flowtex.scene import Scene
+from flowtex.scene.options import Appearance
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings, SettingsError
 from flowtex.textures import ImageError, PaperTextures, as_picture
 from flowtex.textures.images import LARGEST, load_image

@@ -24,10 +24,10 @@ def concerned_tests() -> Iterator[Callable[[set[str]], list[str]]]:
 def test_a_module_concerns_its_folder_and_who_imports_it(
     concerned_tests: Callable[[set[str]], list[str]],
 ) -> None:
-    found = concerned_tests({"flowtex/tiles/boxes.py"})
-    assert {"tests/tiles", "tests/test_layers.py"} <= set(found)
+    found = concerned_tests({"flowtex/textures/tiles/boxes.py"})
+    assert {"tests/textures/tiles", "tests/test_layers.py"} <= set(found)
     assert "tests/cli" not in found
-    assert not [path for path in found if path.startswith("tests/tiles/")]
+    assert not [path for path in found if path.startswith("tests/textures/tiles/")]
     assert "tests/test_settings.py" in concerned_tests({"flowtex/settings.py"})
 
 
@@ -40,7 +40,7 @@ def test_what_tests_share_concerns_those_that_import_it(
 
 
 def test_a_test_concerns_itself(concerned_tests: Callable[[set[str]], list[str]]) -> None:
-    assert concerned_tests({"tests/test_camera.py"}) == ["tests/test_camera.py"]
+    assert concerned_tests({"tests/test_settings.py"}) == ["tests/test_settings.py"]
     assert concerned_tests({"tests/test_gone.py", "CHANGELOG.md"}) == []
 
 

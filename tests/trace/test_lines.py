@@ -12,8 +12,8 @@ from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import AnyArray
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
 from flowtex.field.steps import LazySteps
-from flowtex.scene import Scene
-from flowtex.tiles import Pyramid, TileKey
+from flowtex.scene.scene import Scene
+from flowtex.textures.tiles import Pyramid, TileKey
 from flowtex.trace import SliceStore, changing_share, chosen_lines
 
 
@@ -120,7 +120,7 @@ def test_a_scene_follows_the_setting() -> None:
 
 
 def test_tiles_have_the_lines_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 30_000)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 30_000)
     field = waving(30.0)
     rows, columns = np.linspace(0, 1, 300), np.linspace(0, 4, 350)
     x, y = np.meshgrid(columns, rows)

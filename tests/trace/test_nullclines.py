@@ -10,7 +10,7 @@ from scipy.spatial import Delaunay
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings, SettingsError
 from flowtex.trace.structure import nullclines
 

@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull, Delaunay
 import flowtex
 from flowtex import FieldError, FlowField
 from flowtex._util.array_types import Floats
-from flowtex.earth import EARTH_RADIUS, Projection
+from flowtex.field.earth import EARTH_RADIUS, Projection
 from flowtex.trace.structure import KINDS, CriticalPoints, Separatrices
 from flowtex.trace.structure.separatrices import _turned
 

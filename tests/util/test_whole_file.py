@@ -17,7 +17,7 @@ from PIL import Image
 
 import flowtex
 from flowtex._util.whole_file import WholeFile, whole_file
-from flowtex.offscreen.encoders import write_movie
+from flowtex.plotting.offscreen.encoders import write_movie
 from flowtex.web.view import web_views
 
 posix = pytest.mark.skipif(os.name != "posix", reason="modes, links and limits of POSIX")
@@ -56,7 +56,7 @@ def embed_scene(path: Path) -> None:
     from embed import write_scene  # of docs/, which a child does not know
 
     # With parts beside it.
-    views = web_views(flowtex.examples.delta_wing_field(), flowtex.options.Options.split())
+    views = web_views(flowtex.examples.delta_wing_field(), flowtex.scene.options.Options.split())
     write_scene(path.parent, path.stem, views)
 
 

@@ -13,7 +13,7 @@ import pytest
 
 import flowtex
 from flowtex.rendering.webgl.protocol import parts_file
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 from flowtex.web.assets import client_module
 from flowtex.web.preview import preview_png
 from flowtex.web.view import WebView

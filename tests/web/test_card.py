@@ -12,7 +12,7 @@ from flows import gyre
 from matrix import GROUND, ROOT, SHARE, SIZE, difference, straight
 from webgl_page import ClientPage, packed, state, tile_maker
 
-from flowtex.options import Options
+from flowtex.scene.options import Options
 from flowtex.web.view import web_views
 
 pytest.importorskip("moderngl")
@@ -40,7 +40,7 @@ def test_the_picture_is_that_of_the_client(
     nodes: tuple[int, int],
     zoom: float,
 ) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 2000)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 2000)
     view = web_views(gyre(*nodes), Options.split(background=GROUND, samples=11))[0]
     camera, whole = straight(zoom), replace(view.data(), traces=True)
     if whole.pyramid is not None:

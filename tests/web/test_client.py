@@ -15,7 +15,7 @@ from pages import opened_page
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
-from flowtex.camera import Camera
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.settings import Settings

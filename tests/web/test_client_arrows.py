@@ -15,10 +15,10 @@ from webgl_page import ClientPage, packed, state
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes
-from flowtex.camera import Camera
-from flowtex.options import Options
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl import ClientData, Colours
-from flowtex.scene import Scene
+from flowtex.scene.options import Options
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.web.view import web_views
 

@@ -15,9 +15,9 @@ from matrix import SIZE, WHOLE
 from PIL import Image
 from webgl_page import ClientPage, packed, state
 
-from flowtex.camera import Camera
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl import ClientData, Colours
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
 if TYPE_CHECKING:

@@ -13,11 +13,11 @@ from matrix import ASIDE, MIDDLE, SIZE, TEXTURE, WHOLE
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField
-from flowtex.camera import Camera
-from flowtex.options import Options
-from flowtex.probe import probe
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl import ClientData, Colours
-from flowtex.scene import Scene
+from flowtex.scene.options import Options
+from flowtex.scene.probe import probe
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.web.view import web_views
 

@@ -17,11 +17,11 @@ from webgl_page import ClientPage, TileMaker, packed, state, tile_maker
 
 import flowtex
 from flowtex._util.array_types import Bytes
-from flowtex.camera import Camera
-from flowtex.options import Options
 from flowtex.plotting.vtk_camera import apply_camera
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl import ClientData
-from flowtex.tiles import TileKey
+from flowtex.scene.options import Options
+from flowtex.textures.tiles import TileKey
 from flowtex.web.export import export, page_text
 from flowtex.web.view import WebView, web_views
 
@@ -36,7 +36,7 @@ CAMERAS = {"near": straight(10, (0.6, 0.2)), "tilted": TILTED}
 @pytest.fixture(autouse=True)
 def small_root(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
     """Let a small field have four levels: tiles are made while the browser waits for them."""
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 625)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 625)
     monkeypatch.setattr("flowtex.web.preview.NODES", 600)
     monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
 
@@ -225,7 +225,7 @@ def test_a_tile_that_fails_fails_the_page(monkeypatch: pytest.MonkeyPatch) -> No
         msg = "the disk is gone"
         raise OSError(msg)
 
-    monkeypatch.setattr("flowtex.tiles.pyramid.Pyramid.textures", fail)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.Pyramid.textures", fail)
     with pytest.raises(OSError, match="the disk is gone"):
         page_text([viewed()[0]])
 

@@ -18,16 +18,16 @@ from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField, examples
 from flowtex._util.array_types import Floats
-from flowtex.camera import Camera
-from flowtex.options import Options
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.velocity import can_trace
+from flowtex.scene.options import Options
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 from flowtex.textures.texture_set import UNCERTAIN_LAYER
-from flowtex.tiles import TileKey
+from flowtex.textures.tiles import TileKey
 from flowtex.trace import SliceStore
 from flowtex.web.export import export, page_pieces
 from flowtex.web.view import web_views
@@ -268,7 +268,7 @@ def test_tiles_around_a_pole_are_those_of_numpy(
 ) -> None:
     """Of the ring around it there are all lines where it is near, and a few elsewhere."""
     for name, number in (("ROOT_NODES", 2000), ("MOST_RING", 400)):
-        monkeypatch.setattr(f"flowtex.tiles.pyramid.{name}", number)
+        monkeypatch.setattr(f"flowtex.textures.tiles.pyramid.{name}", number)
     field = globe(1.0, 0.4, 0.3, columns=601)
     view = web_views(field, Options.split(samples=9))[0]
     assert view.scene.pyramid is not None

@@ -19,14 +19,14 @@ from webgl_page import ClientPage, packed, state, tile_maker
 
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes
-from flowtex.camera import Camera
 from flowtex.field.locate import locate
-from flowtex.options import Options
-from flowtex.probe import probe
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.uniforms import ViewState
 from flowtex.rendering.webgl import ClientData, Colours
-from flowtex.scene import Scene
+from flowtex.scene.options import Options
+from flowtex.scene.probe import probe
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.web.export import export
 from flowtex.web.view import web_views
@@ -161,8 +161,8 @@ def test_points_and_paths_are_those_of_the_renderer(client: ClientPage, name: st
 def test_a_large_surface_is_shown_in_tiles(
     client: ClientPage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 1000)
-    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.MOST_OVERLAP", 4.0)
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 1000)
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.MOST_OVERLAP", 4.0)
     field = ball(5)
     look: dict[str, Any] = {"scalars": False, "lighting": False, "color": COLOUR}
     view = web_views(field, Options.split(background=GROUND, samples=11, **look))[0]
@@ -176,7 +176,7 @@ def test_a_large_surface_is_shown_in_tiles(
     client.complete(viewer)
     # Drafts of a slow machine, of fewer pixels, may ask for coarser ones before.
     assert 0 in {key[0] for key in client.tiles}
-    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 10**9)
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 10**9)
     ours = judged(Scene(ball.__wrapped__(5), Settings(samples=11)), camera)
     theirs = client.pixels(viewer)
     assert not (theirs == np.rint(255 * np.array(GROUND))).all(axis=-1).any()  # no crack

@@ -21,10 +21,10 @@ from PIL import Image
 
 import flowtex
 from flowtex import examples
-from flowtex.camera import Camera
 from flowtex.errors import FieldError
 from flowtex.examples._double_gyre import nodes as nodes_of
-from flowtex.options import Options
+from flowtex.rendering.camera import Camera
+from flowtex.scene.options import Options
 from flowtex.web.export import export
 from flowtex.web.preview import preview_png
 from flowtex.web.view import web_views

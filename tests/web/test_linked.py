@@ -12,9 +12,9 @@ from page_reader import Reader
 from flowtex import FlowField
 from flowtex.cli import main
 from flowtex.field import FieldError
-from flowtex.options import Options
 from flowtex.pyramid import build, open_store
 from flowtex.pyramid.checks import sealed
+from flowtex.scene.options import Options
 from flowtex.web.export import export, page_text
 from flowtex.web.linked import StoreLink
 from flowtex.web.view import web_views
@@ -26,7 +26,7 @@ BUCKET = "https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
     monkeypatch.setattr("flowtex.web.export.PREVIEW", (24, 16))
 
 
@@ -41,7 +41,7 @@ def flow(steps: int = 1) -> FlowField:
 def store(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Path:
     place = tmp_path_factory.mktemp("store") / "flow.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
+        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
         build(flow(3), place, progress=False)
     return place
 

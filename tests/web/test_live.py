@@ -10,7 +10,7 @@ import pytest
 from embed import write_scene
 from flows import gyre
 
-from flowtex.options import Options
+from flowtex.scene.options import Options
 from flowtex.web.assets import asset
 from flowtex.web.view import web_views
 

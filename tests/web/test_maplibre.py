@@ -20,7 +20,7 @@ from range_server import RangeServer, range_server
 from scipy.ndimage import map_coordinates
 
 import flowtex
-from flowtex.earth import EARTH_RADIUS
+from flowtex.field.earth import EARTH_RADIUS
 from flowtex.pyramid import build
 from flowtex.web.assets import asset
 
@@ -96,7 +96,7 @@ def server(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Itera
     """Return a server of a store, scenes, and the page of the documentation."""
     folder = tmp_path_factory.mktemp("map")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 3000)
+        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 3000)
         build(currents().isel(time=0), folder / "flow.zarr", projection="mercator", progress=False)
     flowtex.export(str(folder / "flow.zarr"), folder / "flow.json", store="./flow.zarr", **LOOK)
     series = currents(3).isel(lat=slice(None, None, 4), lon=slice(None, None, 4))

@@ -14,10 +14,10 @@ import pytest
 from waiting import PATIENCE_S, wait_until
 
 from flowtex._util.progress import check
-from flowtex.options import Options
 from flowtex.rendering.webgl.protocol import Header
+from flowtex.scene.options import Options
 from flowtex.textures import TextureSet
-from flowtex.tiles import Pyramid
+from flowtex.textures.tiles import Pyramid
 from flowtex.web.view import web_views
 from flowtex.widget.views import Views
 from flowtex.widget.worker import Worker, WorkerPool
@@ -83,7 +83,7 @@ class Client:
 
 @pytest.fixture
 def make(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> Iterator[Callable[..., Client]]:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 1250)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
     for name in ("COARSE_STEADY", "COARSE_VARYING"):
         monkeypatch.setattr(f"flowtex.widget.feed.{name}", 400)
     made: list[Client] = []

@@ -22,9 +22,9 @@ from waiting import PATIENCE_S, wait_until
 import flowtex
 from flowtex import FieldError, examples
 from flowtex._util.colours import colour_table
-from flowtex.camera import Camera
-from flowtex.earth import Projection
 from flowtex.examples._double_gyre import nodes as nodes_of
+from flowtex.field.earth import Projection
+from flowtex.rendering.camera import Camera
 from flowtex.settings import TABLE
 from flowtex.web import preview
 from flowtex.widget import feed
@@ -228,7 +228,7 @@ def test_a_large_field_comes_coarse_first(
 
 def test_triangles_come_at_once_and_have_tiles(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(feed, "LARGE_NODES", 100)
-    monkeypatch.setattr("flowtex.tiles.triangle_pyramid.ROOT_NODES", 500)
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 500)
     points, triangles = sphere(4)
     field = flowtex.FlowField.from_triangles(points, triangles, np.cross([0, 0, 1], points))
     widget = make(field)

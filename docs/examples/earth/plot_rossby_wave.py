@@ -3,14 +3,14 @@ A Rossby-Haurwitz wave
 ======================
 
 This wave with four crests travels around the Earth without changing its shape, an exact solution
-that is a standard test of weather models. For arrays, a :class:`~flowtex.earth.Projection` turns
-longitude and latitude into positions on the globe, and winds into vectors.
+that is a standard test of weather models. For arrays, a :class:`~flowtex.field.earth.Projection`
+turns longitude and latitude into positions on the globe, and winds into vectors.
 """
 
 import numpy as np
 
 import flowtex
-from flowtex.earth import EARTH_RADIUS, Projection
+from flowtex.field.earth import EARTH_RADIUS, Projection
 
 lon, lat = np.meshgrid(np.linspace(-180, 180, 121), np.linspace(-90, 90, 61))
 a, b = np.radians(lon), np.radians(lat)

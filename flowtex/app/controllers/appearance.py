@@ -15,8 +15,8 @@ from flowtex.app.server.validation import decode_picture, name_among, number, se
 from flowtex.app.streaming.element import PAINTERS
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
-from flowtex.offscreen.annotations import time_text
-from flowtex.options import Appearance as Look
+from flowtex.plotting.offscreen.annotations import time_text
+from flowtex.scene.options import Appearance as Look
 from flowtex.settings import SettingsError, named_values
 
 #: The choice of no colours.

@@ -29,15 +29,15 @@ from flowtex.app.streaming.viewport import GAP_PX, Pane, Viewport
 from flowtex.app.streaming.window import Rect
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.offscreen.annotations import annotate
-from flowtex.offscreen.encoders import (
+from flowtex.plotting.offscreen.annotations import annotate
+from flowtex.plotting.offscreen.encoders import (
     DEFAULT_QUALITY,
     MovieError,
     MovieWriter,
     check_movie,
     default_fps,
 )
-from flowtex.offscreen.movie import frame_times
+from flowtex.plotting.offscreen.movie import frame_times
 from flowtex.settings import Settings, named_values
 from flowtex.textures.images import averaged
 

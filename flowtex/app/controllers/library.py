@@ -30,12 +30,12 @@ from flowtex.field.io.identity import Identity, file_identity, members_of
 from flowtex.field.io.surfaces.beside import SUFFIXES as WITHOUT_VECTORS
 from flowtex.field.remote import open_remote, prepare_readers
 from flowtex.field.source import FlowSource, Source
-from flowtex.options import FieldOptions
 from flowtex.pyramid import open_store
 from flowtex.pyramid.source import has_parts
-from flowtex.scene import drawn_store
+from flowtex.scene.options import FieldOptions
+from flowtex.scene.scene import drawn_store
 from flowtex.settings import Settings
-from flowtex.tiles import Pyramid
+from flowtex.textures.tiles import Pyramid
 from flowtex.trace import SliceStore
 
 #: Endings of files that a folder is searched for.

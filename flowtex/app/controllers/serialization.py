@@ -5,10 +5,10 @@ What a page shows is a mapping with the names below, each of which may be missin
     file vectors plane block   which flow: names as a library has them; k=20 or x=0.5
     time clock                 the field's own time; seconds of the streaming
     colour cmap clim           scalar, colour map, and the values at its ends
-    log_scale opacity          as :class:`flowtex.options.Appearance` has them
+    log_scale opacity          as :class:`flowtex.scene.options.Appearance` has them
     coastlines graticule       whether these lines of a map are drawn
     settings                   a mapping of settings by name
-    camera                     as :meth:`flowtex.camera.Camera.to_dict` has it
+    camera                     as :meth:`flowtex.rendering.camera.Camera.to_dict` has it
     theme background split     as the page names them
     time_beside beside_file    what the second view shows, by what split says
     beside                     of another file: vectors, plane, block, time and scalars; no link
@@ -40,12 +40,12 @@ from flowtex.app.controllers.appearance import (
 )
 from flowtex.app.server.validation import shortened
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
-from flowtex.camera import Camera
 from flowtex.errors import FieldError
 from flowtex.field.datasets.files import is_dataset_file
 from flowtex.field.source import OUTER
-from flowtex.options import Appearance as Look
-from flowtex.options import option_form
+from flowtex.rendering.camera import Camera
+from flowtex.scene.options import Appearance as Look
+from flowtex.scene.options import option_form
 from flowtex.settings import TABLE, SettingsError
 
 #: Values that a link leaves out.

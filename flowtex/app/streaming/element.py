@@ -26,15 +26,15 @@ from flowtex.app.server.validation import mapping, name_among, number
 from flowtex.app.streaming.player import Player
 from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Pane, Viewport
-from flowtex.camera import Camera, CameraError
 from flowtex.errors import FieldError
-from flowtex.options import ROBUST
+from flowtex.rendering.camera import Camera, CameraError
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.formula import PREFIX
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, Parts, parts_file
+from flowtex.scene.options import ROBUST
 from flowtex.settings import TABLE
-from flowtex.tiles import TileKey
+from flowtex.textures.tiles import TileKey
 from flowtex.web.assets import client_module
 from flowtex.web.source import TileSource
 from flowtex.web.view import WebView

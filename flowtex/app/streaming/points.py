@@ -16,8 +16,8 @@ from flowtex._util.array_types import Floats
 from flowtex.app.server.validation import mapping, number
 from flowtex.app.streaming.viewport import Pane, Viewport
 from flowtex.field import FlowField
-from flowtex.options import SPEED
-from flowtex.probe import PointValues, Probe, locate, probe, values_at
+from flowtex.scene.options import SPEED
+from flowtex.scene.probe import PointValues, Probe, locate, probe, values_at
 
 #: Digits of a number.
 DIGITS = 4

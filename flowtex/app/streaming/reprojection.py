@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats
-from flowtex.camera import Camera
 from flowtex.field import Surface
+from flowtex.rendering.camera import Camera
 
 #: Change of scale below which a picture only shifts.
 SCALE_TOLERANCE = 1e-3

@@ -18,15 +18,15 @@ from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.cache import WeakCache
 from flowtex.app.streaming.reprojection import plane_to_view
 from flowtex.app.streaming.window import OffscreenWindow, Rect
-from flowtex.camera import Camera
 from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
 from flowtex.field.triangles.surface import TriangleSurface
-from flowtex.options import Options
 from flowtex.plotting.handle import FlowHandle
-from flowtex.scene import Scene, follow, lay_image
+from flowtex.rendering.camera import Camera
+from flowtex.scene.options import Options
+from flowtex.scene.scene import Scene, follow, lay_image
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image
 

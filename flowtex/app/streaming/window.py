@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bytes
-from flowtex.camera import Camera
 from flowtex.plotting.vtk_camera import apply_camera
+from flowtex.rendering.camera import Camera
 
 Rect = tuple[int, int, int, int]
 #: Longest side of a window, in pixels.

@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.earth import GLOBE, Projection
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import horizontal_dims
 from flowtex.field.datasets.pairs import Pair
 from flowtex.field.datasets.places import Places, find_places
+from flowtex.field.earth import GLOBE, Projection
 from flowtex.field.io.inspection.limits import values_in
 
 #: Paddings of SGRID, and the first side that they mean.

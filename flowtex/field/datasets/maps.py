@@ -8,9 +8,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.earth import GLOBE, Projection
-from flowtex.earth.lines import tear
 from flowtex.field.datasets.places import Places
+from flowtex.field.earth import GLOBE, Projection
+from flowtex.field.earth.lines import tear
 
 #: The flat map that is drawn where none is chosen, and those on which an axis that goes around the
 #: Earth continues at the other side, a map further.

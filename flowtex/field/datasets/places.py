@@ -11,8 +11,8 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex._util.extras import import_extra
-from flowtex.earth import GLOBE, Projection
 from flowtex.errors import FieldError
+from flowtex.field.earth import GLOBE, Projection
 from flowtex.field.io.inspection.limits import values_in
 
 if TYPE_CHECKING:

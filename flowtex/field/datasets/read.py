@@ -15,7 +15,6 @@ import numpy as np
 
 from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Bools, Floats
-from flowtex.earth import GLOBE
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import (
     FACES,
@@ -52,6 +51,7 @@ from flowtex.field.datasets.regions import Regions, Words, numbers_in, region_li
 from flowtex.field.datasets.series import Datasets, as_datasets
 from flowtex.field.datasets.vertical import is_vertical, read_section
 from flowtex.field.dates import as_seconds
+from flowtex.field.earth import GLOBE
 from flowtex.field.io.arrays import GridArrays, TriangleArrays
 from flowtex.field.steps import LazySteps
 

@@ -15,7 +15,6 @@ import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.blocks import even_runs
-from flowtex.earth import Projection
 from flowtex.errors import FieldError
 from flowtex.field.datasets.maps import (
     CYLINDERS,
@@ -25,6 +24,7 @@ from flowtex.field.datasets.maps import (
     shown_rows,
 )
 from flowtex.field.datasets.places import Places
+from flowtex.field.earth import Projection
 from flowtex.field.grids.periodic import find_closure
 from flowtex.field.io.inspection.limits import values_in
 from flowtex.field.steps import Nodes, typical_steps

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from flowtex.earth import GLOBE, NAMES
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import LEVEL, Choice, axis_values, sections
 from flowtex.field.datasets.files import common_name, dataset_paths, open_datasets
@@ -16,6 +15,7 @@ from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.field.datasets.pairs import find_pairs, two_names
 from flowtex.field.datasets.read import recognise
 from flowtex.field.datasets.series import as_datasets
+from flowtex.field.earth import GLOBE, NAMES
 from flowtex.field.field import FlowField
 from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.source import FlowSource, Source

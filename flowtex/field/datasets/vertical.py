@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.earth import DEGREE
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import (
     LEVEL,
@@ -29,6 +28,7 @@ from flowtex.field.datasets.notices import notify
 from flowtex.field.datasets.pairs import plain_unit, to_metres_per_second, variable
 from flowtex.field.datasets.places import LATITUDE, LENGTHS, LONGITUDE
 from flowtex.field.datasets.regions import numbers_in
+from flowtex.field.earth import DEGREE
 from flowtex.field.io.arrays import GridArrays, SectionAxes
 from flowtex.field.steps import LazySteps
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Floats
-from flowtex.earth import Projection
 from flowtex.errors import FieldError
 from flowtex.field.derived.gradient import node_gradient, true_velocity
+from flowtex.field.earth import Projection
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.surface import Surface
 

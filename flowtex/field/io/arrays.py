@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike
 
-from flowtex.earth import Projection
+from flowtex.field.earth import Projection
 
 
 class SectionAxes(NamedTuple):

@@ -226,8 +226,9 @@ class FieldConstructors:
             Names of the components. By default the only pair that is recognised as the velocity by
             CF standard names, long names or names.
         projection
-            A flat map, or ``"globe"``; see :class:`flowtex.earth.Projection`. By default plate
-            carree around the middle of the data, or a polar projection near and around a pole.
+            A flat map, or ``"globe"``; see :class:`flowtex.field.earth.Projection`. By default
+            plate carree around the middle of the data, or a polar projection near and around a
+            pole.
         globe
             Whether to draw on a sphere; the same as ``projection="globe"``.
         name

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from flowtex._util.array_types import AnyArray, Floats
-from flowtex.earth import Projection
 from flowtex.field.dates import date_of, written_date
+from flowtex.field.earth import Projection
 from flowtex.field.field import FlowField
 from flowtex.field.source import Source
 from flowtex.field.steps import LazySteps

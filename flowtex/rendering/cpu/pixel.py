@@ -6,10 +6,10 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.cache import WeakCache
-from flowtex.camera import Camera
 from flowtex.errors import FieldError
 from flowtex.field import Surface
 from flowtex.field.locate import SurfacePoint
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.raster import Coverage
 from flowtex.rendering.cpu.render import lookup_maker

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.camera import Camera
 from flowtex.field import Surface
+from flowtex.rendering.camera import Camera
 
 #: Pixels, or rows of pixels, that are looked at together.
 CHUNK = 1 << 20

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
-from flowtex.camera import Camera
 from flowtex.errors import FieldError
+from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.levels import level_colour, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips

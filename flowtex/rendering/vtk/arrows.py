@@ -23,7 +23,7 @@ from flowtex.rendering.vtk.layer import FlowLayer, observe_draws, write_uniform
 from flowtex.rendering.vtk.mesh import FlowMapper
 from flowtex.settings import Settings
 from flowtex.textures import SurfaceGeometry
-from flowtex.tiles import Pyramid, TileKey
+from flowtex.textures.tiles import Pyramid, TileKey
 
 OWNER = "flowtex arrows"
 #: Shader, the mark of VTK after which our text is inserted, and our file.

@@ -17,8 +17,8 @@ import pyvista as pv
 
 from flowtex._util.array_types import Floats
 from flowtex._util.notices import notify
-from flowtex.earth import EARTH_RADIUS
 from flowtex.field import FlowField
+from flowtex.field.earth import EARTH_RADIUS
 from flowtex.rendering.mesh_levels import MeshLevels, Region, join
 from flowtex.rendering.tile_choice import (
     TileView,
@@ -35,7 +35,7 @@ from flowtex.rendering.vtk.layer import FlowLayer, corrects_places
 from flowtex.rendering.vtk.mesh import FlowMapper, set_attributes, surface_mesh
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
-from flowtex.tiles import TILE_BLOCKS, Pyramid, Tile, TileKey, TileLoader
+from flowtex.textures.tiles import TILE_BLOCKS, Pyramid, Tile, TileKey, TileLoader
 
 #: Time after which a window is drawn again while tiles are on their way.
 LOOK_INTERVAL_MS = 250

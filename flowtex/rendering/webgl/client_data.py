@@ -21,11 +21,11 @@ import numpy as np
 
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.colours import CMAPS, colour_shares, colour_table, is_diverging
-from flowtex.camera import CAMERA_LIMITS, Camera
 from flowtex.field import FlowField
 from flowtex.field.derived import speed_unit
 from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.mesh_levels import mesh_limits
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
@@ -40,7 +40,7 @@ from flowtex.rendering.webgl.packing import Packing, half, packing_of
 from flowtex.rendering.webgl.protocol import FORMAT, Header, Parts, plain_list
 from flowtex.settings import NEEDS, TABLE, Settings
 from flowtex.textures import PaperTextures, TextureSet, TriangleGeometry
-from flowtex.tiles import PATH_CELLS, Pyramid, TileKey
+from flowtex.textures.tiles import PATH_CELLS, Pyramid, TileKey
 
 #: Shaders of the client, by the name under which the header has their text.
 SHADERS = {

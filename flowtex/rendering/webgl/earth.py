@@ -10,9 +10,9 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Floats, Floats32
 from flowtex._util.cache import WeakCache
 from flowtex._util.colours import rgb
-from flowtex.earth import EARTH_RADIUS, MapLines, Projection
 from flowtex.field import FlowField
 from flowtex.field.dates import date_text
+from flowtex.field.earth import EARTH_RADIUS, MapLines, Projection
 from flowtex.rendering.map_overlay import (
     SPACING_PX,
     SPACINGS,

@@ -14,7 +14,7 @@ from flowtex.field.formula import Formula
 from flowtex.rendering.tile_choice import CELL_PIXELS
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.textures import TextureSet
-from flowtex.tiles import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
+from flowtex.textures.tiles import BLOCK_CELLS, PATH_CELLS, TILE_BLOCKS
 
 #: Levels below the grid that is sent: enough for the deepest zoom.
 DEPTH = 20

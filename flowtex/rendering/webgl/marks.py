@@ -28,7 +28,7 @@ from flowtex.rendering.structure_marks import (
 )
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.geometry import DrawnSurface
-from flowtex.tiles import Structure
+from flowtex.textures.tiles import Structure
 
 #: Kinds of parts, by the settings that ask for them.
 MARK_PARTS = {

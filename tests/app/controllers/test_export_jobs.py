@@ -20,7 +20,7 @@ from flowtex import FieldError
 from flowtex._util.progress import Stopped
 from flowtex.app.controllers.export_jobs import ExportError, Job, MovieJob, PictureJob
 from flowtex.app.streaming.viewport import Viewport
-from flowtex.offscreen.encoders import MovieError
+from flowtex.plotting.offscreen.encoders import MovieError
 
 pytestmark = pytest.mark.usefixtures("opengl")
 

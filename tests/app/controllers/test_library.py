@@ -18,9 +18,9 @@ from flowtex.errors import FieldError
 from flowtex.field.io.identity import file_identity
 from flowtex.field.source import FlowSource
 from flowtex.pyramid import build
-from flowtex.scene import Scene
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from flowtex.tiles import has_pyramid
+from flowtex.textures.tiles import has_pyramid
 from flowtex.trace import SliceStore
 
 
@@ -217,7 +217,7 @@ def test_of_a_large_field_the_coarsest_level_is_traced(monkeypatch: pytest.Monke
     x, y = np.linspace(0, 2, 300), np.linspace(0, 1, 150)
     velocity = np.stack(np.broadcast_arrays(y[:, None] + 1, np.cos(x)), axis=-1)
     field = FlowField.from_arrays((x, y), velocity)
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 10_000)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 10_000)
     traced: list[tuple[int, int]] = []
 
     def counted(store: SliceStore, step: int, lags: int) -> Any:

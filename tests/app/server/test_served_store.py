@@ -27,7 +27,7 @@ def flow() -> FlowField:
 def store(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Iterator[Path]:
     place = tmp_path_factory.mktemp("store") / "a.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 250)
+        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 250)
         build(flow(), place, progress=False)
         yield place
 

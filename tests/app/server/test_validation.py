@@ -21,7 +21,7 @@ from flowtex.app.server.validation import (
     sent_picture,
     shortened,
 )
-from flowtex.camera import Camera, CameraError
+from flowtex.rendering.camera import Camera, CameraError
 from flowtex.settings import SettingsError
 
 

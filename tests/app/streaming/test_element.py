@@ -19,7 +19,7 @@ import flowtex
 from flowtex.app import FlowApp, FlowArea
 from flowtex.errors import FieldError
 from flowtex.rendering.webgl.protocol import file_infos
-from flowtex.tiles import Pyramid
+from flowtex.textures.tiles import Pyramid
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -77,7 +77,7 @@ def test_a_page_is_told_what_axes_it_has() -> None:
 def test_a_tile_is_made_when_it_is_asked_for(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 10_000)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 10_000)
     app = large()
     (scene,) = app.area.element.begin("browser")["scenes"]
     assert app.stream.paused
@@ -129,7 +129,7 @@ def test_another_mesh_is_read_as_the_first_one_and_the_view_stays() -> None:
 
 
 def test_tiles_in_other_colours_are_not_traced_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.tiles.pyramid.ROOT_NODES", 10_000)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 10_000)
     app = large(p=None)
     told = Told(app, monkeypatch)
     (first,) = app.area.element.begin("browser")["scenes"]

@@ -18,9 +18,9 @@ from small_pages import small_page
 from flowtex import FlowField
 from flowtex.app import FlowApp
 from flowtex.app.streaming.points import number_text, path_of, with_unit, words_of
-from flowtex.options import Appearance
-from flowtex.probe import locate, probe
-from flowtex.scene import Scene
+from flowtex.scene.options import Appearance
+from flowtex.scene.probe import locate, probe
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
 

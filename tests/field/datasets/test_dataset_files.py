@@ -15,9 +15,9 @@ from earth_data import components, east_and_north, winds
 from lying_files import grib2
 
 from flowtex import FlowField
-from flowtex.earth import EARTH_RADIUS
 from flowtex.errors import FieldError
 from flowtex.field.datasets import files
+from flowtex.field.earth import EARTH_RADIUS
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::flowtex.field.datasets.notices.DatasetNotice"),

@@ -11,7 +11,7 @@ import xarray as xr
 from earth_data import DEGREES, RATE, along, components, on_sphere, turning
 
 from flowtex import FlowField
-from flowtex.earth import EARTH_RADIUS
+from flowtex.field.earth import EARTH_RADIUS
 
 SPHERE = pyproj.CRS.from_user_input(f"+proj=longlat +R={EARTH_RADIUS} +type=crs")
 MAPPINGS: dict[str, dict[str, Any]] = {

@@ -11,9 +11,9 @@ from earth_data import RATE, c_grid, components, on_sphere, turning, winds
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.earth import EARTH_RADIUS
 from flowtex.errors import FieldError
 from flowtex.field.datasets.notices import DatasetNotice
+from flowtex.field.earth import EARTH_RADIUS
 
 LON, LAT = np.arange(-180.0, 180.0, 5.0), np.arange(-90.0, 90.1, 5.0)
 

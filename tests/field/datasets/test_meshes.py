@@ -16,12 +16,12 @@ from scipy.spatial import ConvexHull, cKDTree
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.earth import EARTH_RADIUS
 from flowtex.errors import FieldError
 from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.field.datasets.read import recognise
 from flowtex.field.datasets.series import as_datasets
 from flowtex.field.datasets.source import DatasetSource
+from flowtex.field.earth import EARTH_RADIUS
 from flowtex.field.steps import LazySteps
 from flowtex.field.triangles.surface import TriangleSurface
 

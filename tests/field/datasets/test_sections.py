@@ -12,7 +12,7 @@ import flowtex
 from flowtex import FieldError, FlowField
 from flowtex.field.datasets.notices import DatasetNotice
 from flowtex.field.steps import LazySteps
-from flowtex.offscreen.scaled_axes import AxesScales
+from flowtex.plotting.offscreen.scaled_axes import AxesScales
 
 #: Metres of a degree.
 DEGREE = np.radians(6_371_000.0)

@@ -15,7 +15,7 @@ from earth_data import winds
 from flowtex import FlowField
 from flowtex.errors import FieldError
 from flowtex.field.datasets.source import open_source
-from flowtex.options import Options
+from flowtex.scene.options import Options
 from flowtex.settings import SettingsError
 
 pytest.importorskip("netCDF4")

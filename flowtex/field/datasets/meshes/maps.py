@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.earth import GLOBE, NAMES, Projection
 from flowtex.field.datasets.maps import TORN, projection_of, shown_positions
 from flowtex.field.datasets.meshes.mesh import Mesh
 from flowtex.field.datasets.places import Places
+from flowtex.field.earth import GLOBE, NAMES, Projection
 
 #: Maps around a pole, which have no edge at a meridian.
 AROUND_A_POLE = ("north", "south")

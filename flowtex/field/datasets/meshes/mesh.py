@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import FACES, NODES
 from flowtex.field.datasets.places import DEGREES, LENGTHS
+from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.io.inspection.limits import values_in
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals

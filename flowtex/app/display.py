@@ -1,0 +1,129 @@
+"""Show a flow where the user is: :func:`show` takes a notebook, a window or a page."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+from flowtex._util.arguments import checked_size
+from flowtex._util.extras import require_pyvista
+from flowtex.errors import FieldError
+from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+
+if TYPE_CHECKING:
+    from flowtex.widget import FlowWidget
+
+#: Width and height of a window, in pixels.
+WINDOW_SIZE = (1024, 768)
+#: Arguments that say something to VTK alone.
+VTK_ARGUMENTS = ("scalar_bar_args", "reset_camera")
+
+
+@accepts_options(FieldOptions, Appearance, ViewOptions)
+def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> FlowWidget | None:
+    """Show a flow as a widget in a notebook, otherwise in a window or on a page in the browser.
+
+    In a notebook the browser draws, not the Jupyter kernel. Elsewhere a window opens; without a
+    display, a page is served.
+
+    Parameters
+    ----------
+    mesh
+        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or path
+        of a file.
+    size
+        Width and height of the window in pixels; 1024 x 768 by default, and in a notebook the width
+        of the cell. A page has the size of the browser's window.
+    {options}
+
+    Returns
+    -------
+    FlowWidget or None
+        In a notebook the widget, which is already displayed; otherwise None.
+
+    Raises
+    ------
+    FieldError, SettingsError
+        When the mesh or a setting is invalid, when two views or a size are requested and neither a
+        window nor a notebook is available, or when an argument for windows is used in a browser.
+    OpenGLMissingError
+        When OpenGL is missing; the text names the command that installs it.
+    ModuleNotFoundError
+        When a package that widgets need is missing; the text names the command that installs it.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> mesh = flowtex.examples.cylinder()
+    >>> flowtex.show(mesh, scalars="vorticity", cmap="RdBu_r", zoom=3)  # doctest: +SKIP
+    """
+    if in_notebook():
+        return _show_widget(mesh, size, options)
+    from flowtex.diagnostics import has_display, prefer_headless, require_opengl
+
+    require_pyvista("a window or a page with a server")
+    prefer_headless()
+    require_opengl()
+    if has_display():
+        _show_window(mesh, size or WINDOW_SIZE, options)
+    else:
+        _show_page(mesh, size, options)
+    return None
+
+
+def in_notebook() -> bool:
+    """Return whether a notebook runs this; neither IPython nor marimo is loaded to find out."""
+    if (marimo := sys.modules.get("marimo")) is not None and marimo.running_in_notebook():
+        return True
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    return getattr(shell, "kernel", None) is not None
+
+
+def _refuse_vtk(options: dict[str, Any]) -> None:
+    for name in VTK_ARGUMENTS:
+        if name in options:
+            msg = (
+                f"{name} applies to windows, but here the browser draws; omit it, or draw with "
+                "flowtex.render, or with plotter.flowtex.add and plotter.show"
+            )
+            raise FieldError(msg)
+
+
+def _show_widget(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> FlowWidget:
+    _refuse_vtk(options)
+    from flowtex.widget import FlowWidget
+
+    if size is not None:
+        options["size"] = size
+    return FlowWidget(mesh, **options).show()
+
+
+def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> None:
+    from flowtex.plotting.offscreen.plotter import add_scenes, new_plotter, point_camera
+
+    bar_options = options.pop("scalar_bar_args", None)
+    arguments = Options.split(**options)
+    plotter = new_plotter(checked_size(size), two_views=arguments.view.beside is not None)
+    plotter.disable_anti_aliasing()
+    plotter.set_background(arguments.view.ground)
+    handles = add_scenes(plotter, mesh, arguments, bar_options)
+    point_camera(plotter, handles[0].scene, arguments.view)
+    plotter.show()
+
+
+def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> None:
+    _refuse_vtk(options)
+    if size is not None:
+        msg = (
+            f"size is {size!r}, but there is no display, and a page is as large as the browser's "
+            "window; omit size, or draw with flowtex.render"
+        )
+        raise FieldError(msg)
+    if options.pop("beside", None) is not None:
+        msg = "two views need a window, but there is no display; use flowtex.render to draw both"
+        raise FieldError(msg)
+    field = Options.split(**options).field.field(mesh)
+    from flowtex.app import serve
+
+    serve(field, **{k: v for k, v in options.items() if k not in FieldOptions.__dataclass_fields__})

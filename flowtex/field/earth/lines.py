@@ -1,0 +1,244 @@
+"""Lines of the Earth on a map: coasts, meridians and parallels.
+
+The coasts are the land of Natural Earth 1:50m; ``coastlines.md`` beside their file has the source.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex.field.earth.projection import EARTH_RADIUS, Projection
+
+COASTS = Path(__file__).with_name("coastlines.npz")
+#: What is stored for a degree, as tools/coastlines.py has it.
+STEPS_PER_DEGREE = 100
+#: Longest piece of a line in degrees.
+LONGEST_PIECE = 1.0
+#: A piece is torn where its middle is farther than this share of it from the middle of its ends.
+MOST_BENT = 0.2
+#: Where a map is stretched more than that there are no lines: they go to infinity, as at a pole.
+MOST_STRETCHED = 20.0
+#: Spacings that a thinned line has at least: islands of that length are some pixels wide.
+FEWEST_SPACINGS = 4
+#: Halvings by which the place is found where a map is torn: some 10 m on the Earth.
+HALVINGS = 14
+
+#: Degrees between the lines of a graticule that are to choose from, and how many may cross a map.
+STEPS = (30, 15, 10, 5, 2, 1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
+MOST_LINES = 6
+#: Pieces that a line has, at least, from one that crosses it to the next.
+FEWEST_PIECES = 8
+#: Places along each side of the box where longitude and latitude are looked up.
+LOOKS = {True: 25, False: 65}
+
+
+@dataclass(frozen=True)
+class MapLines:
+    """Lines on a map."""
+
+    points: Floats  #: Positions in metres, (N, 3).
+    #: Where each line begins, (L + 1,): line k is ``points[starts[k]:starts[k + 1]]``.
+    starts: Indices
+
+    def and_(self, other: MapLines) -> MapLines:
+        """Return these lines and others."""
+        starts = np.append(self.starts[:-1], other.starts + len(self.points))
+        return MapLines(np.concatenate([self.points, other.points]), starts)
+
+    def within(self, inside: Bools) -> MapLines:
+        """Return the pieces that have one end among some of the points, (N,), at least."""
+        first = np.delete(np.arange(len(self.points)), self.starts[1:] - 1)
+        first = first[inside[first] | inside[first + 1]]
+        return _assembled(self.points[first], self.points[first + 1], first, first + 1)
+
+    def thinned(self, spacing: float) -> MapLines:
+        """Return the lines with a point about every ``spacing`` metres, without short ones.
+
+        Small islands would be blobs.
+        """
+        lines = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
+        steps = np.linalg.norm(np.diff(self.points, axis=0, prepend=self.points[:1]), axis=1)
+        first = np.zeros(len(self.points), dtype=bool)
+        first[self.starts[:-1]] = True
+        along = np.cumsum(np.where(first, 0.0, steps))
+        along -= along[self.starts[lines]]
+        lengths = along[self.starts[1:] - 1]
+        places = np.floor(along / spacing)
+        keep = first | (np.diff(places, prepend=0.0) > 0)
+        keep[self.starts[1:] - 1] = True
+        keep &= lengths[lines] >= FEWEST_SPACINGS * spacing
+        counts = np.bincount(lines[keep], minlength=len(lengths))
+        return MapLines(self.points[keep], np.append(0, np.cumsum(counts[counts > 0])))
+
+
+def coastlines(projection: Projection, box: Floats | None = None) -> MapLines:
+    """Return the coasts of all land, the larger islands and lakes.
+
+    What is outside of a box, the least and greatest position of what is shown, (2, 3), is left out.
+    """
+    lonlat, joined = _coasts()
+    return _mapped(projection, lonlat, joined, box)
+
+
+def graticule(
+    projection: Projection, box: Floats | None = None, step: float | None = None
+) -> MapLines:
+    """Return meridians and parallels, in a box as for :func:`coastlines`.
+
+    Between two lines are so many degrees; by default a round number, so that some cross the box.
+    """
+    lon, lat = _places(projection, box)
+    if not len(lon):
+        return MapLines(np.zeros((0, 3)), np.zeros(1, dtype=np.intp))
+    apart = (step, step) if step else _steps(lon, lat)
+    meridians, parallels = (_grid_lines(lon, lat, apart, kind) for kind in (0, 1))
+    lonlat = np.concatenate([meridians[0], parallels[0]])
+    joined = np.concatenate([meridians[1], parallels[1]])
+    return _mapped(projection, lonlat, joined[:-1], box)
+
+
+@cache
+def _coasts() -> tuple[Floats, Bools]:
+    """Longitude and latitude of all coasts, and which points are joined to the next one."""
+    with np.load(COASTS, allow_pickle=False) as file:
+        steps, lengths = file["steps"], file["lengths"]
+    lonlat = np.cumsum(steps, axis=0, dtype=np.int16) / STEPS_PER_DEGREE
+    joined = np.ones(len(lonlat) - 1, dtype=bool)
+    joined[np.cumsum(lengths)[:-1] - 1] = False
+    # Some islands are cut at the date line, which is not a coast.
+    at_date_line = np.abs(lonlat[:, 0]) == 180
+    joined &= ~(at_date_line[:-1] & at_date_line[1:])
+    return lonlat, joined
+
+
+def _steps(lon: Floats, lat: Floats) -> tuple[float, float]:
+    """Choose the degrees between meridians and between parallels."""
+    around = np.unique(lon)
+    width = 360 - float(np.diff(around, append=around[0] + 360).max())
+    height = float(np.ptp(lat))
+    middle = math.radians(float(lat.max() + lat.min()) / 2)
+    span = math.sqrt(height * width * math.cos(middle))
+    # Meridians are closer to each other near a pole, and many of them would meet there.
+    narrowest = max(math.cos(math.radians(float(np.abs(lat).max()))), 1e-3)
+    across, along = (
+        next((step for step in reversed(STEPS) if length <= MOST_LINES * step), STEPS[0])
+        for length in (span / narrowest, span)
+    )
+    return across, along
+
+
+def _places(projection: Projection, box: Floats | None) -> tuple[Floats, Floats]:
+    """Longitude and latitude of places all over a box."""
+    if box is None:
+        lon, lat = np.meshgrid(np.arange(-180.0, 180.0), np.arange(-89.5, 90.0))
+        return lon.ravel(), lat.ravel()
+    count = LOOKS[projection.is_globe]
+    axes = [np.linspace(a, b, count if b > a else 1) for a, b in box.T]
+    points = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
+    lon, lat = projection.lonlat(points)
+    known = np.isfinite(lon) & np.isfinite(lat)
+    return lon[known], lat[known]
+
+
+def _grid_lines(
+    lon: Floats, lat: Floats, apart: tuple[float, float], kind: int
+) -> tuple[Floats, Bools]:
+    """Meridians (0) or parallels (1) that places lie between: points, and which are joined."""
+    order = slice(None, None, 1 - 2 * kind)
+    of, along = (lon, lat)[order]
+    step, length = (apart[kind], apart[1 - kind])
+    cells = np.unique(np.floor(of / step).astype(int))
+    values = np.union1d(cells, cells + 1) * step
+    values = values[(values < 180) if kind == 0 else (np.abs(values) < 90)]
+    pieces = max(math.ceil(length / LONGEST_PIECE), FEWEST_PIECES)
+    cells = np.unique(np.floor(along / length).astype(int)) * pieces
+    marks = np.unique(cells[:, None] + np.arange(pieces + 1))
+    places = marks / pieces * length
+    if kind == 0:
+        places = np.clip(places, -90, 90)
+    joined = np.append(np.diff(marks) == 1, False)
+    grid = np.stack(np.meshgrid(values, places, indexing="ij"), axis=-1)[..., order]
+    return grid.reshape(-1, 2), np.tile(joined, len(values))
+
+
+def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats | None) -> MapLines:
+    """Project lines: short pieces of them, cut where the map is torn, and those in a box.
+
+    ``joined`` says for each point but the last whether it is joined to the next one.
+    """
+    first, last, place = _pieces(lonlat, joined)
+    torn = _is_torn(projection, first, last)
+    before, after = tear(projection, first[torn], last[torn])
+    # Both parts of a torn piece follow each other, and are joined to what is not torn.
+    gap = np.full(int(torn.sum()), np.nan)
+    (left, right), (torn_left, torn_right) = place[~torn].T, place[torn].T
+    order = np.argsort(np.concatenate([left, torn_left, torn_left]), kind="stable")
+    first = np.concatenate([first[~torn], first[torn], after])
+    last = np.concatenate([last[~torn], before, last[torn]])
+    left = np.concatenate([left, torn_left, gap])
+    right = np.concatenate([right, gap, torn_right])
+    first, last, left, right = first[order], last[order], left[order], right[order]
+    starts, stops = projection.positions(*first.T), projection.positions(*last.T)
+    keep = np.linalg.norm(stops - starts, axis=1) <= MOST_STRETCHED * _lengths(first, last)
+    if box is not None:
+        outside = ((starts < box[0]) & (stops < box[0])) | ((starts > box[1]) & (stops > box[1]))
+        keep &= ~outside.any(axis=1)
+    return _assembled(starts[keep], stops[keep], left[keep], right[keep])
+
+
+def _pieces(lonlat: Floats, joined: Bools) -> tuple[Floats, Floats, Floats]:
+    """Both ends of short pieces of lines, (N, 2) each, and how far along all lines they are."""
+    index = np.flatnonzero(joined)
+    start, way = lonlat[index], lonlat[index + 1] - lonlat[index]
+    way[:, 0] = (way[:, 0] + 180) % 360 - 180
+    counts = np.maximum(np.ceil(np.abs(way).max(axis=1) / LONGEST_PIECE).astype(int), 1)
+    whole = np.repeat(np.arange(len(index)), counts)
+    number = np.arange(len(whole)) - np.repeat(np.cumsum(counts) - counts, counts)
+    part = np.stack([number, number + 1], axis=1) / counts[whole, None]
+    first, last = (start[whole] + way[whole] * part[:, k, None] for k in (0, 1))
+    return first, last, index[whole, None] + part
+
+
+def _lengths(first: Floats, last: Floats) -> Floats:
+    """Lengths of short pieces on the Earth in metres."""
+    way = np.radians(last - first)
+    way[:, 0] *= np.cos(np.radians((first[:, 1] + last[:, 1]) / 2))
+    return np.asarray(EARTH_RADIUS * np.linalg.norm(way, axis=1))
+
+
+def _is_torn(projection: Projection, first: Floats, last: Floats) -> Bools:
+    """Return which pieces have ends on opposite sides of a map, or one end outside it."""
+    start, middle, stop = (projection.positions(*p.T) for p in (first, (first + last) / 2, last))
+    bend = np.linalg.norm(middle - (start + stop) / 2, axis=1)
+    beside = np.isnan(start[:, 0]) != np.isnan(stop[:, 0])
+    bent = bend > MOST_BENT * np.linalg.norm(stop - start, axis=1)
+    return np.asarray(beside | bent)
+
+
+def tear(projection: Projection, first: Floats, last: Floats) -> tuple[Floats, Floats]:
+    """Return longitude and latitude just before and just after the tear in each piece, (N, 2)."""
+    low, high = first.copy(), last.copy()
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        a, m, b = (projection.positions(*p.T) for p in (low, middle, high))
+        missing = np.isnan([a[:, 0], m[:, 0], b[:, 0]])
+        to_low, to_high = (np.linalg.norm(m - end, axis=1) for end in (a, b))
+        is_low = np.where(missing.any(axis=0), missing[1] == missing[0], to_low < to_high)
+        low[is_low], high[~is_low] = middle[is_low], middle[~is_low]
+    return low, high
+
+
+def _assembled(starts: Floats, stops: Floats, left: AnyArray, right: AnyArray) -> MapLines:
+    """Put pieces together that follow each other: ``right`` of one is ``left`` of the next."""
+    new = np.append(True, right[:-1] != left[1:])[: len(starts)]
+    at = np.arange(len(starts)) + np.cumsum(new) - 1
+    points = np.empty((len(starts) + int(new.sum()), 3))
+    points[at + 1] = stops
+    points[at] = starts
+    return MapLines(points, np.append(at[new], len(points)))

@@ -1,0 +1,290 @@
+"""A globe, and flat maps: positions from longitude and latitude, and vectors from east and north.
+
+A vector is mapped by the derivatives of the projection, so that a particle which moves on the
+Earth moves along the map of its path; on a globe directions and lengths are those of the Earth.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex._util.extras import import_extra
+from flowtex.errors import FieldError
+
+#: Mean radius of the Earth in metres.
+EARTH_RADIUS = 6_371_000.0
+#: Metres of a degree of latitude.
+DEGREE = math.radians(EARTH_RADIUS)
+#: The name of the sphere among the projections.
+GLOBE = "globe"
+#: Projections by the names that people know, as PROJ has them.
+NAMES = {
+    "platecarree": "+proj=eqc",
+    "mercator": "+proj=merc",
+    "north": "+proj=stere +lat_0=90",
+    "south": "+proj=stere +lat_0=-90",
+    "lambert": "+proj=lcc",
+    "robinson": "+proj=robin",
+    "equalearth": "+proj=eqearth",
+}
+#: Names of the same maps by PROJ's methods.
+METHODS = {
+    "Equidistant Cylindrical": "platecarree",
+    "Equidistant Cylindrical (Spherical)": "platecarree",
+    "Mercator (variant A)": "mercator",
+    "Mercator (variant B)": "mercator",
+    "Mercator (Spherical)": "mercator",
+    "Popular Visualisation Pseudo Mercator": "mercator",
+    "Robinson": "robinson",
+    "Equal Earth": "equalearth",
+}
+#: Steps in degrees for derivatives, and the nearest distance to a pole. The pieces of PROJ's
+#: Robinson differ by a metre where they meet: shorter steps turned directions by up to 3 degrees.
+STEP, NEAREST_POLE = 0.02, 0.5
+#: A step that is longer than the opposite one by this factor crosses a tear.
+TORN = 100.0
+#: Factor by which a position outside the map is moved towards its middle.
+INSIDE = 1 - 1e-7
+
+
+def place_text(lon: float, lat: float, decimals: int = 2) -> str:
+    """Return a position as text, such as ``"12.35° E, 45.20° N"``."""
+    parts = ((lon, "E", "W"), (lat, "N", "S"))
+    return ", ".join(f"{abs(x):.{decimals}f}° {low if x < 0 else high}" for x, high, low in parts)
+
+
+class ProjectionError(FieldError):
+    """A projection is unknown, or cannot map a position.
+
+    Examples
+    --------
+    >>> from flowtex.field.earth import Projection
+    >>> Projection("flat earth")
+    Traceback (most recent call last):
+    flowtex.field.earth.projection.ProjectionError: the projection 'flat earth' is unknown; ...
+    """
+
+
+@dataclass(frozen=True)
+class Projection:
+    """A projection of the Earth, in metres.
+
+    Attributes
+    ----------
+    name
+        ``"globe"``, one of the names ``"platecarree"``, ``"mercator"``, ``"north"`` and
+        ``"south"`` (polar stereographic), ``"lambert"``, ``"robinson"`` and ``"equalearth"``, or
+        a PROJ definition, such as ``"EPSG:3413"`` or ``"+proj=laea +lat_0=52 +lon_0=10"``.
+    center
+        Longitude and latitude of the middle of the map, in degrees, if ``name`` is one of the
+        names.
+    half_height
+        Half the extent of the map in degrees of latitude, which determines the standard parallels
+        of a Lambert projection.
+
+    Raises
+    ------
+    ProjectionError
+        When PROJ does not know the projection.
+
+    Examples
+    --------
+    >>> from flowtex.field.earth import Projection
+    >>> north = Projection("north")
+    >>> [round(float(x)) for x in north.positions(0.0, 90.0)]
+    [0, 0, 0]
+    >>> [float(x) for x in Projection("globe").lonlat((0.0, 6_371_000.0, 0.0))]
+    [90.0, 0.0]
+    """
+
+    name: str
+    center: tuple[float, float] = (0.0, 0.0)
+    half_height: float = 10.0
+
+    def __post_init__(self) -> None:
+        """Check the name."""
+        if not self.is_globe:
+            _ = self._crs
+
+    @classmethod
+    def of(cls, written: Any) -> Projection | None:
+        """Return the projection from the value of :attr:`written`; ``None`` for ``None``."""
+        if written is None:
+            return None
+        name, (lon, lat), half_height = written
+        return cls(str(name), (float(lon), float(lat)), float(half_height))
+
+    @property
+    def written(self) -> list[Any]:
+        """The attributes as a list for JSON."""
+        return [self.name, list(self.center), self.half_height]
+
+    @property
+    def is_globe(self) -> bool:
+        """Whether this is the globe."""
+        return self.name == GLOBE
+
+    @property
+    def family(self) -> str:
+        """The name of the map of the same kind: ``"mercator"`` for ``"EPSG:3857"``."""
+        if self.is_globe or self.name in NAMES:
+            return self.name
+        return METHODS.get(self._operation.method_name, self.name)
+
+    @property
+    def origin(self) -> float | None:
+        """Central longitude in degrees, if a PROJ definition has one."""
+        if self.is_globe or self.name in NAMES:
+            return None
+        named = (p for p in self._operation.params if p.name.startswith(("Longitude of", "lon_0")))
+        return next((float(p.value) for p in named), None)
+
+    @property
+    def _operation(self) -> Any:
+        return self._crs.coordinate_operation
+
+    @property
+    def _origin(self) -> float:
+        return self.center[0] if self.name in NAMES else 0.0
+
+    @cached_property
+    def _crs(self) -> Any:
+        pyproj = import_extra("pyproj", "xarray")
+        text = self.name
+        if text in NAMES:
+            # Longitudes are relative to the middle, so that 180 degrees is the edge of the map.
+            lat, half = self.center[1], self.half_height
+            text = f"{NAMES[text]} +lon_0=0 +R={EARTH_RADIUS:.12g} +units=m"
+            if self.name == "platecarree":
+                text += f" +lat_ts={lat:.12g}"
+            elif self.name == "lambert":
+                near = math.copysign(max(abs(lat), 1.0), lat)
+                parallels = (near - half / 3, near + half / 3)
+                if parallels[0] * parallels[1] <= 0:
+                    parallels = (near, near)
+                text += f" +lat_0={near:.12g} +lat_1={parallels[0]:.12g} +lat_2={parallels[1]:.12g}"
+        try:
+            crs = pyproj.CRS.from_user_input(text)
+            if not crs.is_projected:
+                msg = (
+                    f"the projection {self.name!r} is in degrees; expected one in metres: "
+                    f"{', '.join((GLOBE, *NAMES))}, or a PROJ string"
+                )
+                raise ProjectionError(msg)
+            return crs
+        except pyproj.exceptions.ProjError as error:
+            msg = (
+                f"the projection {self.name!r} is unknown; expected one of "
+                f"{', '.join((GLOBE, *NAMES))}, or a PROJ string such as 'EPSG:3413' or "
+                "'+proj=laea +lat_0=52 +lon_0=10'"
+            )
+            raise ProjectionError(msg) from error
+
+    @cached_property
+    def _transforms(self) -> tuple[Any, Any]:
+        """Transforms that wrap longitudes, and that continue beyond the edge of a map."""
+        make = import_extra("pyproj", "xarray").Transformer.from_crs
+        both = (
+            make(self._crs.geodetic_crs, self._crs, always_xy=True, force_over=over)
+            for over in (False, True)
+        )
+        return tuple(both)
+
+    def positions(self, lon: Floats, lat: Floats, *, beyond: bool = False) -> Floats:
+        """Return positions in metres, (..., 3), of longitudes and latitudes in degrees.
+
+        They are NaN where the projection is undefined. With ``beyond``, longitudes beyond the edge
+        of a named map continue beyond it; otherwise they return on the other side.
+        """
+        if self.is_globe:
+            a, b = np.radians(lon), np.radians(lat)
+            parts = (np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b))
+            return np.asarray(EARTH_RADIUS * np.stack(np.broadcast_arrays(*parts), axis=-1))
+        lon, lat = np.broadcast_arrays(lon, lat)
+        transform = self._transforms[beyond]
+        x, y = transform.transform(lon - self._origin, lat, errcheck=False)
+        points = np.stack([x, y, np.zeros(np.shape(x))], axis=-1)
+        points[~np.isfinite(points).all(axis=-1)] = np.nan
+        return points
+
+    def vectors(self, lon: Floats, lat: Floats, east: Floats, north: Floats) -> Floats:
+        """Return vectors (..., 3) from eastward and northward components, (..., J, I), in m/s.
+
+        ``lon`` and ``lat`` are (J, I), in degrees.
+        """
+        to_east, to_north = self._directions(lon, lat)
+        return np.asarray(east[..., None] * to_east + north[..., None] * to_north)
+
+    def components(self, lon: Floats, lat: Floats, vectors: Floats) -> tuple[Floats, Floats]:
+        """Return the eastward and northward components of vectors (..., 3), in m/s.
+
+        This is the inverse of :meth:`vectors`.
+        """
+        to_east, to_north = self._directions(lon, lat)
+
+        def times(a: Floats, b: Floats) -> Floats:
+            return np.asarray(np.sum(a * b, axis=-1))
+
+        east, north = times(vectors, to_east), times(vectors, to_north)
+        ee, en, nn = times(to_east, to_east), times(to_east, to_north), times(to_north, to_north)
+        area = ee * nn - en * en
+        return (east * nn - north * en) / area, (north * ee - east * en) / area
+
+    def _directions(self, lon: Floats, lat: Floats) -> tuple[Floats, Floats]:
+        """Change of position for a metre eastward and a metre northward."""
+        if self.is_globe:
+            a, b = np.radians(lon), np.radians(lat)
+            zero = np.zeros_like(a)
+            east = np.stack([-np.sin(a), np.cos(a), zero], axis=-1)
+            north = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
+            return east, north
+        lat = np.clip(lat, NEAREST_POLE - 90, 90 - NEAREST_POLE)
+        here, metre = self.positions(lon, lat), DEGREE * STEP
+        east = _mean(self.positions(lon + STEP, lat) - here, here - self.positions(lon - STEP, lat))
+        north = _mean(
+            self.positions(lon, lat + STEP) - here, here - self.positions(lon, lat - STEP)
+        )
+        east /= (metre * np.cos(np.radians(lat)))[..., None]
+        north /= metre
+        return east, north
+
+    def lonlat(self, positions: Floats) -> tuple[Floats, Floats]:
+        """Return longitude and latitude in degrees of positions (..., 3); NaN outside the map."""
+        x, y, z = np.moveaxis(np.asarray(positions, dtype=float), -1, 0)
+        if self.is_globe:
+            return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+        inverse = partial(self._transforms[0].transform, direction="INVERSE", errcheck=False)
+        lon, lat = inverse(x, y)
+        known = np.isfinite(lon) & np.isfinite(lat)
+        if not known.all():  # some lie on the outline, and by rounding outside it
+            inner = inverse(INSIDE * x, INSIDE * y)
+            lon, lat = (
+                np.where(known, one, two) for one, two in zip((lon, lat), inner, strict=True)
+            )
+            known = np.isfinite(lon) & np.isfinite(lat)
+        lon, lat = np.where(known, lon, np.nan), np.where(known, lat, np.nan)
+        return (lon + self._origin + 180.0) % 360.0 - 180.0, lat
+
+    def scale(self, position: Floats) -> float:
+        """Return the scale of the map, in metres per metre on the Earth, at a position, (3,)."""
+        return 1.0 if self.is_globe else float(self.scales(*self.lonlat(position)))
+
+    def scales(self, lon: Floats, lat: Floats) -> Floats:
+        """Return the scale, averaged over directions, at longitudes and latitudes, (...)."""
+        east, north = self._directions(np.asarray(lon, dtype=float), np.asarray(lat, dtype=float))
+        return np.asarray(np.sqrt(np.linalg.norm(np.cross(east, north), axis=-1)))
+
+
+def _mean(one: Floats, other: Floats) -> Floats:
+    """Return the mean of two vectors, (..., 3), or one of them where the other crosses a tear."""
+    a, b = (np.linalg.norm(v, axis=-1)[..., None] for v in (one, other))
+    with np.errstate(invalid="ignore"):
+        alone = np.where((a > TORN * b) | ~np.isfinite(a), other, one)
+        torn = (a > TORN * b) | (b > TORN * a) | (np.isfinite(a) != np.isfinite(b))
+    return np.where(torn, alone, (one + other) / 2)

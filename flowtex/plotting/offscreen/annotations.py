@@ -1,0 +1,393 @@
+"""Legends, time, scale bar and title, written on pictures that are drawn already.
+
+Each stands on its own plate in a corner. What has no room is left out, the title first and the
+legend last. Text grows with the picture, so that small and large ones look alike.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from PIL import Image, ImageDraw, ImageFont
+
+from flowtex._util.array_types import Bytes
+from flowtex._util.colours import rgb
+from flowtex.field import FlowField
+from flowtex.field.dates import date_text
+from flowtex.rendering.camera import Camera
+from flowtex.rendering.structure_marks import (
+    DOT_PX,
+    KIND_MARKS,
+    LINE_COLORS,
+    LINE_PX,
+    MIDDLE_COLOR,
+    NULLCLINE_COLORS,
+    RIM_COLOR,
+)
+from flowtex.scene.scene import Scene
+
+#: Height of the text: a share of the picture's height, or of a width that goes with it.
+TEXT_SHARE, WIDEST_ASPECT = 1 / 30, 1.6
+#: Height below which text cannot be read, in pixels.
+SMALLEST_TEXT_PX = 11
+#: Share of the picture that a plate covers at most.
+MOST_COVER = 0.125
+#: Greatest share of the picture's width that a scale bar has.
+SCALE_BAR_WIDTH = 0.2
+#: Lengths in heights of the text: around it, between plates, of the ramp, of thin lines.
+PADDING, GAP, RAMP_WIDTH, RAMP_HEIGHT, LINE = 0.4, 0.6, 9.0, 0.65, 0.1
+#: How opaque a plate is, and the lightness from which a background counts as light.
+OPACITY, LIGHT_FROM = 0.8, 0.5
+#: Digits of the ends of a legend: as many as tell them apart.
+DIGITS = range(3, 9)
+#: Number from which on the text of one has a power of ten.
+LARGE = 1e6
+#: Share of the range by which a number may lie beyond an end: less than a pixel.
+BEYOND = 0.004
+#: A unit of time with more letters than this is left out where room is scarce, which it is where
+#: the time would have more than this share of the picture's width.
+UNIT_LENGTH, TIME_WIDTH = 8, 0.4
+#: Decimals of a time, and times, beyond which it is written with an exponent.
+MOST_DECIMALS, LONGEST_TIME = 6, 1e9
+METRES_PER_KM = 1000
+#: Diameter of a dot in a legend and height of a line there, in lines of text, and how much larger
+#: they are drawn to be smooth.
+DOT_SHARE, LINE_SHARE, SMOOTH = 0.6, 0.3, 4
+
+
+@dataclass(frozen=True)
+class Plate:
+    """One annotation: its name, its place in pixels from the top left, and its pixels (RGBA)."""
+
+    name: str
+    left: int
+    top: int
+    image: Image.Image
+
+    @property
+    def box(self) -> tuple[int, int, int, int]:
+        """Left, top, right and bottom, in pixels."""
+        return self.left, self.top, self.left + self.image.width, self.top + self.image.height
+
+
+def annotate(picture: Bytes, scene: Scene, camera: Camera, **options: Any) -> None:
+    """Write on a picture, (H, W, 3) uint8, in place; :func:`plates` has the parameters."""
+    height, width = picture.shape[:2]
+    for plate in plates(scene, (width, height), camera, **options):
+        left, top, right, bottom = plate.box
+        below, above = picture[top:bottom, left:right], np.asarray(plate.image, dtype=float)
+        share = above[..., 3:] / 255
+        below[:] = np.rint(below * (1 - share) + above[..., :3] * share)
+
+
+def plates(
+    scene: Scene,
+    size: tuple[int, int],
+    camera: Camera,
+    *,
+    background: Any = "white",
+    label: str = "",
+    legend: bool = True,
+) -> list[Plate]:
+    """Return what is written on a picture, the most important first.
+
+    Size is the width and height of the picture in pixels, and label what the title says beside the
+    name of the field. Plates are light on a light background. There is no legend where the colours
+    tell nothing.
+    """
+    width, height = size
+    writer = _Writer(size, background)
+    title = _printable(", ".join(text for text in (scene.field.name, label) if text))
+    parts: tuple[tuple[str, bool, bool, Iterator[Image.Image]], ...] = (
+        ("legend", True, True, writer.legends(scene) if legend else iter(())),
+        ("time", True, False, writer.times(scene)),
+        ("scale bar", False, True, writer.scale_bars(scene, camera)),
+        ("title", False, False, writer.texts(title)),
+        ("structure", False, True, writer.structure(scene) if legend else iter(())),
+    )
+    gap, placed = writer.gap, list[Plate]()
+    for name, right, low, images in parts:
+        for image in images:
+            left = width - gap - image.width if right else gap
+            top = height - gap - image.height if low else gap
+            if name == "structure":  # above the scale bar
+                bars = [plate.top for plate in placed if plate.name == "scale bar"]
+                top = min(bars, default=height) - gap - image.height
+            plate = Plate(name, left, top, image)
+            fits = gap <= left <= width - gap - image.width
+            fits &= gap <= top <= height - gap - image.height
+            fits &= image.width * image.height <= MOST_COVER * width * height
+            if fits and all(_apart(plate, other, gap) for other in placed):
+                placed.append(plate)
+                break
+    return placed
+
+
+class _Writer:
+    """Makes the plates of pictures of one size and background, the largest form of each first."""
+
+    def __init__(self, size: tuple[int, int], background: Any) -> None:
+        self._size = size
+        height = min(size[1], size[0] / WIDEST_ASPECT)
+        self._em = max(round(height * TEXT_SHARE), SMALLEST_TEXT_PX)
+        self._font = _font(self._em)
+        self._line = sum(self._font.getmetrics())
+        self._thin, self.gap = self._px(LINE), self._px(GAP)
+        is_light = float(np.dot(rgb(background), (0.299, 0.587, 0.114))) >= LIGHT_FROM
+        self._plate, self._ink = ("white", "black") if is_light else ("black", "white")
+
+    def texts(self, text: str, room: tuple[str, ...] = ()) -> Iterator[Image.Image]:
+        """Yield a plate with one line, as wide as the widest that may stand there."""
+        if text:
+            width = max(map(self._width, (text, *room)))
+            image, draw = self._blank(width, self._line)
+            self._write(draw, 0, 0, text)
+            yield image
+
+    def times(self, scene: Scene) -> Iterator[Image.Image]:
+        """Yield the time of a field that varies in time, with a long unit and without it."""
+        field = scene.field
+        if field.steady:
+            return
+        for longest in (len(field.time_unit), UNIT_LENGTH):
+            times = (scene.time, *map(float, field.times[[0, -1]]))
+            text, *ends = (_printable(time_text(field, time, longest)) for time in times)
+            for image in self.texts(text, tuple(ends)):
+                if longest <= UNIT_LENGTH or image.width <= TIME_WIDTH * self._size[0]:
+                    yield image
+
+    def scale_bars(self, scene: Scene, camera: Camera) -> Iterator[Image.Image]:
+        """Yield a round length, where it is the same all over the picture."""
+        frame = scene.whole.surface.frame
+        if frame is None or not camera.parallel:
+            return
+        if abs(float(np.cross(*frame) @ camera.axes[2])) < 1 - 1e-6:  # seen aslant
+            return
+        scale = map_scale(scene.field, camera.focal_point)
+        unit_px = scale * self._size[1] / (2 * camera.height)
+        length = round_length(SCALE_BAR_WIDTH * self._size[0] / unit_px)
+        unit, across = _printable(scene.field.length_unit), round(length * unit_px)
+        if not across:
+            return
+        text = length_text(length, unit)
+        tick = self._px(PADDING)
+        width = max(self._width(text), across)
+        image, draw = self._blank(width, self._line + tick)
+        self._write(draw, (width - self._width(text)) // 2, 0, text)
+        left, low = self._pad + (width - across) // 2, self._pad + self._line + tick - 1
+        right = left + across - 1
+        draw.rectangle((left, low - self._thin + 1, right, low), self._ink)
+        for x in (left, right - self._thin + 1):
+            draw.rectangle((x, low - tick + 1, x + self._thin - 1, low), self._ink)
+        yield image
+
+    def legends(self, scene: Scene) -> Iterator[Image.Image]:
+        """Yield name, colours and round values, and with every second of these."""
+        name, settings, appearance = scene.scalar_name, scene.settings, scene.appearance
+        if name is None or settings.show_level or not appearance.visible:
+            return
+        table, title = scene.legend_colours[:, :3], _printable(scene.title_of(name))
+        marks = _value_marks(*scene.legend_limits, log_scale=appearance.log_scale)
+        for some in (marks, marks[::2]):
+            yield self._legend(title, table, some, scene.beyond)
+
+    def structure(self, scene: Scene) -> Iterator[Image.Image]:
+        """Yield what is marked of the structure: critical points with dots, and lines."""
+        structure, settings, step = scene.structure, scene.settings, scene.step
+        count, saddles = settings.critical_points, settings.separatrices
+        points = structure.points(step)[:count] if count else ()
+        rows: dict[str, Any] = {
+            kind: mark
+            for kind, mark in KIND_MARKS.items()
+            if any(point.kind == kind for point in points)
+        }
+        paths = structure.paths(step, saddles) if saddles else {}
+        rows |= {name: color for name, color in LINE_COLORS.items() if paths.get(name)}
+        rows |= NULLCLINE_COLORS if settings.nullclines else {}
+        if not rows:
+            return
+        width = max(map(self._width, rows)) + self._line
+        image, draw = self._blank(width, len(rows) * self._line)
+        side = SMOOTH * self._line
+        for n, (name, look) in enumerate(rows.items()):
+            self._write(draw, self._line, n * self._line, name)
+            mark = Image.new("RGBA", (side, side))
+            if isinstance(look, str):
+                for thick, color in zip(LINE_PX, (RIM_COLOR, look), strict=True):
+                    high = LINE_SHARE * side * thick / LINE_PX[0] / 2
+                    box = (side / 5 - high, side / 2 - high, side * 0.7 + high, side / 2 + high)
+                    ImageDraw.Draw(mark).rectangle(box, color)
+            else:
+                colors = [RIM_COLOR, look.color, MIDDLE_COLOR][: 3 if look.turns else 2]
+                for diameter, color in zip(DOT_PX, colors, strict=False):
+                    size = DOT_SHARE * diameter / DOT_PX[0] * side / 2
+                    low, high = side / 2 - size, side / 2 + size
+                    ImageDraw.Draw(mark).ellipse((low, low, high, high), color)
+            place = (self._pad - self._line // 8, self._pad + n * self._line)
+            image.alpha_composite(mark.resize((self._line,) * 2, Image.Resampling.BOX), place)
+        yield image
+
+    def _legend(
+        self, title: str, table: Bytes, marks: list[tuple[float, str]], beyond: tuple[bool, bool]
+    ) -> Image.Image:
+        """Return the legend; the colours end in a tip where values lie beyond them."""
+        shares, numbers = zip(*marks, strict=True)
+        widest = max(map(self._width, numbers)) + self._px(GAP)
+        apart = min(np.diff(shares), default=1.0)
+        high, least = self._px(RAMP_HEIGHT), self._px(RAMP_WIDTH)
+        # Numbers stand in the middle below their colours, and may reach beyond the first and last.
+        aside = self._width(numbers[0]) / 2 - shares[0] * least
+        aside = max(aside, 0) + max(self._width(numbers[-1]) / 2 - (1 - shares[-1]) * least, 0)
+        width = math.ceil(max(max(self._width(title), least) - aside, widest / apart))
+        places = [share * width - self._width(text) / 2 for share, text in marks]
+        ends = [x + self._width(text) for x, text in zip(places, numbers, strict=True)]
+        start = math.ceil(max(-min(places), 0))
+        end = math.ceil(max(*ends, width, self._width(title) - start))
+        image, draw = self._blank(start + end, 2 * self._line + high)
+        self._write(draw, 0, 0, title)
+        stops = np.linspace(0, len(table) - 1, width).round().astype(int)
+        ramp = np.broadcast_to(table[stops], (high, width, 3))
+        shape = Image.new("L", (SMOOTH * width, SMOOTH * high))
+        left, right = (high * SMOOTH // 2 if tip else 0 for tip in beyond)
+        (x, y), middle = shape.size, SMOOTH * high / 2
+        corners = [(0, middle), (left, 0), (x - right, 0), (x, middle), (x - right, y), (left, y)]
+        ImageDraw.Draw(shape).polygon(corners, fill=255)
+        image.paste(
+            Image.fromarray(np.ascontiguousarray(ramp)),
+            (self._pad + start, self._pad + self._line),
+            shape.resize((width, high), Image.Resampling.BOX),
+        )
+        for place, text in zip(places, numbers, strict=True):
+            self._write(draw, round(start + place), self._line + high, text)
+        return image
+
+    @property
+    def _pad(self) -> int:
+        return self._px(PADDING)
+
+    def _px(self, heights: float) -> int:
+        return max(round(heights * self._em), 1)
+
+    def _blank(self, width: int, height: int) -> tuple[Image.Image, Any]:
+        """Return a plate with so much room, and what draws on it."""
+        size = (width + 2 * self._pad, height + 2 * self._pad)
+        image = Image.new("RGBA", size, self._plate)
+        image.putalpha(round(255 * OPACITY))
+        return image, ImageDraw.Draw(image)
+
+    def _width(self, text: str) -> int:
+        left, _, right, _ = self._font.getbbox(text)
+        return math.ceil(right - left)
+
+    def _write(self, draw: Any, x: int, y: int, text: str) -> None:
+        left = self._font.getbbox(text)[0]  # a letter may begin beside its place
+        draw.text((self._pad + x - left, self._pad + y), text, self._ink, self._font)
+
+
+@lru_cache(8)
+def _font(height: int) -> ImageFont.FreeTypeFont:
+    """Return matplotlib's own font, which has the letters of units, in this many pixels."""
+    from matplotlib import get_data_path
+
+    path = Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
+    # The layout that every Pillow has.
+    return ImageFont.truetype(path, height, layout_engine=ImageFont.Layout.BASIC)
+
+
+def _printable(text: str) -> str:
+    """Return a text in one line, without what cannot be drawn."""
+    return "".join(letter if letter.isprintable() else " " for letter in text).strip()
+
+
+def _apart(one: Plate, other: Plate, gap: int) -> bool:
+    """Return whether there is a gap between two plates."""
+    (left, top, right, bottom), (to_left, above, to_right, below) = one.box, other.box
+    return max(to_left - right, left - to_right, above - bottom, top - below) >= gap
+
+
+def _number_text(value: float, digits: int) -> str:
+    """Write a number as the browser's legends do: 1000, and 1e6."""
+    text = f"{value:.{digits}g}"
+    if "e+" in text and abs(value) < LARGE:
+        return f"{float(text):.0f}"
+    return re.sub(r"e(-?)\+?0?", r"e\1", text)
+
+
+def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[float, str]]:
+    """Return round values in a range and their shares of it; its ends if fewer than two are."""
+    from matplotlib.ticker import LogLocator, MaxNLocator
+
+    where = np.log10 if log_scale else np.asarray
+    locator = LogLocator(numticks=4) if log_scale else MaxNLocator(3, steps=[1, 2, 5, 10])
+    values = np.asarray(locator.tick_values(low, high))
+    slack = 0.0 if log_scale else BEYOND * (high - low)
+    values = values[(values >= low - slack) & (values <= high + slack)]
+    values = values[:: 1 + len(values) // 5] if len(values) > 1 else np.unique([low, high])
+    texts: list[str] = []
+    for digits in DIGITS:
+        texts = [_number_text(value, digits) for value in values]
+        if len(set(texts)) == len(texts):
+            break
+    ends = where([low, high])
+    shares = (where(values) - ends[0]) / max(ends[1] - ends[0], float(np.finfo(float).tiny))
+    return list(zip(map(float, shares), texts, strict=True))
+
+
+def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) -> str:
+    """Return a time of a field: its date, or with decimals that tell its steps apart.
+
+    A unit is shown up to this length.
+    """
+    step = float(np.diff(field.times).min()) if len(field.times) > 1 else 1.0
+    if field.start is not None:
+        return date_text(field.start, time, step)
+    power = math.floor(math.log10(step))
+    decimals = max(2 - power, 0) if power >= 0 else 1 - power
+    short = decimals <= MOST_DECIMALS and abs(time) < LONGEST_TIME
+    number = f"{time:.{decimals}f}" if short else f"{time:.{MOST_DECIMALS}g}"
+    unit = field.time_unit if len(field.time_unit) <= longest_unit else ""
+    return f"t = {number} {unit}".strip()
+
+
+def difference_text(scene: Scene, changes: Mapping[str, Any]) -> str:
+    """Return the settings by which one of two views differs from the other."""
+    settings = dict(scene.settings) | {"lines": scene.lines}
+    return ", ".join(f"{name} = {settings[name]}" for name in changes if name in settings)
+
+
+def length_text(length: float, unit: str) -> str:
+    """Return a length with its unit, without the plural of a whole word, such as metres, for 1.
+
+    Thousands of metres are kilometres.
+    """
+    if unit == "m" and length >= METRES_PER_KM:
+        length, unit = length / METRES_PER_KM, "km"
+    plural = len(unit) > 4 and unit.endswith("s") and not unit.endswith(("ss", "ches"))
+    return f"{length:.12g} {unit[:-1] if plural and length == 1 else unit}".strip()
+
+
+def map_scale(field: FlowField, position: ArrayLike) -> float:
+    """Return lengths of the map for one of the Earth, at a place of a field with a projection.
+
+    It is 1 for another field, and outside the map.
+    """
+    if field.projection is None:
+        return 1.0
+    scale = field.projection.scale(np.asarray(position, dtype=float))
+    return scale if scale > 0 and math.isfinite(scale) else 1.0
+
+
+def round_length(greatest: float) -> float:
+    """Return the greatest of 1, 2, 5, 10, 20, ... that is not above a length."""
+    if not (greatest > 0 and math.isfinite(greatest)):
+        return 0.0
+    power = 10.0 ** math.floor(math.log10(greatest))
+    return max(step * power for step in (1, 2, 5) if step * power <= greatest * (1 + 1e-12))

@@ -1,0 +1,89 @@
+"""A flow in HoloViews, drawn again for the range and the size of the plot that shows it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flowtex.errors import FieldError
+from flowtex.plotting.offscreen.annotations import time_text
+from flowtex.plotting.offscreen.figure import USUAL_DPI, axes
+from flowtex.scene.options import Appearance, FieldOptions, accepts_options
+
+#: Width and height of a plot whose size is not known yet, in pixels.
+FIRST_SIZE = (600, 400)
+
+
+@accepts_options(FieldOptions, Appearance)
+def dynamic_map(
+    mesh: Any,
+    *,
+    clock: float = 0.0,
+    supersampling: int = 1,
+    **options: Any,
+) -> Any:
+    """Return a flat flow as a HoloViews element that is drawn for what its plot shows.
+
+    The flow is redrawn for each range and size of the plot, so that its texture stays sharp. A
+    field with several times has the dimension ``time``, for which HoloViews and Panel show a
+    slider. The picture is transparent outside the flow, so that it can lie over map tiles.
+
+    Parameters
+    ----------
+    mesh
+        As for :func:`flowtex.axes`. With ``projection="EPSG:3857"`` data of the Earth lie on the
+        tiles of ``holoviews.element.tiles``.
+    clock, supersampling
+        As for :func:`flowtex.render`.
+    {options}
+
+    Returns
+    -------
+    DynamicMap
+        HoloViews' own, of ``RGB`` elements, in the coordinates that :func:`flowtex.axes` has.
+
+    Raises
+    ------
+    FieldError, SettingsError, OpenGLMissingError
+        As for :func:`flowtex.axes`, and when HoloViews is not installed.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field()
+    >>> flow = flowtex.dynamic_map(field, cmap="magma")  # doctest: +SKIP
+    >>> flow.opts(width=700, data_aspect=1)  # doctest: +SKIP
+    """
+    try:
+        import holoviews as hv
+        from holoviews.streams import PlotSize, RangeXY
+    except ImportError as error:
+        msg = "dynamic_map needs HoloViews; install it: python -m pip install holoviews bokeh"
+        raise FieldError(msg) from error
+    from matplotlib.figure import Figure
+
+    # What matplotlib's axes show is what a plot of HoloViews shows.
+    figure = Figure()
+    ax = figure.add_axes((0, 0, 1, 1), facecolor="none")
+    image = axes(ax, mesh, clock=clock, supersampling=supersampling, **options)
+    left, right, bottom, top = image.get_extent()
+    field = image.flow
+
+    def draw(*chosen: float, **seen: Any) -> Any:
+        x, y = seen["x_range"] or (left, right), seen["y_range"] or (bottom, top)
+        size = seen["width"] or FIRST_SIZE[0], seen["height"] or FIRST_SIZE[1]
+        # The pixels of a plot are the page's, of which the screen may have several.
+        figure.set_dpi(USUAL_DPI * seen["scale"])
+        figure.set_size_inches(size[0] / USUAL_DPI, size[1] / USUAL_DPI)
+        ax.set(xlim=sorted(x), ylim=sorted(y))
+        if chosen:
+            image.time = float(chosen[0])
+        pixels = image.make_image(None)[0]
+        bounds = (min(x), min(y), max(x), max(y))
+        return hv.RGB(pixels[::-1], bounds=bounds, label=field.name)
+
+    def text(time: float) -> str:
+        return time_text(field, float(time))
+
+    time = hv.Dimension("time", values=field.times.tolist(), value_format=text)
+    kdims = [time] if len(field.times) > 1 else []
+    return hv.DynamicMap(draw, kdims=kdims, streams=[RangeXY(), PlotSize()])

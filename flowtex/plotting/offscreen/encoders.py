@@ -1,0 +1,318 @@
+"""Movies in files, written picture by picture: MP4 by PyAV, GIF and animated WebP by Pillow.
+
+The pictures of an MP4 are encoded as they come: H.264 as every browser plays it, with matrix,
+primaries, curve and range of the colours in the file, so that players show those that were drawn.
+Pillow takes all pictures at once, so they wait in a temporary file on the disk.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.arguments import checked_path, checked_size, checked_target, is_number
+from flowtex._util.array_types import Bytes
+from flowtex._util.extras import install_extra
+from flowtex._util.progress import Stopped
+from flowtex._util.whole_file import WholeFile
+from flowtex.errors import FieldError
+
+Size = tuple[int, int]
+
+#: Suffixes of the files that can be written.
+FORMATS = (".mp4", ".gif", ".webp")
+#: Quality where none is requested.
+DEFAULT_QUALITY = 80
+#: Longest side of a picture, in pixels.
+LONGEST_SIDE_PIXELS = 16_384
+#: Pixels of a picture at the highest level of H.264.
+MP4_MAX_PIXELS = 139_264 * 256
+#: Numbers of ITU-T H.273: matrix and primaries of BT.709, curve of sRGB, range from 16 to 235.
+BT709, SRGB_CURVE, LIMITED = 1, 13, 1
+#: Pixels of all the pictures of a movie by Pillow, at most.
+PILLOW_MAX_PIXELS = 1_000_000_000
+#: Browsers slow down a GIF that shows a picture for less than two hundredths of a second.
+GIF_MAX_FPS = 50.0
+#: Pictures of which a palette is made, and about how many pixels of each along a side.
+PALETTE_PICTURES, PALETTE_SIDE = 8, 256
+
+
+class MovieError(FieldError):
+    """A movie cannot be written; the text gives the reason and the remedy.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> flowtex.movie(flowtex.examples.airfoil_field(), "flow.avi")
+    Traceback (most recent call last):
+    flowtex.plotting.offscreen.encoders.MovieError: ...
+    """
+
+
+class MP4Encoder:
+    """Writes H.264 with PyAV; the arguments are those of :class:`MovieWriter`."""
+
+    def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
+        av = _pyav()
+        from av.video.reformatter import Interpolation
+
+        self._frame_of = av.VideoFrame.from_ndarray
+        self._exact = Interpolation.AREA | Interpolation.ACCURATE_RND
+        self._movie = av.open(str(new.part), "w", format="mp4", options={"movflags": "+faststart"})
+        rate = Fraction(fps).limit_denominator(1001)
+        # Half as many steps of the quantizer again for each tenth: 80 is a rate factor of 18.
+        factor = {"crf": f"{50 - 0.4 * quality:g}", "preset": "medium"}
+        self._stream = self._movie.add_stream("libx264", rate=rate, options=factor)
+        self._stream.width, self._stream.height = size
+        self._stream.pix_fmt = "yuv420p"
+        codec = self._stream.codec_context
+        codec.colorspace, codec.color_primaries = BT709, BT709
+        codec.color_trc, codec.color_range = SRGB_CURVE, LIMITED
+
+    def add(self, picture: Bytes) -> None:
+        """Encode a picture."""
+        frame = self._frame_of(np.ascontiguousarray(picture), format="rgb24").reformat(
+            format="yuv420p",
+            src_color_range="JPEG",
+            dst_color_range="MPEG",
+            dst_colorspace="ITU709",
+            interpolation=self._exact,
+        )
+        self._movie.mux(self._stream.encode(frame))
+
+    def finish(self, cancelled: Callable[[], bool]) -> None:
+        """Write what is left to write."""
+        del cancelled
+        self._movie.mux(self._stream.encode(None))
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._movie.close()
+
+
+def _pyav() -> Any:
+    """Return PyAV, which must be there and know H.264."""
+    try:
+        import av
+    except ModuleNotFoundError as error:
+        msg = (
+            "an MP4 needs PyAV, which is not installed; a GIF does not. To install it:\n  "
+            f"{install_extra('movie')}"
+        )
+        raise ModuleNotFoundError(msg) from error
+    if "libx264" not in av.codecs_available:
+        msg = (
+            "the installed PyAV was built without libx264; install the wheel of PyAV, or write a "
+            "GIF"
+        )
+        raise MovieError(msg)
+    return av
+
+
+class PillowEncoder:
+    """Keeps pictures on the disk until Pillow writes them as a GIF or a WebP.
+
+    The pictures of a GIF share one palette, without dithering, so that nothing flickers.
+    """
+
+    def __init__(self, new: WholeFile, size: Size, fps: float, quality: int) -> None:
+        self._new, self._size, self._fps, self._quality = new, size, fps, quality
+        self._format = new.part.suffix[1:].upper()
+        self._count = 0
+        self._spool = tempfile.TemporaryFile()  # noqa: SIM115 closed by close()
+
+    def add(self, picture: Bytes) -> None:
+        """Keep a picture."""
+        if (self._count + 1) * picture.shape[0] * picture.shape[1] > PILLOW_MAX_PIXELS:
+            most = f"{PILLOW_MAX_PIXELS:,} pixels in all"
+            msg = f"a {self._format} can have at most {most}; write an MP4, or a smaller movie"
+            raise MovieError(msg)
+        self._spool.write(np.ascontiguousarray(picture).tobytes())
+        self._count += 1
+
+    def finish(self, cancelled: Callable[[], bool]) -> None:
+        """Write all pictures."""
+        from PIL import Image
+
+        pictures = self._pictures(cancelled)
+        if self._format == "GIF":
+            palette, plain = self._palette(), Image.Dither.NONE
+            pictures = (p.quantize(palette=palette, dither=plain) for p in pictures)
+            self._save(pictures, unit=10, optimize=False, disposal=1)
+        else:
+            self._save(pictures, unit=1, quality=self._quality, method=2)
+
+    def close(self) -> None:
+        """Let go of the pictures."""
+        self._spool.close()
+
+    def _picture(self, number: int) -> Any:
+        from PIL import Image
+
+        width, height = self._size
+        self._spool.seek(number * width * height * 3)
+        return Image.frombytes("RGB", self._size, self._spool.read(width * height * 3))
+
+    def _pictures(self, cancelled: Callable[[], bool]) -> Iterator[Any]:
+        for number in range(self._count):
+            if cancelled():
+                raise Stopped
+            yield self._picture(number)
+
+    def _save(self, pictures: Iterator[Any], unit: int, **options: Any) -> None:
+        """Save pictures whose durations are whole units of this many milliseconds."""
+        ends = [round(1000 * n / self._fps / unit) * unit for n in range(self._count + 1)]
+        durations = [after - before for before, after in pairwise(ends)]
+        next(pictures).save(
+            self._new.file,
+            self._format,
+            save_all=True,
+            append_images=pictures,
+            duration=durations if len(durations) > 1 else durations[0],
+            loop=0,
+            **options,
+        )
+
+    def _palette(self) -> Any:
+        """Make one palette of pictures from the whole movie, seen coarsely."""
+        from PIL import Image
+
+        chosen = np.linspace(0, self._count - 1, min(self._count, PALETTE_PICTURES)).round()
+        step = max(min(self._size) // PALETTE_SIDE, 1)
+        samples = [np.asarray(self._picture(int(n)))[::step, ::step] for n in chosen]
+        colours = max(round(256 * self._quality / 100), 2)
+        return Image.fromarray(np.vstack(samples)).quantize(
+            colours, Image.Quantize.MEDIANCUT, kmeans=2, dither=Image.Dither.NONE
+        )
+
+
+def default_fps(path: str | Path) -> float:
+    """Return frames in a second where none are requested; a GIF counts whole hundredths."""
+    return 20.0 if checked_path("path", path).suffix.lower() == ".gif" else 30.0
+
+
+def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT_QUALITY) -> None:
+    """Refuse a movie that cannot be written, before anything is drawn.
+
+    The parameters are those of :class:`MovieWriter`. Raises a MovieError, whose text says how it
+    can be, and for an MP4 without PyAV a ModuleNotFoundError with the command that installs it.
+    """
+    path = checked_target(path)
+    suffix = path.suffix.lower()
+    width, height = checked_size(size, low=0)
+    shown = f"size is {width} x {height}"
+    if suffix not in FORMATS:
+        what = f"{path.suffix!r} is not a movie format" if suffix else "the file name has no suffix"
+        msg = f"{path}: {what}; expected {', '.join(FORMATS)}"
+    elif not (is_number(quality) and 1 <= quality <= 100):
+        msg = f"quality is {quality!r}; expected a number from 1 to 100, such as {DEFAULT_QUALITY}"
+    elif not (is_number(fps) and fps > 0):
+        msg = f"fps is {fps!r}; expected a positive number of frames per second, such as 30"
+    elif suffix == ".gif" and fps > GIF_MAX_FPS:
+        msg = (
+            f"fps is {fps:g}; a GIF can show at most {GIF_MAX_FPS:g} frames per second; write an "
+            "MP4 for more"
+        )
+    elif suffix == ".mp4" and (width % 2 or height % 2):  # 4:2:0 asks for even sides
+        msg = f"{shown}; an MP4 needs even sides, such as {width // 2 * 2} x {height // 2 * 2}"
+    elif suffix == ".mp4" and width * height > MP4_MAX_PIXELS:
+        msg = f"{shown}; an MP4 can have at most {MP4_MAX_PIXELS:,} pixels: choose a smaller size"
+    elif not all(1 <= side <= LONGEST_SIDE_PIXELS for side in size):
+        msg = f"{shown}; expected 1 to {LONGEST_SIDE_PIXELS} pixels along each side"
+    else:
+        if suffix == ".mp4":
+            _pyav()
+        return
+    raise MovieError(msg)
+
+
+class MovieWriter:
+    """Takes pictures and makes a file of them, which is there whole or not at all.
+
+    The file is ``.mp4``, with even sides in pixels, ``.gif``, with at most 50 frames in a second,
+    or ``.webp``. The higher the quality, 1 to 100, the truer and the larger; a GIF has this many
+    hundredths of 256 colours. Raises what :func:`check_movie` does, and an OSError when the folder
+    does not exist, or no right to write there.
+    """
+
+    def __init__(self, path: str | Path, size: Size, fps: float, quality: int) -> None:
+        check_movie(path, size, fps, quality)
+        self._size = size
+        self._file = WholeFile(Path(path))
+        kind = MP4Encoder if self._file.part.suffix.lower() == ".mp4" else PillowEncoder
+        try:
+            self._encoder = kind(self._file, size, fps, quality)
+        except BaseException:
+            self._file.drop()
+            raise
+
+    def add(self, picture: Bytes) -> None:
+        """Take the next picture, (H, W, 3) uint8.
+
+        Raises a MovieError when its size is not that of the movie.
+        """
+        height, width = picture.shape[:2]
+        if (width, height) != self._size:
+            expected = f"{self._size[0]} x {self._size[1]}"
+            msg = f"a picture is {width} x {height}; expected {expected}, the size of the movie"
+            raise MovieError(msg)
+        self._encoder.add(picture)
+
+    def finish(self, cancelled: Callable[[], bool]) -> None:
+        """Write what is left to write, and put the file in its place.
+
+        Raises :class:`Stopped` when ``cancelled()`` became true before.
+        """
+        self._encoder.finish(cancelled)
+        self._encoder.close()
+        if cancelled():
+            raise Stopped
+        self._file.keep()
+
+    def abandon(self) -> None:
+        """Leave nothing behind; after :meth:`finish` there is nothing to do."""
+        try:
+            self._encoder.close()
+        except OSError:  # a full disk: it has failed before, and the file goes
+            pass
+        finally:
+            self._file.drop()
+
+
+def write_movie(
+    path: str | Path,
+    frames: Iterable[Bytes],
+    fps: float,
+    quality: int = DEFAULT_QUALITY,
+    *,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> None:
+    """Write pictures (H, W, 3) uint8, all of one size, as a movie.
+
+    Each picture is taken when the one before is written; ``cancelled`` is asked before each, and
+    once it is true nothing is left behind. The other parameters are those of :class:`MovieWriter`.
+    Raises what that does, a MovieError when there are no pictures or one differs in size, and
+    :class:`Stopped` when it was cancelled.
+    """
+    writer: MovieWriter | None = None
+    try:
+        for picture in frames:
+            if cancelled():
+                raise Stopped
+            if writer is None:
+                height, width = picture.shape[:2]
+                writer = MovieWriter(path, (width, height), fps, quality)
+            writer.add(picture)
+        if writer is None:
+            msg = f"{path}: the movie has no pictures; expected one or more"
+            raise MovieError(msg)
+        writer.finish(cancelled)
+    finally:
+        if writer is not None:
+            writer.abandon()

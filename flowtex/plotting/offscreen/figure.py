@@ -1,0 +1,458 @@
+"""Flat flows in data coordinates: what a picture shows, and matplotlib axes that draw a flow."""
+
+from __future__ import annotations
+
+import warnings
+from contextlib import closing
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap, LogNorm, Normalize
+from matplotlib.image import AxesImage
+from PIL import Image
+
+from flowtex._util.arguments import checked_size
+from flowtex._util.array_types import Bytes, Floats
+from flowtex.errors import FieldError
+from flowtex.field import FlowField, Surface
+from flowtex.field.io.arrays import SectionAxes
+from flowtex.plotting.offscreen.annotations import time_text
+from flowtex.plotting.offscreen.earth_axes import (
+    AxesUnit,
+    is_geo,
+    label_degrees,
+    projection_of_axes,
+    unit_of,
+)
+from flowtex.plotting.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
+from flowtex.plotting.offscreen.scaled_axes import AxesScales, with_polar_scalars
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera
+from flowtex.scene.options import (
+    Appearance,
+    FieldOptions,
+    Options,
+    ViewOptions,
+    accepts_options,
+)
+from flowtex.scene.scene import Scene
+
+#: Left, right, bottom and top.
+Extent = tuple[float, float, float, float]
+
+#: Ends of a colour bar beyond which values lie, below and above, in matplotlib's words.
+EXTENDED = {(False, True): "max", (True, False): "min", (True, True): "both"}
+#: Kind of axes, and names of the scales of usual ones.
+LINEAR = ("rectilinear", "linear", "linear")
+#: Dots per inch at which a grain has the pixels that the settings speak of.
+USUAL_DPI = 100.0
+#: Longest side of what is drawn where the scales of the axes differ, in pixels.
+LONGEST_SIDE_PX = 8192
+
+
+@accepts_options(FieldOptions, Appearance, ViewOptions)
+def extent(
+    mesh: Any,
+    *,
+    size: tuple[int, int] = (1024, 768),
+    margin: float = CAMERA_LIMITS.margin,
+    **options: Any,
+) -> Extent:
+    """Return the rectangle that :func:`flowtex.render` shows for the same arguments.
+
+    ``plt.imshow(picture, extent=...)`` then shows each pixel at its coordinates.
+
+    Parameters
+    ----------
+    mesh
+        As for :func:`flowtex.render`; its surface must be flat.
+    size, margin
+        As for :func:`flowtex.render`.
+    {options}
+    **settings
+        Any setting of :class:`~flowtex.Settings`; they have no effect.
+
+    Returns
+    -------
+    tuple of float
+        Left, right, bottom and top in the mesh's units: x and y of a plane of constant z, x and z
+        of one of constant y, y and z of one of constant x. For any other plane, lengths along the
+        picture's sides from the origin of the mesh.
+
+    Raises
+    ------
+    FieldError, SettingsError
+        When the mesh or a setting does not fit.
+        When the surface is curved, the camera does not look straight on, or there are two views.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.double_gyre_field()
+    >>> flowtex.extent(field, size=(200, 100), margin=0)
+    (0.0, 2.0, 0.0, 1.0)
+    """
+    chosen, size = Options.split(**options), checked_size(size)
+    if chosen.view.beside is not None:
+        msg = "beside makes two views, which do not have one common extent; omit it"
+        raise FieldError(msg)
+    surface = Scene.from_options(mesh, chosen).whole.surface
+    frame, view, aspect = _frame(surface), chosen.view, size[0] / size[1]
+    camera = view.first_camera(surface, aspect)
+    if view.camera is None:
+        camera = Camera.fit(surface, aspect, zoom=view.zoom, focus=view.focus, margin=margin)
+    if not (camera.parallel and np.allclose(camera.axes[:2], frame, atol=1e-9)):
+        msg = (
+            f"camera is {view.camera!r}; expected one that looks straight at the surface without "
+            "perspective. Omit it, and use zoom and focus"
+        )
+        raise FieldError(msg)
+    x, y = frame @ camera.focal_point
+    half = camera.parallel_scale
+    return float(x - half * aspect), float(x + half * aspect), float(y - half), float(y + half)
+
+
+@accepts_options(FieldOptions, Appearance)
+def axes(
+    ax: Axes,
+    mesh: Any,
+    *,
+    time: float | str | None = None,
+    clock: float = 0.0,
+    supersampling: int = 1,
+    **options: Any,
+) -> FlowImage:
+    """Draw a flat flow into matplotlib axes, in data coordinates.
+
+    The flow is redrawn at the resolution of the axes whenever these are drawn, so the texture stays
+    sharp after a zoom, in a larger window, and in a file with more dots per inch.
+
+    Parameters
+    ----------
+    ax
+        Rectilinear axes, with logarithmic or other scales too, polar axes, or map axes of cartopy
+        (``projection=ccrs.Robinson()``). Their limits become those of the surface, unless they have
+        been set, and the aspect of axes with linear scales becomes equal. On polar axes x is the
+        angle in radians and y the radius, as for ``ax.plot``, and the velocity is along the
+        growing angle and along the radius, both in the unit of the radius per unit of time. Data on
+        longitudes and latitudes are drawn in degrees, or in the projection of the argument
+        ``projection``, with meridians and parallels as ticks; axes of cartopy already have a
+        projection.
+    mesh
+        As for :func:`flowtex.render`; its surface must be flat.
+    time, clock, supersampling
+        As for :func:`flowtex.render`.
+    {options}
+
+    Returns
+    -------
+    FlowImage
+        The image on the axes, which ``plt.colorbar`` accepts.
+
+    Raises
+    ------
+    FieldError, SettingsError, OpenGLMissingError
+        As for :func:`flowtex.render`.
+        When ``ax`` are other axes, the surface is curved, or data on axes of a map are not of the
+        Earth.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import flowtex
+    >>> figure, ax = plt.subplots(figsize=(3, 2))
+    >>> image = flowtex.axes(ax, flowtex.examples.double_gyre_field(), cmap="magma")
+    >>> bar = figure.colorbar(image, label="speed")
+    >>> figure.savefig("gyre.png", dpi=50)
+    >>> plt.close(figure)
+    """
+    if not is_geo(ax) and getattr(ax, "name", "") not in ("rectilinear", "polar"):
+        msg = (
+            f"ax is {ax!r}; expected rectilinear or polar matplotlib axes, such as those of "
+            "plt.subplots(), or axes of cartopy"
+        )
+        raise FieldError(msg)
+    chosen = Options.split("field", "appearance", **options)
+    image = FlowImage(ax, mesh, chosen, supersampling)
+    image.time, image.clock = image.time if time is None else time, clock
+    image.set_clip_path(ax.patch)
+    ax.add_image(image)
+    image.frame_axes()
+    return image
+
+
+class FlowImage(AxesImage):
+    """A flow on matplotlib axes, redrawn for the limits that they show.
+
+    :func:`flowtex.axes` returns it. It has the colour map and the norm of the picture, for a colour
+    bar.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import flowtex
+    >>> figure, ax = plt.subplots()
+    >>> image = flowtex.axes(ax, flowtex.examples.vortex_field(), scalars="vorticity")
+    >>> image.time = 0.5  # the axes are drawn anew when they are shown or saved next
+    >>> plt.close(figure)
+    """
+
+    def __init__(self, ax: Axes, mesh: Any, options: Options, supersampling: int) -> None:
+        self._unit = AxesUnit()
+        if is_geo(ax):
+            name, self._unit = projection_of_axes(ax)
+            options = _in_projection(mesh, options, name)
+        if _kind(ax)[0] == "polar":
+            mesh, options = options.field.field(mesh), replace(options, field=FieldOptions())
+            scalar = options.appearance.scalar_name
+            mesh = with_polar_scalars(mesh, _frame(mesh.surface), scalar)
+        self._scene = scene = Scene.from_options(mesh, options)
+        self._projection = projection = scene.field.projection
+        if projection is None and is_geo(ax):
+            msg = (
+                f"ax is a map, and {scene.field!r} is not of the Earth; give a dataset on "
+                "longitudes and latitudes, or axes without a projection"
+            )
+            raise FieldError(msg)
+        if not is_geo(ax):
+            self._unit = unit_of(projection)
+        surface = scene.whole.surface
+        self._frame = frame = _frame(surface)
+        # The scene keeps alive what each drawing shares with it.
+        self._options = replace(options, field=FieldOptions())
+        self._flow = scene.field
+        self._scales: AxesScales | None = None
+        self._supersampling, self._clock = supersampling, 0.0
+        self._shown: tuple[Any, ...] = ()
+        self._picture = np.zeros((1, 1, 4), np.uint8)
+        middle, half = frame @ surface.center, surface.plane_size / 2
+        corners = self._unit.on_axes(np.stack([middle - half, middle + half]))
+        if is_scaled := not is_geo(ax) and _kind(ax) != LINEAR:
+            corners = AxesScales(ax, framed=False).extent(self._flow, frame)
+        (left, bottom), (right, top) = corners.tolist()
+        _limit(ax, left, right, bottom, top)
+        if is_scaled:
+            self._follow_scales(AxesScales(ax, framed=False))
+            scene = self._scene
+        super().__init__(ax, extent=(left, right, bottom, top))
+        # Pixels have no values, but a colour bar asks for some.
+        self.set_data([[scene.scalar_limits[0] if scene.scalar_name else 0.0]])
+        self.mouseover = False
+        look = scene.appearance
+        if scene.scalar_name is not None:
+            # A word in matplotlib, and a bool in its types.
+            colours: Any = ListedColormap(scene.legend_colours[:, :3] / 255)
+            colours.colorbar_extend = EXTENDED.get(scene.beyond, "neither")
+            self.set_cmap(colours)
+            self.set_norm((LogNorm if look.log_scale else Normalize)(*scene.legend_limits))
+        self._first_clim = self.get_clim()
+        self._title = ""
+
+    def _follow_scales(self, scales: AxesScales | None) -> None:
+        """Show the flow as the scales of the axes take it."""
+        if (scales and scales.key) == (self._scales and self._scales.key):
+            return
+        if scales is not None and self._projection is not None:
+            msg = (
+                f"ax is {'polar' if scales.polar else f'with scales {scales.names}'}, but the data "
+                "are of the Earth; expected linear axes, or those of cartopy"
+            )
+            raise FieldError(msg)
+        flow, time = self._flow, self._scene.time
+        if scales is not None:
+            flow = scales.field(flow, _frame(flow.surface))
+        self._scales = scales
+        self._scene = Scene.from_options(flow, self._options)
+        self._scene.time = time
+        self._frame = _frame(self._scene.whole.surface)
+
+    @property
+    def flow(self) -> FlowField:
+        """The field that is drawn."""
+        return self._scene.field
+
+    @property
+    def colour_label(self) -> str:
+        """Name and unit of the scalars, for a colour bar; empty if the flow has one colour."""
+        name = self._scene.scalar_name
+        return "" if name is None else self._scene.title_of(name)
+
+    @property
+    def time(self) -> float:
+        """The time shown, in the field's unit; set it to show another one."""
+        return self._scene.time
+
+    @time.setter
+    def time(self, value: float | str) -> None:
+        self._scene.time = value
+        self._tell()
+        self.stale = True
+
+    @property
+    def clock(self) -> float:
+        """Clock of the streaming of a steady flow, in seconds."""
+        return self._clock
+
+    @clock.setter
+    def clock(self, value: float) -> None:
+        self._clock = float(value)
+        self.stale = True
+
+    def frame_axes(self) -> None:
+        """Set title, aspect and ticks of the axes."""
+        ax: Any = self.axes
+        self._tell()
+        if (section := self._flow.section) is not None:
+            self._frame_section(section)
+        if is_geo(ax) or self._scales is not None or section is not None:
+            return
+        across, up = self._unit.scale
+        ax.set_aspect(up / across)
+        if self._projection is not None:
+            label_degrees(ax, self._projection, self._unit)
+
+    def _frame_section(self, section: SectionAxes) -> None:
+        """Stretch the axes of a vertical section, with its top above, and name them."""
+        ax = self.axes
+        ax.set_aspect("auto")
+        if section.downward and not ax.yaxis_inverted():
+            ax.invert_yaxis()
+        ax.set(xlabel=ax.get_xlabel() or section.x, ylabel=ax.get_ylabel() or section.y)
+
+    def _tell(self) -> None:
+        """Show level and time of data of the Earth in the title, unless it has been set."""
+        field = self._scene.field
+        if self._projection is not None and self.axes.get_title() == self._title:
+            dated = len(field.times) > 1 or field.start is not None
+            time = [time_text(field, self.time)] if dated else []
+            self._title = ", ".join([*filter(None, [field.name]), *time])
+            self.axes.set_title(self._title)
+
+    def make_image(
+        self,
+        renderer: Any,
+        magnification: float = 1.0,
+        unsampled: bool = False,  # noqa: FBT001, FBT002
+    ) -> tuple[Any, float, float, Any]:
+        """Return the pixels of the axes and their position, for matplotlib."""
+        del renderer, unsampled
+        if self._projection is None:
+            straight = self.axes.get_aspect() != "auto" and _kind(self.axes) == LINEAR
+            try:
+                self._follow_scales(None if straight else AxesScales(self.axes))
+            except FieldError:  # nothing of the flow is on the axes now
+                return np.zeros((1, 1, 4), np.uint8), 0.0, 0.0, None
+        box = self.axes.bbox
+        # Whole pixels, of which matplotlib cuts those at the border.
+        low = np.floor(np.multiply(box.min, magnification))
+        high = np.ceil(np.multiply(box.max, magnification))
+        pixels = np.stack([low, high]) / magnification
+        if self._scales is None:
+            corners = self._unit.on_map(self.axes.transData.inverted().transform(pixels))
+        else:
+            corners = self._scales.shown(pixels)
+        width, height = (int(n) for n in np.maximum(high - low, 1))
+        density = self.axes.figure.dpi * magnification / USUAL_DPI
+        shown = (*corners.ravel(), width, height, density, self.time, self.clock)
+        shown += (self.axes.get_facecolor(), *self.get_clim())
+        if shown != self._shown:
+            self._picture = self._draw(corners, (width, height), density)
+            self._shown = shown
+        left, bottom = low / magnification
+        return self._picture, float(left), float(bottom), None
+
+    def _draw(self, corners: Floats, size: tuple[int, int], density: float) -> Bytes:
+        """Draw what lies between two corners, (2, 2), row 0 at the bottom.
+
+        It is opaque, except on axes without a background colour.
+        """
+        spans = np.abs(corners[1] - corners[0])
+        scale = min(float(np.max(size / spans)), LONGEST_SIDE_PX / float(spans.max()))
+        width, height = (max(round(float(n)), 1) for n in spans * scale)
+        look = self._options.appearance
+        if self.get_clim() != self._first_clim:  # by matplotlib's own means
+            look = replace(look, clim=self.get_clim())
+        view = ViewOptions(
+            camera=self._camera(corners.mean(axis=0), float(spans[1])),
+            background=self.axes.get_facecolor(),
+        )
+        plotter = OffscreenPlotter(
+            self._scene.field,
+            replace(self._options, appearance=look, view=view),
+            size=(width, height),
+            supersampling=self._supersampling,
+            density=density,
+        )
+        with closing(plotter), warnings.catch_warnings():
+            warnings.filterwarnings("ignore", NOTHING_SEEN)  # axes may be elsewhere
+            transparent = view.background[-1] == 0
+            picture = plotter.picture(time=self.time, clock=self.clock, transparent=transparent)
+        if transparent:  # edge pixels are premultiplied, on black
+            shares = np.maximum(picture[..., 3:], 1) / 255
+            picture = np.concatenate([picture[..., :3] / shares, picture[..., 3:]], axis=-1)
+            picture = picture.clip(0, 255).astype(np.uint8)
+        across, up = np.sign(corners[1] - corners[0]).astype(int)
+        shot = Image.fromarray(picture[::-up, ::across]).convert("RGBA").resize(size)
+        return np.array(shot)  # matplotlib wants one that can be written
+
+    def _camera(self, middle: Floats, height: float) -> Camera:
+        surface = self._scene.whole.surface
+        right, up = self._frame
+        moved = middle - self._frame @ surface.center
+        center = surface.center + moved @ self._frame
+        position = center + np.cross(right, up) * surface.extent
+        return Camera(
+            tuple(position), tuple(center), tuple(up), parallel=True, parallel_scale=height / 2
+        )
+
+
+def _limit(ax: Any, left: float, right: float, bottom: float, top: float) -> None:
+    """Set the limits of axes that have not been set."""
+    kind, _, scale = _kind(ax)
+    if is_geo(ax):
+        limits = ax.projection
+        (left, right), (bottom, top) = (
+            np.clip((low, high), *sorted(most)).tolist()
+            for low, high, most in (
+                (left, right, limits.x_limits),
+                (bottom, top, limits.y_limits),
+            )
+        )
+    if kind == "polar":  # all around the centre
+        left, right = ax.get_xlim()
+        bottom = min(bottom, 0.0) if scale == "linear" else bottom
+    if ax.get_autoscalex_on():
+        ax.set_xlim(*((right, left) if ax.xaxis_inverted() else (left, right)))
+    if ax.get_autoscaley_on():
+        ax.set_ylim(*((top, bottom) if ax.yaxis_inverted() else (bottom, top)))
+
+
+def _kind(ax: Axes) -> tuple[str, str, str]:
+    """Return the kind of axes, and the names of their scales."""
+    return ax.name, ax.get_xscale(), ax.get_yscale()
+
+
+def _in_projection(mesh: Any, options: Options, name: str) -> Options:
+    """Return options with which data are drawn in a projection, and lines if requested."""
+    if options.field.projection is not None or options.field.globe is not None:
+        msg = (
+            "projection and globe are those of the axes, which are of a map; leave them out, or "
+            "give axes without a projection"
+        )
+        raise FieldError(msg)
+    look = options.appearance
+    look = replace(look, coastlines=bool(look.coastlines), graticule=bool(look.graticule))
+    if isinstance(mesh, FlowField):
+        return replace(options, appearance=look)
+    return replace(options, field=replace(options.field, projection=name), appearance=look)
+
+
+def _frame(surface: Surface) -> Floats:
+    if surface.frame is None:
+        msg = (
+            "the surface is curved, so its picture has no axes in data coordinates; draw it with "
+            "flowtex.render, or use a flat plane of the mesh"
+        )
+        raise FieldError(msg)
+    return surface.frame

@@ -1,0 +1,293 @@
+"""A flow that moves, as a movie: :func:`movie`, and its pictures alone: :func:`frames`.
+
+A steady flow streams round: its frames lie evenly in one period, and after the last one comes the
+first again, bit for bit. A field that varies in time is shown from its first to its last time;
+where that is its own period, the last time is left out, because it is the first again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Generator, Iterator
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.arguments import checked_number
+from flowtex._util.array_types import Bytes
+from flowtex._util.progress import track
+from flowtex.field import FlowField
+from flowtex.plotting.offscreen.encoders import (
+    DEFAULT_QUALITY,
+    MovieError,
+    check_movie,
+    default_fps,
+    write_movie,
+)
+from flowtex.plotting.offscreen.plotter import OffscreenPlotter
+from flowtex.scene.options import Appearance, FieldOptions, Options, ViewOptions, accepts_options
+from flowtex.settings import TABLE, Settings
+
+#: Seconds for one run through the times of a field: so many for each step, within limits.
+STEP_S, SHORTEST_RUN_S, LONGEST_RUN_S = 0.25, 5.0, 30.0
+#: Frames of a movie and frames in a second, at most.
+MAX_FRAMES, MAX_FPS = 36_000, 120.0
+#: Velocities that differ by less than this share of the fastest are the same.
+SAME_SHARE = 1e-6
+
+
+@dataclass(frozen=True)
+class FrameTimes:
+    """What each frame of a movie shows."""
+
+    #: Times of a field that varies, in its own unit; empty for a steady flow.
+    times: tuple[float, ...]
+    #: Clocks of the streaming of a steady flow, in seconds; empty for a field that varies.
+    clocks: tuple[float, ...]
+    fps: float  #: As for :class:`Movie`; a steady flow is as long as its ``period``.
+    seconds: float
+    closed: bool
+
+    def __len__(self) -> int:
+        """Count the frames."""
+        return len(self.times) or len(self.clocks)
+
+
+def frame_times(
+    field: FlowField, settings: Settings, *, fps: float, seconds: float | None = None
+) -> FrameTimes:
+    """Return what each frame of a movie shows; :func:`flowtex.movie` has the parameters.
+
+    Of the settings ``motion``, ``noise`` and ``period`` of a steady flow count. Raises a MovieError
+    when a number is out of its range, or a steady flow would stand still.
+    """
+    expected = f"more than 0 and at most {MAX_FPS:g} frames per second"
+    checked_number("fps", fps, math.ulp(0.0), MAX_FPS, expected=expected, error=MovieError)
+    if field.steady:
+        _check_motion(field, settings)
+    whole = _seconds(field, settings, seconds)
+    count = max(round(whole * fps), 1)
+    if count > MAX_FRAMES:
+        msg = (
+            f"{whole:g} seconds at {fps:g} frames per second are {count:,} frames; expected at "
+            f"most {MAX_FRAMES:,}: choose fewer seconds or fewer frames per second"
+        )
+        raise MovieError(msg)
+    if field.steady:
+        clocks = tuple(whole * n / count for n in range(count))
+        return FrameTimes((), clocks, fps, whole, closed=True)
+    closed = _is_periodic(field)
+    first, last = float(field.times[0]), float(field.times[-1])
+    times = np.linspace(first, last, max(count, 2), endpoint=not closed)
+    return FrameTimes(tuple(map(float, times)), (), fps, whole, closed=closed)
+
+
+def run_seconds(times: int) -> float:
+    """Seconds for one run through so many times of a field, in a movie and on a page."""
+    return min(max(STEP_S * (times - 1), SHORTEST_RUN_S), LONGEST_RUN_S)
+
+
+def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> float:
+    if seconds is None:
+        return settings.period if field.steady else run_seconds(len(field.times))
+    row = TABLE["period"]
+    low, high = row.low or 0.0, row.high or math.inf
+    expected = f"a number from {low:g} to {high:g}"
+    return checked_number("seconds", seconds, low, high, expected=expected, error=MovieError)
+
+
+def _check_motion(field: FlowField, settings: Settings) -> None:
+    """Refuse a steady flow that would stand still."""
+    if field.sign_free:
+        msg = "the field is sign-free, so it cannot stream; a movie of it needs several times"
+    elif settings.noise != "procedural":
+        msg = f"noise is {settings.noise!r}, which cannot move; expected 'procedural' for a movie"
+    elif settings.motion == "off":
+        msg = (
+            "motion is 'off'; expected 'speed' or 'uniform', because a steady flow has no other "
+            "motion"
+        )
+    else:
+        return
+    raise MovieError(msg)
+
+
+def _is_periodic(field: FlowField) -> bool:
+    """Return whether the velocity of the last time is that of the first."""
+    first, last = (np.nan_to_num(field.velocity[step]) for step in (0, -1))
+    return bool(np.abs(last - first).max() <= SAME_SHARE * max(np.abs(first).max(), 1e-300))
+
+
+@dataclass(frozen=True)
+class Movie:
+    """A movie that was written.
+
+    Attributes
+    ----------
+    path
+        The file.
+    nbytes
+        Its size.
+    size
+        Width and height in pixels.
+    frames
+        Number of frames.
+    fps
+        Frames per second.
+    seconds
+        Duration.
+    closed
+        Whether the first frame follows the last one without a seam.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.airfoil_field()
+    >>> movie = flowtex.movie(field, "loop.gif", size=(64, 48), seconds=0.2, samples=5)
+    >>> movie.size, movie.frames, movie.closed
+    ((64, 48), 4, True)
+    """
+
+    path: Path
+    nbytes: int
+    size: tuple[int, int]
+    frames: int
+    fps: float
+    seconds: float
+    closed: bool
+
+
+@accepts_options(FieldOptions, Appearance, ViewOptions)
+def movie(
+    mesh: Any,
+    path: str | Path,
+    *,
+    size: tuple[int, int] = (1024, 768),
+    seconds: float | None = None,
+    fps: float | None = None,
+    quality: int = DEFAULT_QUALITY,
+    supersampling: int = 1,
+    annotations: bool = False,
+    progress: bool = True,
+    cancelled: Callable[[], bool] = lambda: False,
+    **options: Any,
+) -> Movie:
+    """Write a flow as a movie: a seamless loop, or all times of a time-varying flow.
+
+    Parameters
+    ----------
+    mesh
+        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or path
+        of a file.
+    path
+        File to write: ``.mp4``, ``.gif`` or ``.webp``. An existing file is replaced when the new
+        one is complete.
+    size
+        Width and height in pixels; even numbers for an MP4.
+    seconds
+        Duration of the movie, 0.1 to 600. A steady flow repeats after this time; the default is the
+        setting ``period``. The default for a time-varying field is a quarter of a second per step,
+        but at least 5 and at most 30 seconds.
+    fps
+        Frames per second; 30 by default, and 20 in a GIF.
+    quality
+        Quality of the compression, 1 to 100; higher values give larger files.
+    supersampling, annotations
+        As for :func:`flowtex.render`.
+    progress
+        Whether to show a progress bar when it takes longer than a second.
+    cancelled
+        Called before each frame; if it returns True, the movie is cancelled and no file is written.
+    {options}
+    **settings
+        Any setting of :class:`~flowtex.Settings`. ``motion`` is ``"speed"`` by default.
+
+    Returns
+    -------
+    Movie
+
+    Raises
+    ------
+    FieldError, SettingsError, OpenGLMissingError
+        As for :func:`flowtex.render`.
+    MovieError
+        When the format is unknown, a number is out of range, or the picture would not move.
+    ModuleNotFoundError
+        When PyAV is missing and the file is an MP4; the text names the command that installs it.
+    OSError
+        When the file cannot be written; an existing file stays unchanged.
+    Stopped
+        When ``cancelled`` returned True.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> field = flowtex.examples.airfoil_field()
+    >>> flowtex.movie(field, "airfoil.mp4", zoom=4, annotations=True)  # doctest: +SKIP
+    """
+    fps = default_fps(path) if fps is None else fps
+    check_movie(path, size, fps, quality)
+    field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
+    drawn = {"size": size, "supersampling": supersampling, "annotations": annotations}
+    pictures = _draw(field, chosen, shown, **drawn)
+    try:
+        tracked = track(pictures, len(shown), "Drawing the movie", show=progress)
+        write_movie(path, tracked, fps, quality, cancelled=cancelled)
+    finally:
+        pictures.close()
+    path = Path(path)
+    nbytes = path.stat().st_size
+    return Movie(path, nbytes, size, len(shown), fps, len(shown) / fps, shown.closed)
+
+
+def frames(
+    mesh: Any,
+    *,
+    size: tuple[int, int] = (1024, 768),
+    seconds: float | None = None,
+    fps: float = 30.0,
+    supersampling: int = 1,
+    annotations: bool = False,
+    **options: Any,
+) -> Iterator[Bytes]:
+    """Yield the frames of a movie, (height, width, 3) uint8, each drawn when it is requested.
+
+    Parameters and errors are those of :func:`flowtex.movie`.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.plotting.offscreen.movie import frames
+    >>> field = flowtex.examples.airfoil_field()
+    >>> [picture.shape for picture in frames(field, size=(64, 48), fps=5, seconds=0.4, samples=5)]
+    [(48, 64, 3), (48, 64, 3)]
+    """
+    field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
+    drawn = {"size": size, "supersampling": supersampling, "annotations": annotations}
+    return _draw(field, chosen, shown, **drawn)
+
+
+def _prepare(
+    mesh: Any, options: Options, fps: float, seconds: float | None
+) -> tuple[FlowField, Options, FrameTimes]:
+    """Return the field, the options with the motion in them, and what the frames show."""
+    field = options.field.field(mesh)
+    settings = options.make_settings(field, **({"motion": "speed"} if field.steady else {}))
+    shown = frame_times(field, settings, fps=fps, seconds=seconds)
+    own = dict(options.settings)
+    if field.steady:
+        own |= {"motion": settings.motion, "period": shown.seconds}
+    return field, replace(options, field=FieldOptions(), settings=own), shown
+
+
+def _draw(
+    field: FlowField, options: Options, shown: FrameTimes, **arguments: Any
+) -> Generator[Bytes, None, None]:
+    with closing(OffscreenPlotter(field, options, **arguments)) as plotter:
+        for time in shown.times:
+            yield plotter.picture(time=time)
+        for clock in shown.clocks:
+            yield plotter.picture(clock=clock)

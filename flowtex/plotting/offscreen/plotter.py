@@ -1,0 +1,223 @@
+"""A PyVista plotter that shows a scene, or two side by side, in a window or without one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.arguments import checked_size
+from flowtex._util.array_types import Bytes
+from flowtex._util.notices import notify
+from flowtex.diagnostics import begin_trial, require_opengl
+from flowtex.errors import FieldError
+from flowtex.field.datasets.notices import notify_section
+from flowtex.plotting.component import FlowtexComponent
+from flowtex.plotting.handle import FlowHandle
+from flowtex.plotting.offscreen.annotations import annotate, difference_text
+from flowtex.plotting.vtk_camera import apply_camera, look, read_camera
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraError
+from flowtex.scene.options import FieldOptions, Options, ViewOptions
+from flowtex.scene.scene import Scene, share_field
+from flowtex.textures.images import averaged
+
+#: Longest side of what is drawn at once, in pixels.
+LONGEST_SIDE = 16_384
+#: Pixels that are drawn for one of the picture along a side, at most.
+MAX_SUPERSAMPLING = 8
+#: Samples of a pixel for smooth outlines, where the picture is not supersampled.
+OUTLINE_SAMPLES = 4
+
+NOTHING_SEEN = (
+    "The surface is outside the picture; check zoom, focus and camera, which are in the mesh's "
+    "own units."
+)
+
+
+class OffscreenPlotter:
+    """A plotter without a window that draws pictures of a flow.
+
+    Parameters and errors are those of :func:`flowtex.render`; ``density`` is that of the handles,
+    which are the textures of the views.
+    """
+
+    def __init__(
+        self,
+        mesh: Any,
+        options: Options,
+        *,
+        size: tuple[int, int],
+        supersampling: int = 1,
+        margin: float = CAMERA_LIMITS.margin,
+        density: float = 1.0,
+        annotations: bool = False,
+        scalar_bar_args: Mapping[str, Any] | None = None,
+    ) -> None:
+        begin_trial()
+        _check_size(size, supersampling)
+        # Whoever draws the same numbers once more finds what was traced of them.
+        field = share_field(options.field.field(mesh))
+        notify_section(field.section)
+        # Asked for as late as this, the trial has run beside the reading of the field.
+        require_opengl()
+        options = replace(options, field=FieldOptions())
+        appearance = options.appearance
+        self._legend = appearance.has_bar
+        if scalar_bar_args and (annotations or not appearance.show_scalar_bar):
+            how = "without annotations" if annotations else "with show_scalar_bar=True"
+            notify(f"scalar_bar_args is given, but this bar is drawn only {how}; it is not used")
+        if annotations or appearance.show_scalar_bar is None:
+            options = replace(options, appearance=replace(appearance, show_scalar_bar=False))
+        self._supersampling = supersampling
+        self._view, self._annotations = options.view, annotations
+        large = (size[0] * supersampling, size[1] * supersampling)
+        two = options.view.beside is not None
+        self._plotter = new_plotter(large, two_views=two, off_screen=True, lighting="light kit")
+        try:
+            if supersampling == 1:  # which smooths the outline as well
+                self._plotter.enable_anti_aliasing("msaa", multi_samples=OUTLINE_SAMPLES)
+            else:
+                self._plotter.disable_anti_aliasing()
+            self._plotter.set_background(options.view.ground)
+            self.handles = add_scenes(
+                self._plotter, field, options, scalar_bar_args, labels=not annotations
+            )
+            window = self._plotter.render_window
+            window.SetDPI(window.GetDPI() * supersampling)
+            for handle in self.handles:
+                handle.density = supersampling * density
+            point_camera(self._plotter, self.handles[0].scene, options.view, margin)
+        except BaseException:
+            self._plotter.close()
+            raise
+
+    def picture(
+        self, *, time: float | str | None = None, clock: float = 0.0, transparent: bool = False
+    ) -> Bytes:
+        """Return a picture (height, width, 3), row 0 at the top; by default of the present time.
+
+        A ``transparent`` one has a fourth channel, which is 0 outside the flow.
+        """
+        # One picture for all that changes.
+        self._plotter.suppress_rendering = True
+        for handle in self.handles:
+            if time is not None:
+                handle.time = time
+            handle.clock = clock
+        self._plotter.suppress_rendering = False
+        self._plotter.render()
+        shot: Any = self._plotter.screenshot(return_img=True, transparent_background=transparent)
+        pixels = np.asarray(shot[..., : 4 if transparent else 3], dtype=np.uint8)
+        visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
+        if visible and (pixels[..., :3] == self._plotter.background_color.int_rgb).all():
+            notify(NOTHING_SEEN, UserWarning)
+        picture = averaged(pixels, self._supersampling)
+        return self._annotated(picture) if self._annotations else picture
+
+    def _annotated(self, picture: Bytes) -> Bytes:
+        picture = picture.copy()
+        changes = self._view.beside or {}
+        views = np.array_split(picture, len(self.handles), axis=1)
+        for view, handle in zip(views, self.handles, strict=True):
+            annotate(
+                view,
+                handle.scene,
+                read_camera(self._plotter.camera),
+                background=self._view.ground,
+                label=difference_text(handle.scene, changes),
+                legend=self._legend,
+            )
+        return picture
+
+    def close(self) -> None:
+        """Free the graphics card."""
+        for handle in self.handles:
+            handle.remove(render=False)
+        self._plotter.close()
+
+
+def new_plotter(size: tuple[int, int], *, two_views: bool, **options: Any) -> Any:
+    """Return a PyVista plotter with one view, or with two side by side."""
+    import pyvista as pv
+
+    shape = (1, 2) if two_views else (1, 1)
+    return pv.Plotter(window_size=list(size), shape=shape, border=False, **options)
+
+
+def add_scenes(
+    plotter: Any,
+    mesh: Any,
+    options: Options,
+    scalar_bar_args: Mapping[str, Any] | None = None,
+    *,
+    labels: bool = True,
+) -> list[FlowHandle]:
+    """Add a flow to one view, or to two that share a camera; labels say how they differ.
+
+    Raises a FieldError when the view has axes, which only browsers draw.
+    """
+    if options.view.axes is not None:
+        msg = (
+            f"axes is {options.view.axes!r}, but only browsers draw axes; omit it, or draw a "
+            "figure with flowtex.axes"
+        )
+        raise FieldError(msg)
+    component, changes = FlowtexComponent(plotter), options.view.beside
+    scenes = [Scene.from_options(mesh, options)]
+    if changes is not None:
+        scenes.append(scenes[0].beside(changes))
+    handles = []
+    for column, scene in enumerate(scenes):
+        if changes is not None:
+            plotter.subplot(0, column)
+        handles.append(component.add_scene(scene, scalar_bar_args=scalar_bar_args))
+        if changes is not None and labels:
+            _label(plotter, difference_text(scene, changes))
+    if changes is not None:
+        plotter.link_views()
+        plotter.subplot(0, 0)
+    return handles
+
+
+def point_camera(
+    plotter: Any, scene: Scene, view: ViewOptions, margin: float = CAMERA_LIMITS.margin
+) -> None:
+    """Point a plotter's camera where a view asks for.
+
+    Raises a FieldError when the view's camera, zoom or focus is none, or the margin.
+    """
+    if view.camera is None:
+        look(plotter, scene.whole, zoom=view.zoom, focus=view.focus, margin=margin)
+    elif isinstance(view.camera, (Camera, Mapping)):
+        apply_camera(view.first_camera(scene.whole.surface), plotter.camera)
+        plotter.camera_set = True
+        plotter.renderer.reset_camera_clipping_range()
+    else:
+        plotter.camera.parallel_projection = False
+        try:
+            plotter.camera_position = view.camera
+        except (TypeError, ValueError, LookupError) as error:
+            msg = f"camera is {view.camera!r}; expected position, focal point and up, three points"
+            raise CameraError(msg) from error
+
+
+def _label(plotter: Any, text: str) -> None:
+    """Write what one of two views shows."""
+    label = plotter.add_text(text, font_size=9, color="black")
+    label.prop.background_color, label.prop.background_opacity = "white", 0.8
+
+
+def _check_size(size: tuple[int, int], supersampling: int) -> None:
+    if supersampling not in range(1, MAX_SUPERSAMPLING + 1):
+        msg = f"supersampling is {supersampling!r}; expected 1 to {MAX_SUPERSAMPLING}, such as 2"
+        raise FieldError(msg)
+    size = checked_size(size, low=0)
+    if not all(1 <= side * supersampling <= LONGEST_SIDE for side in size):
+        times = f" times {supersampling}" if supersampling > 1 else ""
+        msg = (
+            f"size is {size[0]} x {size[1]}{times}; expected 1 to {LONGEST_SIDE} pixels along "
+            "each side: choose a smaller size, or less supersampling"
+        )
+        raise FieldError(msg)

@@ -1,0 +1,596 @@
+"""Arguments of all functions that draw a flow, each described once.
+
+``plotter.flowtex.add``, :func:`flowtex.render`, :func:`flowtex.show`, :func:`flowtex.movie`,
+:func:`flowtex.web.export`, :class:`flowtex.FlowWidget` and the command line pass on the fields of
+three frozen classes: the part of a mesh to draw, the appearance of the surface, and the view. All
+other arguments are settings of :class:`flowtex.Settings`.
+
+:func:`accepts_options` puts the names, defaults and texts of the fields into the signature and
+the docstring of a function, so that ``help`` and an editor show them there.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from flowtex._util.arguments import is_number, near_names
+from flowtex._util.colours import DEFAULT_CMAP, colour_table, rgb
+from flowtex._util.notices import notify
+from flowtex._util.written import (
+    NUMBER,
+    PLAIN,
+    SWITCH,
+    Form,
+    UnreadableError,
+    named_texts,
+    number_or_text,
+    numbers,
+    or_none,
+)
+from flowtex.errors import FieldError, raise_faults
+from flowtex.field import FlowField, Surface
+from flowtex.field.datasets import is_dataset
+from flowtex.field.datasets.pairs import two_names
+from flowtex.field.uncertainty import with_uncertainty
+from flowtex.rendering.camera import Camera
+from flowtex.settings import TABLE, Settings, SettingsError, setting
+
+if TYPE_CHECKING:
+    from flowtex.rendering.webgl.bodies import Bodies
+
+#: Colour of a surface without scalars: a grey that can become darker and lighter.
+PLAIN_COLOR = "#a0a0a0"
+#: Colour where there is no value, as in PyVista.
+NO_VALUE_COLOR = "darkgray"
+#: Colour of land, unobtrusive on a light and on a dark background.
+LAND_COLOR = "#8f8b82"
+#: What stands at the borders of a view in a browser: coordinates, the length of a bar, or nothing.
+AXES = ("ticks", "scale", "none")
+
+#: Arguments for data of the Earth only, and for meshes only.
+OF_EARTH = ("projection", "globe", "level", "sel", "isel")
+OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free")
+#: What docstrings say of all arguments that are none of the options.
+SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
+#: The scalar that every flow has, and the range of colours without outliers.
+SPEED, ROBUST = "speed", "robust"
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def _option(default: Any, text: str, form: Form | None = PLAIN) -> Any:
+    """Return a field with its explanation for users.
+
+    ``form`` is how its values are written in a shell or a link; ``None`` if they cannot be.
+    """
+    return field(default=default, metadata={"text": text, "form": form})
+
+
+def _read_ends(text: str) -> str | tuple[float, ...]:
+    if text == ROBUST:
+        return ROBUST
+    low, high = numbers(2, expected="two numbers, such as 1.5,3")(text)
+    if not low < high:
+        msg = "two numbers, the lower one first"
+        raise UnreadableError(msg)
+    return low, high
+
+
+def _read_differences(words: Sequence[str]) -> dict[str, Any]:
+    """Read words such as ``lod=false`` as settings, and as what :class:`Appearance` has."""
+    expected = "name=value, such as --beside lod=false"
+    texts = named_texts(str, expected)(words)
+    values: dict[str, Any] = {}
+    for name, text in texts.items():
+        own = name.strip().replace("-", "_")
+        if (row := Appearance.__dataclass_fields__.get(own)) is not None:
+            values[own] = row.metadata["form"].read(text)
+        else:
+            values[own] = setting(own).parse(text)
+    return values
+
+
+@dataclass(frozen=True, kw_only=True)
+class FieldOptions:
+    """The part of a mesh to draw; the names are those of :meth:`FlowField.from_pyvista`."""
+
+    vectors: str | None = _option(
+        None,
+        "Name of the velocity, or of its two or three components separated by commas, such as "
+        "``u,v,w``; not needed if there is only one candidate.",
+    )
+    u: str | None = _option(None, "Name of the first component; use it instead of ``vectors``.")
+    v: str | None = _option(None, "Name of the second component.")
+    w: str | None = _option(None, "Name of the third component; for meshes only.")
+    plane: str | None = _option(None, 'Plane of a structured 3D mesh, such as ``"k=20"``.')
+    slice: Any | None = _option(
+        None,
+        'Plane through any volume: ``"x=0.5"``, or a normal and a point, ``"1,1,0 through '
+        '0,0,2"``; by default the point is the middle.',
+    )
+    contour: Any | None = _option(
+        None, 'Isosurface of a volume, where an array has the given value: ``"pressure=101325"``.'
+    )
+    block: int | str | None = _option(
+        None,
+        "Number or path of the block to draw, if there are several.",
+        Form(read=lambda text: int(text) if text.isdecimal() else text),
+    )
+    times: Any | None = _option(
+        None, "Times of a list of meshes; 0, 1, 2, ... by default.", form=None
+    )
+    periodic: str | None = _option(
+        None,
+        'Axes that close on themselves: ``"i"``, ``"j"``, ``"ij"`` or ``""``.',
+        Form(read=or_none("")),
+    )
+    sign_free: bool | None = _option(None, "Whether v and -v mean the same, as in a field of axes.")
+    projection: str | None = _option(
+        None,
+        "Map of data of the Earth: ``platecarree``, ``mercator``, ``north``, ``south``, "
+        "``lambert``, ``robinson``, ``equalearth``, ``globe``, or a PROJ string; by default one "
+        "that suits the region.",
+    )
+    globe: bool | None = _option(None, "Whether data of the Earth are drawn on a globe.")
+    level: float | str | None = _option(
+        None,
+        "Level of a dataset, such as ``500``; by default the one nearest to the surface.",
+        Form(read=number_or_text),
+    )
+    sel: Mapping[str, Any] | None = _option(
+        None,
+        'Selection along other axes of a dataset, by value: ``{"number": 3}``.',
+        Form(
+            read=named_texts(number_or_text, "an axis and a value, such as number=3"), repeated=True
+        ),
+    )
+    isel: Mapping[str, Any] | None = _option(
+        None,
+        'The same by index from 0: ``{"number": 2}``.',
+        Form(read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True),
+    )
+    uncertainty: Any | None = _option(
+        None,
+        "Uncertainty of the direction; where it is high, streaks are shorter and fainter: the "
+        "name of a scalar, or an array, of the standard deviation of the velocity over its "
+        'magnitude; or a dimension of a dataset, such as ``"number"``, over which the mean is '
+        "drawn.",
+    )
+
+    def __post_init__(self) -> None:
+        """Join the names of components to ``vectors``."""
+        names = [name for name in (self.u, self.v, self.w) if name is not None]
+        if not names:
+            return
+        if self.vectors is not None or self.u is None or self.v is None:
+            given = {k: n for k, n in vars(self).items() if k in ("vectors", *"uvw") and n}
+            words = ", ".join(f"{name}={value!r}" for name, value in given.items())
+            msg = f"{words} is given; expected u and v (and w of a mesh), or vectors alone"
+            raise FieldError(msg)
+        object.__setattr__(self, "vectors", ",".join(names))
+        for name in "uvw":
+            object.__setattr__(self, name, None)
+
+    def field(self, mesh: Any, time: float | str | None = None) -> FlowField:
+        """Return the field of a mesh or of a file (at one time), or a field unchanged."""
+        choices = {name: value for name, value in vars(self).items() if value is not None}
+        uncertainty = choices.pop("uncertainty", None)
+        field = self._read(mesh, choices, time, uncertainty)
+        # Datasets and files are averaged where they are read.
+        told = uncertainty is None or bool(field.uncertainty and field is not mesh)
+        return field if told else with_uncertainty(field, uncertainty)
+
+    def _read(
+        self, mesh: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
+    ) -> FlowField:
+        if (stored := self._of_store(mesh, choices, time, uncertainty)) is not None:
+            return stored
+        if is_dataset(mesh):
+            return FlowField.from_xarray(mesh, uncertainty=uncertainty, **self._of_dataset(choices))
+        several = mesh if isinstance(mesh, (list, tuple)) and mesh else [mesh]
+        if all(isinstance(one, (str, Path)) for one in several):
+            if "times" in choices:
+                msg = f"times is given, but {str(mesh)!r} already has times; omit it"
+                raise FieldError(msg)
+            return FlowField.from_file(mesh, time=time, uncertainty=uncertainty, **choices)
+        if not isinstance(mesh, FlowField):
+            self._refuse(choices, OF_EARTH, "data of the Earth, but this is a mesh")
+            return FlowField.from_pyvista(mesh, **choices)
+        if choices:
+            msg = (
+                f"{', '.join(choices)} cannot be set for a field that already exists, {mesh!r}; "
+                "set it when you make the field"
+            )
+            raise FieldError(msg)
+        return mesh
+
+    def _of_store(
+        self, place: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
+    ) -> FlowField | None:
+        """Return the field of a pyramid in a store, where there is one."""
+        if not isinstance(place, (str, Path)) or Path(place).is_file():
+            return None  # which loads nothing
+        from flowtex.pyramid import is_store, open_store
+        from flowtex.pyramid.source import has_parts
+
+        if not has_parts(place):
+            return None
+        if is_store(place):
+            given = choices if time is None else {**choices, "time": time}
+            self._refuse(given, tuple(given), "the source of a pyramid")
+        if time is not None:
+            choices = {**choices, "sel": {**choices.get("sel", {}), "time": time}}
+        return open_store(place, uncertainty=uncertainty, **self._of_dataset(choices))
+
+    def _of_dataset(self, choices: dict[str, Any]) -> dict[str, Any]:
+        """Return the arguments of :meth:`FlowField.from_xarray`."""
+        self._refuse(choices, OF_MESHES, "meshes, but this is a dataset")
+        return {**two_names(choices.pop("vectors", None)), **choices}
+
+    @staticmethod
+    def _refuse(choices: Mapping[str, Any], names: tuple[str, ...], what: str) -> None:
+        if given := [name for name in names if name in choices]:
+            msg = f"{', '.join(given)} applies to {what}; omit it"
+            raise FieldError(msg)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)  # arrays are not compared
+class Appearance:
+    """How the surface looks under the texture."""
+
+    scalars: str | bool | None = _option(
+        None,
+        'Values for the colours: the name of an array, ``"speed"`` (the default), or ``False`` '
+        "for a plain surface.",
+        Form(read=or_none(value=False)),
+    )
+    cmap: Any | None = _option(
+        None,
+        "Colour map: a name, a matplotlib map, a PyVista lookup table, or an array (N, 3 or 4), "
+        "uint8 or from 0 to 1; viridis by default.",
+        Form("Colour map, a matplotlib name; viridis by default."),
+    )
+    clim: tuple[float, float] | str | None = _option(
+        None,
+        "Values at the ends of the colour map, low and high; by default the range over all times. "
+        "The outermost 2 % of the values at an end are left out if they more than double it; "
+        '``"robust"`` always leaves them out. If values lie beyond an end, the legend is pointed '
+        "there. If the map diverges, such as coolwarm, and the values have both signs, zero is in "
+        "the middle.",
+        Form(read=_read_ends, write=lambda ends: ",".join(repr(float(end)) for end in ends)),
+    )
+    log_scale: bool = _option(
+        default=False, text="Whether colours follow the logarithm, for values above 0.", form=SWITCH
+    )
+    color: Any = _option(
+        PLAIN_COLOR, "Colour of a plain surface, in any form that PyVista accepts."
+    )
+    opacity: float = _option(1.0, "Opacity: 1 is opaque, 0 invisible.", NUMBER)
+    visible: bool = _option(default=True, text="Whether the surface is drawn.", form=SWITCH)
+    lighting: bool | None = _option(
+        None, "Whether the surface is lit; by default only curved ones are.", SWITCH
+    )
+    show_scalar_bar: bool | None = _option(
+        None,
+        "Whether a legend of the colours is shown; by default it is, unless an image covers the "
+        "colours.",
+        SWITCH,
+    )
+    image: Any | None = _option(
+        None,
+        "A picture that the flow smears, in its own colours: an array (H, W), (H, W, 3) or (H, "
+        "W, 4), uint8 or floats from 0 to 1, or the path of a PNG or a JPEG. It covers the "
+        "surface once, with its left at the first i and its top, row 0, at the last j; ``tiles`` "
+        "repeats it. Where it is transparent the surface's colour is visible. It sets "
+        '``noise="image"``, and ``strength=1`` unless that is given.',
+        Form("PNG or JPEG that the flow smears, instead of the noise.", Path),
+    )
+    coastlines: bool | None = _option(
+        None, "Whether coasts are drawn; by default if the field has a projection.", SWITCH
+    )
+    graticule: bool | None = _option(
+        None,
+        "Whether meridians and parallels are drawn; by default if the field has a projection.",
+        SWITCH,
+    )
+    land: Any = _option(
+        LAND_COLOR,
+        "Colour of the Earth where a field with a projection has no data, such as land in an "
+        "ocean model; ``None`` draws nothing there.",
+        Form(read=or_none()),
+    )
+
+    def __post_init__(self) -> None:
+        """Check the values, and replace those that stand for others."""
+        faults = []
+        if self.scalars is None or self.scalars is True:
+            object.__setattr__(self, "scalars", SPEED)
+        elif self.scalars is not False and not isinstance(self.scalars, str):
+            faults.append(f"scalars is {self.scalars!r}; expected the name of an array, or False")
+        if self.cmap is None:
+            object.__setattr__(self, "cmap", DEFAULT_CMAP)
+        if not (is_number(self.opacity) and 0 <= self.opacity <= 1):
+            faults.append(f"opacity is {self.opacity!r}; expected a number from 0 to 1")
+        if self.clim is not None and not (isinstance(self.clim, str) and self.clim == ROBUST):
+            try:
+                low, high = (float(value) for value in self.clim)
+            except (TypeError, ValueError, OverflowError):
+                low = high = math.nan
+            if not (low < high and math.isfinite(low + high)):
+                faults.append(
+                    f"clim is {self.clim!r}; expected two numbers, (low, high), the lower one "
+                    f'first, or "{ROBUST}"'
+                )
+            elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
+                object.__setattr__(self, "clim", (low, high))
+        if self.land is False:
+            object.__setattr__(self, "land", None)
+        checks = (
+            (colour_table, self.cmap, DEFAULT_CMAP),
+            (rgb, self.color, PLAIN_COLOR),
+            (rgb, LAND_COLOR if self.land is None else self.land, LAND_COLOR),
+        )
+        for check, value, default in checks:
+            if value is not default:  # which loads nothing
+                try:
+                    check(value)
+                except ValueError as error:
+                    faults.append(str(error))
+        raise_faults(faults)
+
+    @property
+    def scalar_name(self) -> str | None:
+        """Name of the array that colours the surface; ``None`` for a plain one."""
+        return self.scalars if isinstance(self.scalars, str) else None
+
+    @property
+    def has_bar(self) -> bool:
+        """Whether there is a legend."""
+        shown = self.image is None if self.show_scalar_bar is None else self.show_scalar_bar
+        return shown and self.visible
+
+
+@dataclass(frozen=True, kw_only=True)
+class ViewOptions:
+    """The view of a flow, a second view beside it, and the background."""
+
+    zoom: float = _option(1.0, "Zoom: 1 shows the whole surface, 8 an eighth of its width.")
+    focus: tuple[float, ...] | None = _option(
+        None,
+        "Point of the mesh to look at, two or three coordinates; the middle by default.",
+        Form(read=numbers(2, 3, expected="two or three coordinates, such as 1.5,0")),
+    )
+    camera: Any | None = _option(
+        None,
+        "Camera: a :class:`flowtex.rendering.camera.Camera`, its values by name, or position, "
+        "focal point and up direction as three points.",
+        Form(
+            "Position, focal point and up direction, nine numbers separated by commas; or the "
+            "camera from a page's link.",
+            Camera.from_text,
+        ),
+    )
+    background: Any = _option(
+        None,
+        "Background colour; by default white, and in a browser that of the surrounding page.",
+        Form("Background colour; by default white, or that of the surrounding page."),
+    )
+    beside: Mapping[str, Any] | None = _option(
+        None,
+        "Settings of a second view to the right of the first, where they differ, such as "
+        '``{"lod": False}``; both views move together.',
+        Form(read=_read_differences, repeated=True),
+    )
+    axes: str | None = _option(
+        None,
+        'Axes of a view in a browser: ``"ticks"`` with coordinates, a ``"scale"`` bar, or '
+        '``"none"``; by default ticks if the surface is flat or a map.',
+    )
+
+    def __post_init__(self) -> None:
+        """Check values that nothing else checks."""
+        if self.axes is not None and self.axes not in AXES:
+            msg = f"axes is {self.axes!r}; expected {', '.join(map(repr, AXES))}, or None"
+            raise FieldError(msg)
+        if self.background is not None:
+            rgb(self.background)
+        if not (self.beside is None or isinstance(self.beside, Mapping)):
+            msg = f"beside is {self.beside!r}; expected settings by name, such as {{'lod': False}}"
+            raise FieldError(msg)
+
+    @property
+    def ground(self) -> Any:
+        """Colour behind the surface, outside a page."""
+        return "white" if self.background is None else self.background
+
+    def first_camera(self, surface: Surface, aspect: float = 1.5) -> Camera:
+        """Return the initial camera of a picture with this width over height."""
+        whole = Camera.fit(surface, aspect, zoom=self.zoom, focus=self.focus)
+        if self.camera is None or isinstance(self.camera, Camera):
+            return self.camera or whole
+        if isinstance(self.camera, Mapping):
+            return Camera.from_dict(self.camera, whole)
+        return Camera.from_points(self.camera)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Arguments of one call by purpose; ``bodies`` are the other meshes of the scene."""
+
+    field: FieldOptions
+    appearance: Appearance
+    view: ViewOptions
+    settings: Mapping[str, Any]
+    bodies: Bodies | None = None
+
+    def make_settings(self, field: FlowField | None = None, **defaults: Any) -> Settings:
+        """Return all settings.
+
+        An image keeps its own colours unless ``strength`` is given, and where winds and currents of
+        the Earth are calm the texture fades unless ``fade`` is.
+        """
+        values = {**defaults, **self.settings}
+        if field is not None and field.projection is not None:
+            values.setdefault("fade", True)
+        for name in ("coastlines", "graticule"):
+            if field is not None and field.projection is None and getattr(self.appearance, name):
+                notify(f"{name} is True, but the field is not on the Earth; none is drawn")
+        lines = self.settings.get("lines", "auto")
+        if field is not None and field.steady and lines != "auto":
+            notify(f"lines is {lines!r}, but the flow is steady: its lines are all the same")
+        if self.appearance.image is not None:
+            noise = values.setdefault("noise", "image")
+            if noise != "image":
+                msg = f"noise is {noise!r}, but an image is given; omit one of them"
+                raise SettingsError(msg)
+            values.setdefault("strength", 1.0)
+        return Settings(**values)
+
+    @classmethod
+    def split(cls, *kinds: str, **values: Any) -> Options:
+        """Sort fields of the option classes, and settings, by name.
+
+        Classes that are accepted are ``"field"``, ``"appearance"`` and ``"view"``, all by default.
+        Raises a SettingsError for an unknown argument, with the nearest names.
+        """
+        accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
+        parts = {
+            name: kind(**{n: values.pop(n) for n in accepted.get(name, ()) if n in values})
+            for name, kind in _KINDS.items()
+        }
+        known = (*TABLE, *(name for names in accepted.values() for name in names))
+        for name in values:
+            if name not in TABLE:
+                near = near_names(name, known)
+                if "sel" in known and not near.startswith("did you mean"):
+                    what = f"an axis of a dataset, use sel={{{name!r}: {values[name]!r}}}"
+                    path = "a group of a file, give its path, such as 'model.nc/ocean'"
+                    near = f"for {path if name == 'group' else what}; {near}"
+                msg = f"the setting or argument {name!r} does not exist; {near}"
+                raise SettingsError(msg)
+        return cls(**parts, settings=values)
+
+
+_KINDS: dict[str, Any] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}
+
+
+def accepts_options(*kinds: type) -> Callable[[Function], Function]:
+    """Show the fields of option classes as arguments of a function that takes ``**options``.
+
+    The line ``{options}`` of its docstring becomes their description.
+    """
+
+    def complete(function: Function) -> Function:
+        options = [f for kind in kinds for f in fields(kind)]
+        signature = inspect.signature(function)
+        own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        keyword = [
+            inspect.Parameter(f.name, inspect.Parameter.KEYWORD_ONLY, default=f.default)
+            for f in options
+            if f.name not in signature.parameters
+        ]
+        rest = inspect.Parameter("settings", inspect.Parameter.VAR_KEYWORD, annotation=Any)
+        whole = signature.replace(parameters=[*own, *keyword, rest])
+        function.__signature__ = whole  # type: ignore[attr-defined]
+        if function.__doc__:
+            function.__doc__ = _described(function.__doc__, options)
+        return function
+
+    return complete
+
+
+def option_text(kind: type, name: str) -> str:
+    """Return what a field of an option class is for, as one paragraph."""
+    return str(kind.__dataclass_fields__[name].metadata["text"])  # type: ignore[attr-defined]
+
+
+def option_form(kind: type, name: str) -> Form:
+    """Return how the values of a field of an option class are written."""
+    form: Form = kind.__dataclass_fields__[name].metadata["form"]  # type: ignore[attr-defined]
+    return form
+
+
+#: What of the appearance is an attribute; the image is changed by a method.
+LIVE = tuple(name for name in Appearance.__dataclass_fields__ if name != "image")
+
+
+def _attribute(name: str) -> Any:
+    def get(self: AppearanceAttributes) -> Any:
+        return getattr(self.scene.appearance, name)
+
+    def change(self: AppearanceAttributes, value: Any) -> None:
+        self.scene.appearance = replace(self.scene.appearance, **{name: value})
+
+    return property(get, change, doc=option_text(Appearance, name))
+
+
+class AppearanceAttributes:
+    """The field, settings and appearance of a scene as attributes of what shows it.
+
+    Each of the appearance is to be set at any time; ``{appearance}`` in the docstring of a class
+    becomes their names.
+
+    Once it is made, other attributes cannot be set, so that a slip of the pen is not a silent one.
+    """
+
+    scene: Any
+    _is_made = False
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        cls.__doc__ = (cls.__doc__ or "").replace("{appearance}", ", ".join(LIVE))
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    @property
+    def field(self) -> FlowField:
+        """The flow."""
+        field: FlowField = self.scene.field
+        return field
+
+    @property
+    def settings(self) -> Settings:
+        """Every setting, live."""
+        settings: Settings = self.scene.settings
+        return settings
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set an attribute that there is; the error for another one names those that are near."""
+        is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
+        if self._is_made and not is_known:
+            own = [n for n in dir(type(self)) if not n.startswith("_")]
+            of_settings = f"it is a setting: use settings.{name}"
+            hint = of_settings if name in TABLE else near_names(name, own)
+            msg = f"{type(self).__name__} has no attribute {name!r}; {hint}"
+            raise AttributeError(msg)
+        super().__setattr__(name, value)
+
+
+for _name in LIVE:
+    setattr(AppearanceAttributes, _name, _attribute(_name))
+
+
+def _described(text: str, options: list[Any]) -> str:
+    """Put the description of options into a docstring."""
+    lines = []
+    for line in text.splitlines():
+        if line.strip() != "{options}":
+            lines.append(line)
+            continue
+        indent = line[: line.index("{")]
+        described = {option.name: option.metadata["text"] for option in options}
+        if "**settings" not in text:
+            described["**settings"] = SETTINGS_TEXT
+        for name, words in described.items():
+            lines.append(f"{indent}{name}")
+            filled = textwrap.fill(words, 96 - len(indent), break_on_hyphens=False)
+            lines.append(textwrap.indent(filled, indent + "    "))
+    return "\n".join(lines)

@@ -1,0 +1,335 @@
+"""The method at one point of the surface: its path, its samples, and their sum.
+
+Everything comes from the NumPy renderer. It draws the one pixel as it draws all, with a look-up
+that records its samples, so that they are those of the picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flowtex._util.array_types import Floats, Indices
+from flowtex.errors import FieldError
+from flowtex.field.interpolation import bracket
+from flowtex.field.locate import locate, locator, surface_point
+from flowtex.field.point_values import PointValues, values_at
+from flowtex.rendering.camera import Camera
+from flowtex.rendering.cpu.fragments import Fragments
+from flowtex.rendering.cpu.levels import footprint, slice_level
+from flowtex.rendering.cpu.pixel import LoadedTextures, Recorder, camera_facing, cover_place
+from flowtex.rendering.cpu.render import slices_at, view_state
+from flowtex.rendering.cpu.shade import tone
+from flowtex.rendering.cpu.texture import Side, Summing
+from flowtex.rendering.uniforms import ViewState, uniforms
+from flowtex.scene.scene import Scene
+from flowtex.textures import TextureSet
+
+__all__ = ["PointValues", "Probe", "locate", "probe", "values_at"]
+
+
+#: Points of a path between two slices, where it is a parabola.
+POINTS_BETWEEN_SLICES = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """How the texture at one point of the surface is computed.
+
+    The K samples are in the order of the flow: from the farthest upstream of the point to the
+    farthest downstream. Samples beyond the end of the path are left out, so K may be less than
+    ``asked``. Lags are lengths in the mesh's units for paths by arc length, otherwise times in the
+    field's unit; they are positive upstream, where the particle comes from, and negative
+    downstream.
+
+    Attributes
+    ----------
+    field_values
+        Position, velocity and speed at the point, with units.
+    parameter
+        What a lag measures: ``"arclength"`` or ``"time"``.
+    setting
+        The setting ``samples``.
+    asked
+        Number of samples of a path that does not end: equally many on both sides of the point, and
+        about twice as many if the grains move.
+    lags
+        Lags of the samples, (K,), decreasing.
+    points
+        Positions of the samples in space, (K, 3), in the mesh's units. Beyond the seam of a flat
+        map of one period they continue straight.
+    coordinates
+        Positions of the samples in index space, (K, 2) as (j, i), within one period.
+    slices
+        Numbers of the two trace slices around each sample, (K, 2): the one of smaller lag first, 0
+        for the point itself.
+    shares
+        Position of each sample between these slices, (K,), 0 to 1; more for a last sample that
+        fades out beyond the last slice.
+    slice_lags
+        Absolute lags of the trace slices at this point, (M + 1,), the first one 0.
+    slice_level
+        Mip level of the trace slices.
+    weights
+        Weight of each sample in the mean, (K,); their sum is 1.
+    noise
+        Noise at each sample, (K,), with mean 0 and standard deviation 1; for an image instead of
+        noise, red, green and blue times opacity, and opacity, (K, 4).
+    noise_coordinates
+        Positions of the samples in the noise texture, (K, 2) as (u, v), 0 to 1 across it; ``None``
+        for procedural noise.
+    level
+        Level of detail; each level is twice as coarse as the previous one. For a noise texture, its
+        mip level.
+    pixel
+        Longer side of the area of a pixel on the surface, in the mesh's units.
+    grain
+        Size of a grain of the noise, or of a texel of the image, on the surface, in the mesh's
+        units.
+    step
+        Lag from the point to the next sample; NaN where the velocity is zero.
+    gain
+        Factor of the mean of the noise, which makes the contrast the same everywhere.
+    value
+        The texture: ``gain * (weights @ noise)``, with mean 0 and standard deviation 1 over a
+        picture; (4,) for an image instead of noise.
+    path, path_lags
+        The whole path, as far as the slices lead, in the order of the samples: points (N, 3) and
+        their lags (N,). If the path ends, the last sample may lie up to a step beyond. In a close
+        view of a critical point it is as long as the samples.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.scene.probe import locate, probe
+    >>> from flowtex.scene.scene import Scene
+    >>> field = flowtex.examples.double_gyre_field()
+    >>> found = probe(Scene.of(field, samples=9), locate(field, (0.5, 0.25)), pixel=0.01)
+    >>> len(found.lags), round(float(found.weights.sum()), 6)
+    (9, 1.0)
+    """
+
+    field_values: PointValues
+    parameter: str
+    setting: int
+    asked: int
+    lags: Floats
+    points: Floats
+    coordinates: Floats
+    slices: Indices
+    shares: Floats
+    slice_lags: Floats
+    slice_level: float
+    weights: Floats
+    noise: Floats
+    noise_coordinates: Floats | None
+    level: float
+    pixel: float
+    grain: float
+    step: float
+    gain: float
+    value: float | Floats
+    path: Floats
+    path_lags: Floats
+
+    @property
+    def greys(self) -> Floats:
+        """The noise of the samples as grey values, (K,), from 0, black, to 1, white."""
+        if self.noise.ndim == 1:
+            return 0.5 + 0.5 * tone(self.noise, 1.0)
+        return np.asarray(self.noise[:, :3].mean(axis=-1) + 1.0 - self.noise[:, 3])
+
+
+def probe(
+    view: Scene,
+    at: ArrayLike,
+    *,
+    pixel: float | Camera,
+    size: tuple[int, int] | None = None,
+    clock: float = 0.0,
+    density: float = 1.0,
+) -> Probe:
+    """Return how the texture at a point of the surface is computed.
+
+    The first call for new textures loads them, which takes as long as in a renderer; further calls
+    take milliseconds.
+
+    Parameters
+    ----------
+    view
+        The flow, its settings and the time shown.
+    at
+        The point as (j, i), in cells; :func:`locate` returns it for a point in space.
+    pixel
+        Width of a pixel on the surface at the point, in the mesh's units, in a perpendicular view;
+        or the camera of a picture, for the pixel that shows the point.
+    size
+        Width and height of the picture in pixels, for a camera.
+    clock
+        Clock of the streaming of a steady flow, in seconds.
+    density
+        Number of drawn pixels, along a side, per pixel of the settings.
+
+    Raises
+    ------
+    FieldError
+        When the point is not on the surface, ``pixel`` is not a length, or the camera does not see
+        the point.
+
+    Examples
+    --------
+    >>> import flowtex
+    >>> from flowtex.scene.probe import locate, probe
+    >>> from flowtex.scene.scene import Scene
+    >>> field = flowtex.examples.double_gyre_field()
+    >>> probe(Scene.of(field), locate(field, (0.5, 0.25)), pixel=0.01).parameter
+    'arclength'
+    """
+    surface = view.field.surface
+    place = surface_point(surface, at)
+    if not isinstance(pixel, Camera):
+        camera, size = camera_facing(surface, place, pixel), (1, 1)
+    elif size is None:
+        msg = "size is None; expected the width and height of the camera's picture, in pixels"
+        raise FieldError(msg)
+    else:
+        camera = pixel
+    before, after, between = view.moment
+    state = ViewState(between=between, clock=clock, density=density)
+    state = view_state(view.textures, camera, state, (before, after))
+    values = uniforms(view.textures, view.settings, state)
+    field_values = values_at(view.field, place.index, view.time)
+    textures = view.textures
+    if (drawn := textures.geometry.field) is not view.field:
+        # Of a large field a coarser form is available, on which the point has another place.
+        nearest, _ = locator(drawn).nearest(field_values.position[None])
+        surface, place = drawn.surface, surface_point(drawn.surface, nearest[0])
+    fragments = Fragments.of(textures, cover_place(surface, place, camera, size))
+    setting = view.settings.samples
+    return _Pixel(textures, (before, after), fragments, values, field_values, setting).probe()
+
+
+class _Pixel:
+    """One fragment, drawn by the NumPy renderer."""
+
+    def __init__(
+        self,
+        textures: TextureSet,
+        steps: tuple[int, int],
+        fragments: Fragments,
+        values: Mapping[str, Any],
+        field_values: PointValues,
+        setting: int,
+    ) -> None:
+        loaded = LoadedTextures.of(textures)
+        self._field_values, self._setting = field_values, setting
+        self._textures, self._values, self._fragments = textures, values, fragments
+        self._level = slice_level(fragments.coordinate, values)
+        self._slices = slices_at(textures, steps, values, loaded.mips)
+        self._lookup = Recorder(loaded.make_lookup(fragments, values), values["u_samples"] + 2)
+        paper = textures.paper is not None
+        self._summing = Summing(self._slices, values, self._lookup, paper=paper)
+        self._base = self._slices.layer(fragments.place, 0, self._level)
+        #: One unit of lag at the fragment.
+        self._unit = float(self._base[0, 3]) * textures.unit / textures.pace
+
+    def probe(self) -> Probe:
+        """Draw the pixel, and return how."""
+        values, recorder = self._values, self._lookup
+        value = self._summing.texture(self._fragments.place, self._level, self._fragments.by)[0]
+        sides = list(self._sides(1))
+        lags = -np.concatenate(recorder.length) / float(sides[0].scale[0])
+        order = np.argsort(-lags)
+        lags = lags[order] + 0.0
+        points, coordinates, noise = self._places(np.concatenate(recorder.displacement)[order])
+        knots = np.concatenate([[0.0], values["u_lags"]])
+        m, shares = bracket(knots, np.abs(lags), side="left")
+        known = self._summing.known(self._fragments.place, self._level)
+        faded = self._summing.faded(self._fragments.place, self._level, known)
+        cell = self._summing.cell(self._fragments.place, known)
+        in_cell = cell is not None and cell.share[0] > 0
+        path_lags, path = (lags, points) if in_cell else self._path(sides, knots, lags)
+        pixel, grain = self._sizes()
+        moves = np.isfinite(sides[0].reach[0])
+        samples = values["u_samples"]
+        return Probe(
+            field_values=self._field_values,
+            parameter=self._textures.store.parameter,
+            setting=self._setting,
+            asked=2 * (samples // 2) + 1 if values["u_sides"] == 2 else samples,
+            lags=lags * self._unit,
+            points=points,
+            coordinates=coordinates,
+            slices=np.stack([m, m + 1], axis=-1),
+            shares=shares,
+            slice_lags=knots * self._unit,
+            slice_level=float(self._level[0]),
+            weights=recorder.weights[order],
+            noise=recorder.noise[order],
+            noise_coordinates=noise,
+            level=float(recorder.level[0]),
+            pixel=pixel,
+            grain=grain,
+            step=float(sides[0].step(np.zeros(1))[0]) * self._unit if moves else np.nan,
+            gain=recorder.gain * (float(faded[0]) if np.ndim(value) == 0 else 1.0),
+            value=float(value) if np.ndim(value) == 0 else np.asarray(value),
+            path=path,
+            path_lags=path_lags * self._unit,
+        )
+
+    def _sides(self, count: int) -> Iterator[Side]:
+        """Sides of the path, as often as it is followed at once."""
+        same = np.zeros(count, dtype=np.intp)
+        place, level = self._fragments.place[same], self._level[same]
+        return self._summing.sides(place, level, self._base[same])
+
+    def _path(self, sides: list[Side], knots: Floats, samples: Floats) -> tuple[Floats, Floats]:
+        """Lags in multiples of the unit, and points, of the whole path, with all its samples."""
+        number = np.arange((len(knots) - 1) * POINTS_BETWEEN_SLICES + 1)
+        fine = np.interp(number / POINTS_BETWEEN_SLICES, range(len(knots)), knots)
+        lags, displacements = [np.zeros(1)], [np.zeros((1, 3))]
+        for one, many in zip(sides, self._sides(len(fine) + 1), strict=True):
+            end = max(float(np.clip(one.reach[0], 0.0, knots[-1])), *(-one.sign * samples))
+            lag = np.unique([*fine[fine < end], end])[1:]
+            some = np.zeros(len(fine) + 1)
+            some[: len(lag)] = lag
+            moved = many.path.follow(some)[: len(lag)] * (one.sign * one.scale[0])
+            lags.append(-one.sign * lag)
+            displacements.append(moved)
+        lag = np.concatenate(lags)
+        order = np.argsort(-lag)
+        points, _, _ = self._places(np.concatenate(displacements)[order], coordinates=False)
+        return lag[order], points
+
+    def _places(
+        self, displacement: Floats, *, coordinates: bool = True
+    ) -> tuple[Floats, Floats, Floats | None]:
+        """Points, coordinates as (j, i), and noise coordinates, of displacements (N, 3)."""
+        geometry, paper = self._textures.geometry, self._textures.paper
+        noise = self._fragments.noise
+        # From the place itself in double precision: renderers have the nodes in single.
+        start, surface = self._field_values.position, geometry.field.surface
+        if paper is None or noise is None:
+            points = start + displacement @ geometry.frame
+            nearest = locator(geometry.field).nearest(points)[0] if coordinates else points
+            return points, nearest, None
+        at = noise.value + displacement[:, :2]
+        here, there = (paper.index(where) for where in (noise.value, at))
+        return start + surface.at(there) - surface.at(here), surface.wrap(there)[:, ::-1], at
+
+    def _sizes(self) -> tuple[float, float]:
+        """Longer side of the pixel, and size of a grain."""
+        values, paper, noise = self._values, self._textures.paper, self._fragments.noise
+        position = self._fragments.position
+        sides = [float(side[0]) for side in footprint(position.dx, position.dy)]
+        width = 2.0 ** float(self._lookup.level[0])
+        if paper is None or noise is None:
+            return sides[0], width * values["u_texel"]
+        size = np.array(paper.noise.shape[1::-1]) * (values["u_tiles"] if paper.picture else 1)
+        texels = [float(side[0]) for side in footprint(noise.dx * size, noise.dy * size)]
+        texel = np.sqrt(sides[0] * sides[1] / max(texels[0] * texels[1], 1e-30))
+        return sides[0], float(width * paper.grain * texel)

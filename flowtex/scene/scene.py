@@ -1,0 +1,593 @@
+"""The scene: a field, its appearance, its settings and the time that is shown.
+
+:class:`Scene` owns the arrays and knows no toolkit. It notifies of a change, and data is pulled:
+a renderer asks for :attr:`Scene.textures` when it draws and gets new ones only when traces
+or textures have changed. Scenes of one field share its traces, and textures where the settings
+that lie in them are the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+
+from flowtex._util.array_types import Bytes, Floats, Floats32
+from flowtex._util.cache import WeakCache, digest
+from flowtex._util.colours import colour_table, is_diverging
+from flowtex._util.notices import notify
+from flowtex.errors import FieldError
+from flowtex.field import FlowField
+from flowtex.field.dates import time_within
+from flowtex.field.derived import DERIVED, steps_of
+from flowtex.field.interpolation import steps_around
+from flowtex.field.steps import LazySteps
+from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.scene.options import ROBUST, SPEED, Appearance, FieldOptions, Options
+from flowtex.settings import TABLE, Affects, Settings, SettingsError
+from flowtex.textures import TextureSet, check_noise
+from flowtex.textures.images import as_picture, load_image
+from flowtex.textures.tiles import (
+    STRUCTURE,
+    Pyramid,
+    Structure,
+    check_structure,
+    coarsened_field,
+    drawn_speeds,
+    ends_of,
+    has_pyramid,
+    shared_pyramid,
+    shared_structure,
+    usual_ends,
+    widened,
+)
+from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
+
+__all__ = ["NO_IMAGE", "Change", "Scene", "drawn_store", "follow", "lay_image", "share_field"]
+
+#: What has changed: what a setting affects, or the appearance.
+Change = Affects | Literal["appearance"]
+Notice = Callable[[Change], None]
+
+#: Settings that lie in the textures of some kinds of noise, and elsewhere only in uniforms.
+SETTINGS_IN_TEXTURES = {
+    "seed": ("texture", "spots"),
+    "tiles": ("checkerboard",),
+    "resolution": ("texture", "spots", "checkerboard", "image"),
+}
+
+#: Share of the larger end of a range, or of the range, below which a difference is rounding.
+ZERO_SHARE = 1e-5
+
+NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_image(image)"
+
+
+class Scene:
+    """One flow and how it is looked at.
+
+    It follows changes of the settings; the image of the appearance is advected where
+    ``noise="image"``. Traces of the field may be given as ``slices``, and texels in place of that
+    image, (H, W, 4): colours times opacity, row 0 at the bottom. A SettingsError tells of an image
+    that is missing or cannot be used, a FieldError of a scalar that there is not.
+    """
+
+    def __init__(
+        self,
+        field: FlowField,
+        settings: Settings | None = None,
+        appearance: Appearance | None = None,
+        *,
+        slices: TraceSlices | None = None,
+        image: Floats32 | None = None,
+    ) -> None:
+        self.settings = settings or Settings()
+        self._appearance = appearance or Appearance()
+        self.field = _with_scalars(field, self._appearance)
+        self.image = image
+        if image is None and self.appearance.image is not None:
+            self.image = as_picture(load_image(self.appearance.image))
+        if self.settings.noise == "image" and self.image is None:
+            raise SettingsError(NO_IMAGE)
+        check_noise(field, self.settings.noise)
+        check_structure(field, self.settings)
+        self._structure: Structure | None = None
+        self._ranges: dict[tuple[str, bool, bool], tuple[float, float]] = {}
+        self._pyramid: Pyramid | None = None
+        self._sliced = slices is not None
+        self._check_colours(self._appearance)
+        self._noise = self.settings.noise
+        self._store: SliceStore | None = None
+        if slices is not None:
+            self._store = SliceStore(field, slices=slices)
+        self._textures: TextureSet | None = None
+        self._version = 0  # of the textures
+        self._notices: list[Notice] = []
+        self._time = float(field.times[0])
+        self._end = self.settings.observe(self._setting_changed)
+
+    @classmethod
+    def of(cls, mesh: Any, **options: Any) -> Scene:
+        """Return the scene of a mesh or a field, from the arguments of one call.
+
+        These are fields of :class:`FieldOptions` and :class:`Appearance`, and settings. Raises a
+        FieldError, SettingsError or ImageError where one does not fit.
+        """
+        return cls.from_options(mesh, Options.split("field", "appearance", **options))
+
+    @classmethod
+    def from_options(cls, mesh: Any, options: Options) -> Scene:
+        """Return the scene of a mesh or a field; :meth:`of` has the errors."""
+        field = options.field.field(mesh)
+        return cls(field, options.make_settings(field), options.appearance)
+
+    def beside(self, changes: Mapping[str, Any], field: FlowField | None = None) -> Scene:
+        """Return a second scene of the same field, or of another one, that differs in changes.
+
+        These are of :class:`Appearance` and of settings; :func:`follow` has the rest follow. Raises
+        a FieldError when they choose data, and what making a scene does.
+        """
+        of_field = [name for name in FieldOptions.__dataclass_fields__ if name in changes]
+        if of_field:
+            msg = (
+                f"beside has {', '.join(of_field)}, which selects data; both views show the same "
+                "field, so expected settings"
+            )
+            raise FieldError(msg)
+        field, settings = field or self.field, dict(self.settings)
+        if "image" in changes:  # which has its colours alone
+            del settings["noise"], settings["strength"]
+        options = Options.split("appearance", **{**settings, **changes})
+        own = {n: v for n, v in vars(options.appearance).items() if n in changes}
+        look, image = _look_beside(self, own, field), None if "image" in own else self.image
+        return Scene(field, options.make_settings(), look, image=image)
+
+    @property
+    def appearance(self) -> Appearance:
+        """How the surface looks; set another one to change it and notify observers.
+
+        An error, as of making a scene, leaves it as it was.
+        """
+        return self._appearance
+
+    @appearance.setter
+    def appearance(self, value: Appearance) -> None:
+        before, self.field = self.field, _with_scalars(self.field, value)
+        same = value.image is None or value.image is self._appearance.image
+        try:
+            self._check_colours(value)
+            picture = None if same else self._picture(value.image)
+        except BaseException:
+            self.field = before
+            raise
+        if before is not self.field and self.pyramid is not None:
+            self._pyramid = self._store = self._textures = None
+        self._appearance = value
+        if picture is not None:
+            self._lay(picture)
+        self._notify("appearance")
+
+    @property
+    def is_lit(self) -> bool:
+        """Whether the surface is lit; by default a curved one is."""
+        lighting = self.appearance.lighting
+        return self.whole.surface.frame is None if lighting is None else lighting
+
+    @property
+    def scalar_name(self) -> str | None:
+        """Name of what the surface is coloured by; ``None`` for a plain one."""
+        return self.appearance.scalar_name
+
+    @property
+    def scalar_names(self) -> tuple[str, ...]:
+        """Names of what the surface can be coloured by."""
+        return tuple(dict.fromkeys((SPEED, *self.field.scalars)))
+
+    def label_of(self, name: str) -> str:
+        """Return the name of a scalar for legends; they are those of what is drawn."""
+        return self.whole.label_of(name)
+
+    def title_of(self, name: str) -> str:
+        """Return the title of a legend: words and unit."""
+        unit, label = self.field.unit_of(name), self.label_of(name)
+        return f"{label} ({unit})" if unit else label
+
+    @property
+    def scalar_limits(self) -> tuple[float, float]:
+        """Values at the ends of the colour map."""
+        return self._limits(self.appearance)
+
+    @property
+    def legend_colours(self) -> Bytes:
+        """The colour map as a legend shows it, (256, 4): as the picture does on average."""
+        return mean_colours(colour_table(self.appearance.cmap), self.settings)
+
+    @property
+    def legend_limits(self) -> tuple[float, float]:
+        """The same as a legend shows them: an end that is 0 up to rounding is 0."""
+        low, high = self.scalar_limits
+        if self.appearance.log_scale:
+            return low, high
+        least = ZERO_SHARE * max(abs(low), abs(high))
+        return (low if abs(low) >= least else 0.0), (high if abs(high) >= least else 0.0)
+
+    @property
+    def lines(self) -> str:
+        """What the texture is drawn along: ``"pathlines"`` or ``"streamlines"``."""
+        return chosen_lines(self.field, self.settings.lines)
+
+    @property
+    def pyramid(self) -> Pyramid | None:
+        """The tiles of a large field; ``None`` where all of it is traced together.
+
+        Noise in a texture, and a sign-free field, are not drawn in tiles.
+        """
+        if self._sliced or not _is_tiled(self.field, self.settings):
+            return None
+        if self._pyramid is None:
+            self._pyramid = shared_pyramid(self.field, self.settings.parameter, self.lines)
+        return self._pyramid if self._pyramid.depth else None
+
+    @property
+    def whole(self) -> FlowField:
+        """The field that is drawn when all of it is in view: of a large one, its coarsest level."""
+        return self.field if self.pyramid is None else self.pyramid.root
+
+    @property
+    def structure(self) -> Structure:
+        """Critical points and separatrices of each step, which scenes of a field share."""
+        self._structure = shared_structure(self.field)
+        return self._structure
+
+    @property
+    def store(self) -> SliceStore:
+        """Traces of :attr:`whole`, made step by step on request, shared by all its scenes."""
+        if self._store is None:
+            self._store = shared_store(self.whole, self.settings.parameter, self.lines)
+        return self._store
+
+    @property
+    def textures(self) -> TextureSet:
+        """What a renderer needs, at the settings of this moment."""
+        textures, version = self._textures, self._version
+        if textures is None:
+            textures = _shared_textures(self.store, self.settings.copy(), self.image, self.pyramid)
+            if version == self._version:  # no other thread has changed a setting meanwhile
+                self._textures = textures
+        return textures
+
+    def set_image(self, image: Any) -> None:
+        """Lay an image, as :class:`Appearance` has it, in place of the noise on the surface.
+
+        It sets ``noise`` to ``"image"``. Nothing is changed when an ImageError tells that it cannot
+        be used, or a SettingsError that a surface of triangles takes none.
+        """
+        self._lay(self._picture(image))
+
+    def _picture(self, image: Any) -> Floats32:
+        """Return the texels of an image; refuse one that cannot be laid on this surface."""
+        check_noise(self.field, "image")
+        return as_picture(load_image(image))
+
+    def _lay(self, picture: Floats32) -> None:
+        self.image = picture
+        if self.settings.noise != "image":
+            self.settings.noise = "image"
+            return
+        if self._textures is not None:
+            self._textures = self._textures.with_image(self.image)
+        self._notify("textures")
+
+    @property
+    def time(self) -> float:
+        """Time that is shown, in the field's own unit, within its first and last step.
+
+        Where the field's times count from a date it may be set to a date, or to the text of one.
+        """
+        return self._time
+
+    @time.setter
+    def time(self, value: Any) -> None:
+        if self.field.steady and self.field.start is None:
+            if value != self._time:
+                notify(f"time is {value!r}, but the field is steady: it is the same at all times")
+            return
+        self._time = time_within(self.field.start, self.field.times, value)
+        self._notify("uniform")
+
+    @property
+    def moment(self) -> tuple[int, int, float]:
+        """The two time steps around the time that is shown, and how far it is between them."""
+        return steps_around(self.field.times, self._time)
+
+    @property
+    def step(self) -> int:
+        """The time step that is nearest to the time that is shown."""
+        before, after, share = self.moment
+        return before if share < 0.5 else after
+
+    def scalar(self, name: str, field: FlowField | None = None) -> Floats:
+        """Nodal values at the time that is shown, (J, I); :func:`steps_of` has the errors.
+
+        They are those of a part of the field, or of a coarser form of it, where one is given.
+        """
+        steps = steps_of(field or self.field, name)
+        before, after, share = self.moment
+        if len(steps) == 1:
+            return np.asarray(steps[0])
+        one, other = steps[before], steps[after]
+        mixed = one * (1 - share) + other * share
+        # Where one step has no value, that of the nearer step is shown.
+        return np.asarray(np.where(np.isnan(mixed), one if share < 0.5 else other, mixed))
+
+    def _limits(self, appearance: Appearance) -> tuple[float, float]:
+        name, chosen = appearance.scalar_name, appearance.clim
+        if isinstance(chosen, tuple):
+            return chosen
+        if name is None:
+            return 0.0, 1.0
+        if chosen == ROBUST or appearance.log_scale:
+            low, high = self.scalar_range(name, robust=chosen == ROBUST)
+        else:
+            low, high = self.usual_range(name)
+        if low < 0 < high and is_diverging(appearance.cmap):
+            return -max(-low, high), max(-low, high)
+        return low, high
+
+    def _check_colours(self, appearance: Appearance) -> None:
+        """Raise where the field has no such scalar, or none that has a logarithm."""
+        if (name := appearance.scalar_name) is None:
+            return
+        steps_of(self.field, name)
+        low, high = self._limits(appearance) if appearance.log_scale else (1.0, 1.0)
+        if low <= 0:
+            msg = (
+                f"log_scale is True, but {name!r} ranges from {low:g} to {high:g}; expected values "
+                "above 0: pass clim=(low, high) with low above 0, or omit log_scale"
+            )
+            raise FieldError(msg)
+
+    def usual_range(self, name: str) -> tuple[float, float]:
+        """Range of the colours by default: all values, or the robust range beside a long tail."""
+        return usual_ends(self.scalar_range(name), self.scalar_range(name, robust=True))
+
+    @property
+    def beyond(self) -> tuple[bool, bool]:
+        """Whether values lie below and above the limits of the colours."""
+        if (name := self.scalar_name) is None:
+            return False, False
+        (low, high), (least, most) = self.scalar_limits, self.scalar_range(name)
+        rounding = ZERO_SHARE * (most - least)
+        return low > least + rounding, high < most - rounding
+
+    def scalar_range(self, name: str, *, robust: bool = False) -> tuple[float, float]:
+        """Least and greatest value over the valid nodes and all times.
+
+        A robust range leaves 2 % of the values out at either end. Where all are the same up to
+        rounding, the range is widened, so that colours do not show rounding errors.
+        """
+        key = (name, robust, self.pyramid is None)
+        if key not in self._ranges:
+            self._ranges[key] = self._range_of(name, robust=robust)
+        return self._ranges[key]
+
+    def _range_of(self, name: str, *, robust: bool) -> tuple[float, float]:
+        known = {} if self.pyramid is None else self.pyramid.ranges
+        ends = known.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
+        return widened(ends, self.field, name)
+
+    def _range_values(self, name: str) -> Floats:
+        """Values of the valid nodes at all times."""
+        some, valid = self.field.typical, self.field.valid
+        if self.pyramid is None or name in self.field.scalars:
+            return np.asarray(np.asarray(steps_of(some, name))[:, valid])
+        return drawn_speeds(some, self.whole)
+
+    def copy(self) -> Scene:
+        """Return a scene that shows the same, for a thread: no change of this one reaches it."""
+        scene = Scene(self.field)
+        scene.settings, scene._appearance = self.settings.copy(), self.appearance
+        scene.image, scene._noise, scene._time = self.image, self._noise, self._time
+        scene._sliced, scene._pyramid = self._sliced, self._pyramid
+        scene._store, scene._textures = self.store, self.textures
+        return scene
+
+    def coarsened(self, nodes: int) -> Scene:
+        """Return a scene of the same settings on at most this many nodes, for a first picture.
+
+        Its colours have the range of this one.
+        """
+        whole = self.field if self.field.triangles is None else self.whole
+        field = share_field(coarsened_field(whole, nodes))
+        scene = Scene(field)
+        limits = None if self.scalar_name is None else self.scalar_limits
+        scene._appearance = replace(self.appearance, clim=limits)
+        scene.settings, scene.image = self.settings.copy(), self.image
+        scene._noise, scene._time = self._noise, self._time
+        parameter, lines = self.settings.parameter, self.lines
+        compose = field.steady or lines == "streamlines"
+        scene._store = _coarse_stores.get(
+            (id(field), parameter, lines),  # a store keeps its field alive
+            lambda: SliceStore(field, parameter=parameter, lines=lines, compose=compose),
+        )
+        return scene
+
+    def showing(self, field: FlowField, own: dict[str, Any] | None = None) -> Scene:
+        """Return a scene of another flow with these settings, also in the future, and this look.
+
+        It is at the nearest time. With ``own`` changes of the look, colours that the flow has not
+        are those of the speed. Raises what making a scene does.
+        """
+        look = self._appearance if own is None else _look_beside(self, own, field)
+        scene = Scene(field, self.settings, look, image=self.image)
+        scene._time = min(max(self._time, scene._time), float(field.times[-1]))
+        return scene
+
+    def follow(self, before: Scene) -> None:
+        """Replace another scene, and notify its observers."""
+        self._notices, before._notices = before._notices, []
+        before.close()
+        self._notify("trace")
+
+    def observe(self, notice: Notice) -> Callable[[], None]:
+        """Call ``notice(affects)`` after each change; returns what ends it."""
+        notices = self._notices  # which another scene may take over
+        notices.append(notice)
+        return lambda: notices.remove(notice) if notice in notices else None
+
+    def close(self) -> None:
+        """Follow the settings no longer."""
+        self._end()
+        self._notices.clear()
+
+    def _setting_changed(self, name: str, value: Any) -> None:
+        if name in STRUCTURE:
+            try:
+                check_structure(self.field, self.settings)
+            except SettingsError:
+                setattr(self.settings, name, TABLE[name].default)
+                raise
+        if name == "noise":
+            if value == self._noise:
+                return
+            try:
+                check_noise(self.field, value)
+                if value == "image" and self.image is None:
+                    raise SettingsError(NO_IMAGE)
+            except SettingsError:
+                # Observers are called once a setting is set; what cannot be drawn is set back.
+                self.settings.noise = self._noise
+                raise
+            self._noise = value
+        affects = TABLE[name].affects
+        if name in SETTINGS_IN_TEXTURES:
+            in_textures = self.settings.noise in SETTINGS_IN_TEXTURES[name]
+            affects = "textures" if in_textures else "uniform"
+        if affects == "trace":
+            self._store = self._pyramid = None
+            self._sliced = False
+        elif name == "noise" and self._pyramid is not None and self._pyramid.depth:
+            self._store = None  # in tiles or whole
+        if affects != "uniform":
+            self._version += 1
+            self._textures = None
+        self._notify(affects)
+
+    def _notify(self, affects: Change) -> None:
+        for notice in list(self._notices):
+            notice(affects)
+
+
+def _look_beside(first: Scene, own: dict[str, Any], field: FlowField) -> Appearance:
+    """Return the appearance of a scene beside a first one; a range is that of one scalar.
+
+    Colours that its field has not are those of the speed.
+    """
+    if "scalars" not in own and first.scalar_name not in (None, SPEED, *field.scalars):
+        own = {**own, "scalars": SPEED}
+    if "scalars" in own:
+        own = {"clim": None, **own}
+    return replace(first.appearance, **own)
+
+
+def follow(
+    first: Callable[[], Scene], second: Callable[[], Scene], own: Collection[str]
+) -> Callable[[], None]:
+    """Have a second scene follow a first one in all but what is its own; returns what ends it."""
+
+    def follow_setting(name: str, value: Any) -> None:
+        if name not in own:
+            second().settings.update(**{name: value})
+
+    def follow_look(affects: Change) -> None:
+        if affects != "appearance":
+            return
+        scene = second()
+        names = [*own, "image", *(["clim"] if "scalars" in own else [])]
+        kept = {n: v for n, v in vars(scene.appearance).items() if n in names}
+        look = _look_beside(first(), kept, scene.field)
+        try:
+            scene.appearance = look
+        except ValueError:  # its values have no logarithm, as those of the first one have
+            scene.appearance = replace(look, log_scale=False, clim=None)
+
+    ends = first().settings.observe(follow_setting), first().observe(follow_look)
+    return lambda: [end() for end in ends].clear()
+
+
+def lay_image(scenes: Sequence[Scene], image: Any, own: Collection[str]) -> None:
+    """Lay an image in scenes, of which others than the first may have their own noise."""
+    # The others follow the first one, and have to have the image by then.
+    for scene in reversed(scenes):
+        if scene is scenes[0] or "noise" not in own or scene.settings.noise == "image":
+            scene.set_image(image)
+
+
+def _with_scalars(field: FlowField, appearance: Appearance) -> FlowField:
+    """Return the field with what it is coloured by, where that is derived from the velocity."""
+    name = appearance.scalar_name
+    if name not in DERIVED or name in field.scalars or has_pyramid(field) or field.sign_free:
+        return field
+    return _fields.get(name, lambda: field.with_derived(name), owner=field)
+
+
+_fields: WeakCache[FlowField] = WeakCache()
+_coarse_stores: WeakCache[SliceStore] = WeakCache()
+_textures: WeakCache[TextureSet] = WeakCache()
+
+
+def share_field(field: FlowField) -> FlowField:
+    """Return the field of the same numbers and names that is in use, or this one.
+
+    A notebook shows one mesh many times over, and makes it a field each time.
+    """
+    if has_pyramid(field):
+        return field
+    names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
+    made = field.formula and (field.formula.texts, field.formula.parameters)
+    words = (*names, str(made), field.periodic, field.sign_free, str(field.start), field.projection)
+    units = tuple(field.units.items())
+    positions = () if field.has_position is None else (field.has_position,)
+    joined = () if field.triangles is None else (field.triangles,)
+    given = (field.points, field.velocity, field.times, field.valid, *positions, *joined)
+    given += tuple(field.scalars.values())
+    # What is read late is known by the object, which a field keeps alive.
+    late = tuple(id(a) for a in given if isinstance(a, LazySteps))
+    arrays = (a for a in given if not isinstance(a, LazySteps))
+    kind = (field.has_position is None, field.triangles is None)
+    key = digest(*arrays, words=(words, units, kind, late, *field.scalars, field.uncertainty))
+    return _fields.get(key, lambda: field)
+
+
+def _is_tiled(field: FlowField, settings: Settings) -> bool:
+    """Whether a field is drawn in tiles where it is large."""
+    return settings.noise == "procedural" and not field.sign_free
+
+
+def drawn_store(field: FlowField, settings: Settings) -> tuple[SliceStore, Pyramid | None]:
+    """Return the traces from which scenes of a field draw their first picture, and its pyramid.
+
+    Of a large field they are those of the coarsest level, as :attr:`Scene.whole` has it, and the
+    pyramid has to be kept along with them.
+    """
+    lines, pyramid = chosen_lines(field, settings.lines), None
+    if _is_tiled(field, settings):
+        pyramid = shared_pyramid(field, settings.parameter, lines)
+    whole = pyramid.root if pyramid is not None and pyramid.depth else field
+    return shared_store(whole, settings.parameter, lines), pyramid
+
+
+def _shared_textures(
+    store: SliceStore, settings: Settings, image: Floats32 | None, pyramid: Pyramid | None
+) -> TextureSet:
+    """Return :meth:`TextureSet.build` of a store and settings, one for all who ask."""
+    # Textures keep their store alive, so its number is its own while they live.
+    key: tuple[Any, ...] = (id(store),)
+    if settings.noise != "procedural":
+        key += (settings.noise, settings.resolution, settings.noise_correction)
+        key += (settings.seed, settings.tiles)
+        key += () if image is None or settings.noise != "image" else (digest(image),)
+    if pyramid is not None:
+        return _textures.get(key, lambda: pyramid.root_textures(store))
+    return _textures.get(key, lambda: TextureSet.build(store, settings, image))

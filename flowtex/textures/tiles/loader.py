@@ -1,0 +1,216 @@
+"""Tiles on their way: made in threads, coarse ones first, within a budget of memory.
+
+Whoever draws asks for the tiles of a view, in the order of their need, and draws those that are
+ready. Tiles that no view requests any more are cancelled if unfinished, and dropped when memory
+is short.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, Future, wait
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from flowtex._util.array_types import Halves
+from flowtex._util.cache import ByteCache
+from flowtex._util.progress import Stopped, check, stoppable
+from flowtex._util.threads import pool
+from flowtex.textures import TextureSet, TriangleGeometry
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey
+
+#: Memory of the tiles that are kept, in bytes.
+BUDGET_BYTES = 1_000_000_000
+#: Memory of a texel, four numbers of half precision, and of a node beside it.
+TEXEL_BYTES, NODE_BYTES = 8, 200
+#: Memory of a triangle that has its own vertices.
+TRIANGLE_BYTES = 250
+#: Tiles that are made at once for one view, at most. All views of a process together have as many,
+#: or one for each core.
+MOST_THREADS = 4
+#: How often a tile that waits for its turn is looked at, whether it is still wanted.
+LOOK_INTERVAL_S = 0.1
+#: Seconds before the last request within which a tile must have been requested, or it is dropped.
+GRACE_S = 2.0
+#: Seconds after which a tile that failed may be requested again.
+RETRY_S = 10.0
+
+
+_turns = threading.BoundedSemaphore(max(os.cpu_count() or 1, MOST_THREADS))
+
+
+@contextmanager
+def _turn() -> Iterator[None]:
+    """Wait until there is room for one more among those of all loaders of this process."""
+    while not _turns.acquire(timeout=LOOK_INTERVAL_S):
+        check()
+    try:
+        yield
+    finally:
+        _turns.release()
+
+
+@dataclass(eq=False)
+class Tile:
+    """One tile with the layers of the destination times that were requested."""
+
+    key: TileKey
+    textures: TextureSet | None  #: ``None`` where nothing of it is drawn.
+    prepared: Any = None  #: What the renderer has made of them.
+    layers: dict[int, Halves | None] = field(default_factory=dict)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that it takes, on the graphics card or on its way there."""
+        if self.textures is None:
+            return 0
+        geometry = self.textures.geometry
+        texels = geometry.size[0] * geometry.size[1] * self.textures.count
+        mesh = geometry.field.valid.size * NODE_BYTES
+        if isinstance(geometry, TriangleGeometry):
+            mesh += len(geometry.triangles) * TRIANGLE_BYTES
+        return texels * TEXEL_BYTES * max(len(self.layers), 1) + mesh
+
+    def make(self, step: int) -> Halves:
+        """Make the layers of a destination time."""
+        if self.textures is None:
+            return np.empty((0, 0, 0, 4), np.float16)
+        layers = self.textures.layers(step)
+        self.textures.forget()
+        return layers
+
+    def take(self, step: int) -> Halves:
+        """Hand the layers of a destination time over; they are not kept."""
+        layers, self.layers[step] = self.layers.get(step), None
+        return self.make(step) if layers is None else layers
+
+
+class TileLoader:
+    """Makes tiles of a pyramid in threads.
+
+    ``prepare`` makes of textures, in a thread, what is needed to draw them beside their layers.
+    ``notify`` is called, in a thread, whenever a tile has become ready or has failed. Errors are
+    kept in ``errors`` by tile; a tile that failed is tried again when it is requested some seconds
+    later, for what went wrong may be a network. ``clock`` gives the seconds.
+    """
+
+    def __init__(
+        self,
+        pyramid: Pyramid,
+        *,
+        prepare: Callable[[TextureSet], Any] = lambda textures: None,
+        notify: Callable[[], None] = lambda: None,
+        budget: int = BUDGET_BYTES,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.pyramid = pyramid
+        self.errors: dict[TileKey, Exception] = {}
+        self._failed: dict[TileKey, float] = {}
+        self._prepare, self._notify, self._clock = prepare, notify, clock
+        self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
+        #: When each tile was requested last, on a clock of requests.
+        self._wanted: dict[TileKey, float] = {}
+        self._asked = 0.0
+        self._running: dict[tuple[TileKey, int], Future[None]] = {}
+        self._lock = threading.RLock()
+        self._pool: Executor | None = None
+
+    def keeps(self, key: TileKey) -> bool:
+        """Whether a tile is in memory."""
+        return key in self._tiles
+
+    def get(self, key: TileKey, steps: Sequence[int]) -> Tile | None:
+        """Return a tile that has the layers of these destination times, or ``None``."""
+        tile = self._tiles.peek(key)
+        ready = tile is not None and all(step in tile.layers for step in steps)
+        return tile if ready else None
+
+    def has_failed(self, key: TileKey) -> bool:
+        """Whether a tile failed of late; the error of one that failed before is dropped."""
+        if self._failed.get(key, np.inf) < self._clock() - RETRY_S:
+            self._failed.pop(key, None)
+            self.errors.pop(key, None)
+        return key in self.errors
+
+    def request(self, keys: Sequence[TileKey], steps: Sequence[int]) -> None:
+        """Request tiles in this order, and drop those without a recent request.
+
+        A picture may be drawn in several parts, each of which asks for its own.
+        """
+        self._asked = self._clock()
+        with self._lock:
+            # What has not begun waits behind what is requested now.
+            later = [job for job, future in self._running.items() if future.cancel()]
+            for job in later:
+                del self._running[job]
+            for key in keys:
+                self._wanted[key] = self._asked
+                tile = self._tiles.peek(key)
+                for step in steps:
+                    job = (key, step)
+                    made = tile is not None and step in tile.layers
+                    if made or job in self._running or self.has_failed(key):
+                        continue
+                    self._submit(job)
+            for job in later:
+                if job not in self._running and self._is_wanted(job[0]):
+                    self._submit(job)
+
+    def _submit(self, job: tuple[TileKey, int]) -> None:
+        if self._pool is None:
+            self._pool = pool(min(os.cpu_count() or 1, MOST_THREADS), "flowtex-tile")
+        made = self._pool.submit(self._make, *job)
+        if not made.done():  # a thread waits for the lock before it ends
+            self._running[job] = made
+
+    @property
+    def busy(self) -> bool:
+        """Whether tiles that are wanted are on their way."""
+        with self._lock:
+            return any(self._is_wanted(key) for key, _ in self._running)
+
+    def wait(self) -> None:
+        """Wait for the tiles that were requested."""
+        while True:
+            with self._lock:
+                futures = [f for (key, _), f in self._running.items() if self._is_wanted(key)]
+            if not futures:
+                return
+            wait(futures)  # some of which may wait again by now
+
+    def close(self) -> None:
+        """Stop, without waiting for what is being made."""
+        self._wanted.clear()
+        if self._pool is not None:
+            self._pool.shutdown(wait=False, cancel_futures=True)
+        self._pool = None
+        self._tiles.clear()
+
+    def _is_wanted(self, key: TileKey) -> bool:
+        return self._wanted.get(key, -np.inf) > self._asked - GRACE_S
+
+    def _tile(self, key: TileKey, step: int) -> Tile:
+        """Return a tile without layers, with a halo that does for a destination time."""
+        textures = self.pyramid.tile(key, (step,))
+        return Tile(key, textures, textures and self._prepare(textures))
+
+    def _make(self, key: TileKey, step: int) -> None:
+        try:
+            with stoppable(lambda: not self._is_wanted(key)), _turn():
+                tile = self._tiles.get(key, lambda: self._tile(key, step))
+                tile.layers[step] = tile.make(step)
+                self._tiles.put(key, tile)  # which has grown
+        except Stopped:
+            pass
+        except Exception as error:
+            self.errors[key], self._failed[key] = error, self._clock()
+        finally:
+            with self._lock:
+                self._running.pop((key, step), None)
+            self._notify()

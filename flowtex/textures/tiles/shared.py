@@ -1,0 +1,96 @@
+"""The pyramid of a field of any kind, and ranges of values over a large one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex._util.cache import WeakCache
+from flowtex._util.vectors import norm
+from flowtex.field import FlowField
+from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
+
+#: Percentiles at the ends of a range without outliers.
+ROBUST_PERCENTILES = (2, 98)
+#: Length of a tail that colours leave out by default, in robust ranges. The greatest of a million
+#: values of a normal distribution is 0.7 beyond, of an exponential one 2.5.
+LONG_TAIL = 1.0
+#: Least share of a robust range in the whole one, for colours to have the robust one by default.
+LEAST_SHARE = 1e-9
+#: Values that differ by less than this share of the greatest are the same.
+SAME_VALUE_SHARE = 1e-9
+#: The same for speeds of stored velocities, which have half precision.
+SAME_HALVES_SHARE = 2.0**-9
+#: Share of such a value by which its range is widened.
+WIDENED_SHARE = 0.05
+#: What makes the pyramids of fields that do not hold all their levels.
+_attached: WeakKeyDictionary[FlowField, Callable[[FlowField, str, str], Pyramid]]
+_attached = WeakKeyDictionary()
+_pyramids: WeakCache[Pyramid] = WeakCache()
+
+
+def attach_pyramid(field: FlowField, make: Callable[[FlowField, str, str], Pyramid]) -> None:
+    """Give a field levels that it does not hold itself, made for a parameter and lines."""
+    _attached[field] = make
+
+
+def has_pyramid(field: FlowField) -> bool:
+    """Whether a field has levels that it does not hold itself."""
+    return field in _attached
+
+
+def shared_pyramid(field: FlowField, parameter: str, lines: str = "pathlines") -> Pyramid:
+    """Return the pyramid of a field, one for all that show the field at the same time."""
+    kind = Pyramid if field.triangles is None else TrianglePyramid
+    make = _attached.get(field, kind)
+    # A pyramid keeps its field alive, so the number of the field is its own meanwhile.
+    key = (id(field), parameter, lines)
+    return _pyramids.get(key, lambda: make(field, parameter, lines))
+
+
+def ends_of(values: Floats, *, robust: bool) -> tuple[float, float] | None:
+    """Return the least and the greatest value that is known, or those of a robust range."""
+    values = values[np.isfinite(values)]
+    if not values.size:
+        return None
+    low, high = (
+        np.percentile(values, ROBUST_PERCENTILES)
+        if robust
+        else np.array([values.min(), values.max()])
+    )
+    return float(low), float(high)
+
+
+def usual_ends(whole: tuple[float, float], robust: tuple[float, float]) -> tuple[float, float]:
+    """Return the whole range, without a tail that is longer than the robust range.
+
+    Of values that are nearly all the same it is the whole.
+    """
+    (least, most), (low, high) = whole, robust
+    tail = LONG_TAIL * (high - low)
+    if tail < LEAST_SHARE * (most - least):
+        return whole
+    return low if low - least > tail else least, high if most - high > tail else most
+
+
+def widened(ends: tuple[float, float] | None, field: FlowField, name: str) -> tuple[float, float]:
+    """Return a range to colour by, where all values may be the same up to rounding, or none."""
+    halves = name == "speed" and name not in field.scalars and has_pyramid(field)
+    same = SAME_HALVES_SHARE if halves else SAME_VALUE_SHARE
+    if ends is None:
+        return 0.0, 1.0
+    low, high = ends
+    size = max(abs(low), abs(high))
+    if high - low > same * size:
+        return low, high
+    return (low - WIDENED_SHARE * size, high + WIDENED_SHARE * size) if size > 0 else (0.0, 1.0)
+
+
+def drawn_speeds(field: FlowField, root: FlowField) -> Floats:
+    """Return speeds of valid nodes, (T, N); in space, where hardly any flow leaves the surface."""
+    steps = field.speed if root.leaves_surface else norm(field.velocity)
+    return np.asarray(np.asarray(steps)[:, field.valid])

@@ -1,0 +1,268 @@
+"""A field on triangles at every level of detail, cut into tiles.
+
+Level 0 has all nodes, each next one about a quarter of them: those of :class:`Clusters`, down to a
+field of moderate size that is traced whole, the root. Tiles are boxes of a k-d tree, so that each
+holds about as many nodes however these are spread. A tile draws the triangles that reach into its
+box: those of two levels overlap where they meet, and no crack shows between them. Its paths are
+traced in the triangles around it, as far as they are long.
+
+A tile has 2 x 2 blocks, and so has the root; in each lies one tile of the next level.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex.field import FlowField
+from flowtex.field.triangles.topology import corner_ends
+from flowtex.textures import TextureSet, TriangleGeometry
+from flowtex.textures.tiles.boxes import Boxes
+from flowtex.textures.tiles.clusters import Clusters, levels_of
+from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
+from flowtex.trace import SliceStore
+
+#: Most nodes of a field that is traced whole; and of one whose paths lead, from each quarter, so
+#: far that all quarters together would trace its triangles so many times.
+ROOT_NODES, MOST_ROOT_NODES, MOST_OVERLAP = 25_000, 60_000, 2.0
+#: Nodes that boxes are measured by, at most.
+MOST_MEASURED = 100_000
+#: First lag of a tile's paths in cells, and the number of lags, at most.
+FIRST_CELLS, MOST_LAGS = 0.25, 24
+#: Share of the side of bins that counts as the size of their cells: finer ones than a few pixels
+#: are drawn no sooner, for a triangle costs as much as the pixels beside it.
+BIN_SHARE = 1 / 4
+#: Share of the triangles of a block whose size counts as that of all.
+MOST_SHARE = 0.95
+#: Nodes that a window has for one of its tile, at most, for paths to be composed: that follows all.
+MOST_AROUND = 2.0
+#: Greatest width of what paths are traced in around a tile, in lengths of even paths.
+MOST_WIDE = 4.0
+
+
+class TrianglePyramid(Pyramid):
+    """The levels of a field on triangles and their tiles; parameters are those of a pyramid."""
+
+    tile_blocks = 2
+
+    def __init__(
+        self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
+    ) -> None:
+        self._clusters = levels_of(field, ROOT_NODES)
+        if len(self._clusters) > 1 and _overlaps(self._clusters[-2]):
+            self._clusters.pop()
+        super().__init__(field, parameter, lines, depth=len(self._clusters) - 1)
+        self._parts: dict[int, list[Indices]] = {}
+
+    def at_level(self, level: int) -> FlowField:
+        """Return the whole field at a level."""
+        return self._clusters[level].field
+
+    def shape(self, level: int) -> tuple[int, int]:
+        """Return the number of nodes (1, N) of a level."""
+        return self.at_level(level).shape
+
+    @property
+    def blocks(self) -> tuple[int, int]:
+        """Rows and columns of blocks at level 0."""
+        return (2 ** self._steps(0),) * 2
+
+    def places(self, level: int) -> Floats:
+        """Return centre, radius, and size of the cells of each block of a level, (J, I, 5).
+
+        They are those of the triangles of level 0, part of which a coarser one may leave out.
+        """
+        low, high, size = self._extents
+        for _ in range(level):
+            low, high = (
+                reduce.reduce(corner.reshape(-1, 4, 3), axis=1)
+                for reduce, corner in ((np.minimum, low), (np.maximum, high))
+            )
+            size = 2 * size.reshape(-1, 4).max(axis=1)
+        empty = size <= 0
+        center = np.where(empty[:, None], 0.0, (low + high) / 2)
+        radius = np.where(empty, -np.inf, np.linalg.norm(high - center, axis=-1))
+        steps = self._steps(level)
+        places = np.empty((2**steps, 2**steps, 5))
+        places[self._boxes.places(steps)] = np.column_stack([center, radius, size])
+        return places
+
+    def children(self, key: TileKey | None) -> list[TileKey]:
+        """Tiles of the next level that cover a tile, or the root for ``None``."""
+        level = self.depth if key is None else key.level
+        if level == 0:
+            return []
+        row, column = (0, 0) if key is None else (2 * at for at in key[1:])
+        return [TileKey(level - 1, row + j, column + i) for j in (0, 1) for i in (0, 1)]
+
+    @cached_property
+    def root_geometry(self) -> TriangleGeometry:
+        """The root as it is drawn, in as many blocks as there are tiles in the level before it."""
+        root = self.root
+        if not self.depth:
+            return TriangleGeometry.of(root)
+        members, masks = self._triangles(TileKey(self.depth, 0, 0))
+        return TriangleGeometry.of_tile(
+            root,
+            np.arange(root.shape[1]),
+            self._clusters[-1].triangles[members],
+            root.surface,
+            (masks, self.places(self.depth)),
+        )
+
+    def textures(self, key: TileKey, widening: int = 1) -> TextureSet | None:
+        """Return the textures of a tile, as for structured surfaces."""
+        count = 2 ** (self._steps(key.level) - 1)
+        if not (0 <= key.level < self.depth and all(0 <= at < count for at in key[1:])):
+            msg = f"tile {tuple(key)} does not exist; expected a level from 0 to {self.depth - 1}"
+            raise KeyError(msg)
+        level = self._clusters[key.level]
+        members, masks = self._triangles(key)
+        if not len(members):
+            return None
+        triangles = level.triangles[members]
+        nodes = np.unique(triangles)
+        rows, columns = self.blocks_of(key)
+        places = self.places(key.level)[rows, columns]
+        longest = 0.99 * PATH_CELLS * float(places[..., 4].max())
+        around = self._around(key.level, nodes, widening * longest * self._haste(key.level, nodes))
+        window, number = _part(level, around)
+        geometry = TriangleGeometry.of_tile(
+            window, number[nodes], number[triangles], self.root.surface, (masks, places)
+        )
+        followed = np.zeros(window.shape, dtype=bool)
+        followed[geometry.texels] = True
+        store = SliceStore(
+            window,
+            parameter=self.parameter,
+            lines=self.lines,
+            compose=window.shape[1] <= MOST_AROUND * followed.sum(),
+            longest=longest,
+            nodes=followed,
+        )
+        if store.parameter == "arclength":
+            store.lags, store.unit = _lags(window.surface.cell_size, followed, longest)
+        return TextureSet(geometry, store, whole_speed=self.whole_speed, longest=longest)
+
+    def _steps(self, level: int) -> int:
+        """Return the steps of the k-d tree to the blocks of a level."""
+        return self.depth - level + 1
+
+    @cached_property
+    def _boxes(self) -> Boxes:
+        used = np.zeros(self.field.shape[1], dtype=bool)
+        used[self._clusters[0].triangles] = True
+        points = self.field.points[0][used]
+        return Boxes(points[:: -(-len(points) // MOST_MEASURED)], self._steps(0))
+
+    def _members(self, level: int) -> list[Indices]:
+        with self._lock:
+            if level not in self._parts:
+                this = self._clusters[level]
+                low, high = corner_ends(this.field.points[0], this.triangles)
+                self._parts[level] = self._boxes.members(low, high, self._steps(level))
+            return self._parts[level]
+
+    def _triangles(self, key: TileKey) -> tuple[Indices, NDArray[np.uint16]]:
+        """Triangles of a tile, or of the root, and in which of its blocks they lie."""
+        rows, columns = self._boxes.places(self._steps(key.level) - 1)
+        number = int(np.flatnonzero((rows == key.row) & (columns == key.column))[0])
+        parts = self._members(key.level)[4 * number : 4 * number + 4]
+        members, at = np.unique(np.concatenate(parts), return_inverse=True)
+        masks = np.zeros(len(members), np.uint16)
+        bits = np.repeat(np.array([1, 2, 4, 8], np.uint16), [len(part) for part in parts])
+        np.bitwise_or.at(masks, at, bits)
+        return members, masks
+
+    @cached_property
+    def _extents(self) -> tuple[Floats, Floats, Floats]:
+        """Corners of what lies in the blocks of level 0, and the size of cells there."""
+        this, parts = self._clusters[0], self._members(0)
+        some = np.array([len(part) > 0 for part in parts])
+        triangles = this.triangles[np.concatenate(parts)]
+        first = np.cumsum([0, *(len(part) for part in parts)])[:-1][some]
+        low, high = self._boxes.bounds(self._steps(0))
+        inner = [np.full_like(low, np.inf), np.full_like(high, -np.inf)]
+        size = np.zeros(len(parts))
+        if len(first):
+            ends = corner_ends(this.field.points[0], triangles)
+            for corner, end, reduce in zip(inner, ends, (np.minimum, np.maximum), strict=True):
+                corner[some] = reduce.reduceat(end, first)
+            longest = np.maximum.reduce([this.sides[triangles[:, k]] for k in range(3)])
+            sides = np.split(longest, first[1:])
+            # At the next level it is twice as much, a share of these bins.
+            size[some] = [BIN_SHARE / 2 * _most(part) for part in sides]
+        return np.maximum(low, inner[0]), np.minimum(high, inner[1]), size
+
+    def _haste(self, level: int, nodes: Indices) -> float:
+        """How much further than even paths those of some nodes lead."""
+        still = self.field.steady or self.lines == "streamlines"
+        if still and self.parameter == "arclength":
+            return 1.0
+        velocity = self.at_level(level).typical.velocity[:, 0, nodes]
+        fast = np.percentile(np.linalg.norm(velocity, axis=-1), 99)
+        return float(np.clip(fast / self.whole_speed, 1.0, MOST_WIDE))
+
+    def _around(self, level: int, nodes: Indices, width: float) -> Indices:
+        """Triangles of a level that are no further from some nodes than so much, and others."""
+        this = self._clusters[level]
+        points = this.field.points[0]
+        low, high = points[nodes].min(axis=0) - width, points[nodes].max(axis=0) + width
+        near = self._boxes.members(low[None], high[None], self._steps(level))
+        parts = self._members(level)
+        some = np.concatenate([part for part, hit in zip(parts, near, strict=True) if len(hit)])
+        least, most = corner_ends(points, this.triangles[some])
+        inside = (most >= low).all(axis=1) & (least <= high).all(axis=1)
+        return np.unique(some[inside])
+
+
+def _overlaps(level: Clusters) -> bool:
+    """Whether quarters of a level would trace most of it each, as where cells are long and thin."""
+    if level.field.shape[1] > MOST_ROOT_NODES:
+        return False
+    low, high = corner_ends(level.field.points[0], level.triangles)
+    size = BIN_SHARE / 2 * level.sides[level.triangles].max(axis=1)
+    total = 0.0
+    for part in Boxes((low + high) / 2, 1).members(low, high, 1):
+        width = PATH_CELLS * _most(size[part])
+        near = (high >= low[part].min(axis=0) - width) & (low <= high[part].max(axis=0) + width)
+        total += float(near.all(axis=1).mean())
+    return total > MOST_OVERLAP
+
+
+def _most(values: Floats) -> float:
+    """Return the value that all but a few do not exceed."""
+    at = int(MOST_SHARE * (len(values) - 1))
+    return float(np.partition(values, at)[at])
+
+
+def _lags(size: Floats, nodes: Bools, longest: float) -> tuple[Floats, Floats]:
+    """Lags (M,) that end at the greatest length, and their one unit at all nodes (1, N).
+
+    Cells of very different sizes may lie in one tile, whose paths are followed alike.
+    """
+    unit = float(np.percentile(size[nodes], 5))
+    count = int(np.clip(np.ceil(np.log2(longest / unit / FIRST_CELLS)), 1, MOST_LAGS - 1))
+    lags = longest / unit * 2.0 ** np.arange(-count, 1)
+    return np.asarray(lags, dtype=float), np.full_like(size, unit)
+
+
+def _part(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:
+    """Return a field of some triangles, and the numbers of nodes in it, -1 for the others."""
+    field, triangles = level.field, level.triangles[members]
+    nodes = np.unique(triangles)
+    number = np.full(field.shape[1], -1, dtype=np.intp)
+    number[nodes] = np.arange(len(nodes))
+    part = replace(
+        field,
+        points=field.points[:, nodes],
+        velocity=field.velocity[:, :, nodes],
+        valid=np.ones((1, len(nodes)), dtype=bool),
+        scalars={k: s[:, :, nodes] for k, s in field.scalars.items()},
+        triangles=number[triangles],
+    )
+    return part, number

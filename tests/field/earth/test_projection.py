@@ -1,0 +1,124 @@
+"""Projections: places and back, vectors as the derivative of places, and what cannot be."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from strategies import property_test
+
+from flowtex._util.array_types import Floats
+from flowtex.field.earth import EARTH_RADIUS, Projection, ProjectionError, place_text
+
+CENTER = (10.0, 50.0)
+#: Latitudes that each projection shows without going to infinity.
+REACH = {
+    "globe": (-89.9, 89.9),
+    "platecarree": (-89.9, 89.9),
+    "mercator": (-85.0, 85.0),
+    "north": (-60.0, 89.9),
+    "south": (-89.9, 60.0),
+    "lambert": (-50.0, 89.0),
+    "robinson": (-89.0, 89.0),
+    "equalearth": (-89.0, 89.0),
+}
+PROJECTIONS = {name: Projection(name, CENTER) for name in REACH}
+
+names = st.sampled_from(sorted(REACH))
+shares = st.floats(0.0, 1.0)
+offsets = st.floats(-179.0, 179.0)
+
+
+def place(name: str, offset: float, share: float) -> tuple[Floats, Floats]:
+    south, north = REACH[name]
+    return np.array(CENTER[0] + offset), np.array(south + share * (north - south))
+
+
+def on_sphere(lon: Floats, lat: Floats) -> Floats:
+    return PROJECTIONS["globe"].positions(lon, lat)
+
+
+@property_test(100)
+@given(names, offsets, shares)
+def test_a_place_comes_back(name: str, offset: float, share: float) -> None:
+    lon, lat = place(name, offset, share)
+    back = PROJECTIONS[name].lonlat(PROJECTIONS[name].positions(lon, lat))
+    assert np.linalg.norm(on_sphere(*back) - on_sphere(lon, lat)) < 1.0  # metres
+
+
+@property_test(100)
+@given(names, offsets, shares, st.floats(-30, 30), st.floats(-30, 30))
+def test_a_vector_is_how_a_particle_moves_on_the_map(
+    name: str, offset: float, share: float, east: float, north: float
+) -> None:
+    lon, lat = place(name, offset, share)
+    # At 85 degrees Robinson's has a kink of three tenths.
+    lat = np.clip(lat, -84.9, 84.9)
+    projection, seconds = PROJECTIONS[name], 10.0
+    degrees = np.degrees(seconds / EARTH_RADIUS)
+
+    def after(sign: int) -> Floats:
+        moved = lon + sign * degrees * east / np.cos(np.radians(lat))
+        return projection.positions(moved, lat + sign * degrees * north)
+
+    moved = (after(1) - after(-1)) / (2 * seconds)
+    vector = projection.vectors(lon, lat, np.array(east), np.array(north))
+    # Robinson's has kinks, by up to a tenth, at every fifth degree.
+    share = 0.1 if name == "robinson" else 0.03
+    far = np.hypot(east, north)
+    tolerance = share * far + 0.01
+    assert vector == pytest.approx(moved, abs=tolerance * projection.scale(after(0)))
+
+
+@property_test(100)
+@given(names, offsets, shares, st.floats(-30, 30), st.floats(-30, 30))
+def test_components_are_those_a_vector_is_made_of(
+    name: str, offset: float, share: float, east: float, north: float
+) -> None:
+    lon, lat = place(name, offset, share)
+    vector = PROJECTIONS[name].vectors(lon, lat, np.array(east), np.array(north))
+    found = PROJECTIONS[name].components(lon, lat, vector)
+    assert np.array(found) == pytest.approx([east, north], abs=1e-6)
+
+
+@pytest.mark.parametrize("name", REACH)
+@pytest.mark.parametrize("lat", [-90.0, 90.0])
+def test_a_pole_is_a_point_or_nowhere(name: str, lat: float) -> None:
+    lon = np.linspace(-180, 180, 9)
+    projection = PROJECTIONS[name]
+    points = projection.positions(lon, np.full(9, lat))
+    assert not np.isinf(points).any()
+    assert points.shape == (9, 3)
+    with np.errstate(all="ignore"):
+        vectors = projection.vectors(lon, np.full(9, lat), np.ones(9), np.ones(9))
+    if name == "globe":
+        assert np.ptp(points, axis=0) == pytest.approx([0, 0, 0], abs=1e-6)
+        assert np.linalg.norm(vectors, axis=-1) == pytest.approx(np.full(9, np.sqrt(2)))
+
+
+@pytest.mark.parametrize("name", REACH)
+def test_both_sides_of_the_date_line_are_one_place_on_the_earth(name: str) -> None:
+    projection = PROJECTIONS[name]
+    either = projection.positions(np.array([180.0, -180.0]), np.array([20.0, 20.0]))
+    assert either[0] == pytest.approx(either[1], abs=1e-3)
+
+
+def test_the_scale_is_that_of_the_map() -> None:
+    assert PROJECTIONS["globe"].scale(np.array([EARTH_RADIUS, 0, 0])) == 1.0
+    mercator = PROJECTIONS["mercator"]
+    for lat in (0.0, 30.0, 60.0):
+        place = mercator.positions(np.array(10.0), np.array(lat))
+        assert mercator.scale(place) == pytest.approx(1 / np.cos(np.radians(lat)), rel=1e-5)
+
+
+def test_what_is_no_projection_is_told() -> None:
+    with pytest.raises(ProjectionError, match=r"'flat'.*platecarree"):
+        Projection("flat")
+    with pytest.raises(ProjectionError, match="degrees"):
+        Projection("EPSG:4326")
+
+
+def test_a_place_in_words() -> None:
+    assert place_text(12.348, 45.2) == "12.35° E, 45.20° N"
+    assert place_text(-70, -0.5, 1) == "70.0° W, 0.5° S"

@@ -1,0 +1,142 @@
+"""Pictures of the same numbers, one after the other."""
+
+from __future__ import annotations
+
+import gc
+import importlib
+import os
+import warnings
+import weakref
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import flowtex
+from flowtex import FlowField, TraceSlices, examples
+from flowtex.field.datasets.notices import DatasetNotice
+from flowtex.plotting.offscreen.render import _drawn
+from flowtex.trace import store
+
+SMALL: dict[str, Any] = {"size": (64, 48), "samples": 3}
+
+
+@pytest.fixture(autouse=True)
+def _nothing_kept() -> None:
+    _drawn.clear()
+    gc.collect()
+
+
+@pytest.fixture
+def traced(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Numbers of nodes that were traced."""
+    counts: list[int] = []
+    trace = importlib.import_module("flowtex.trace.trace").trace
+
+    def counted(field: FlowField, **options: Any) -> Any:
+        counts.append(field.valid.size)
+        return trace(field, **options)
+
+    monkeypatch.setattr(store, "trace", counted)
+    return counts
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_mesh_is_traced_once_until_it_changes(traced: list[int]) -> None:
+    mesh = examples.double_gyre()
+    first = flowtex.render(mesh, **SMALL)
+    again = flowtex.render(mesh.copy(), **SMALL)
+    flowtex.render(mesh, zoom=2, **SMALL)
+    assert np.array_equal(first, again)
+    assert len(traced) == 1
+    np.asarray(mesh["velocity"])[:, 0] *= -1  # PyVista does not see it
+    assert not np.array_equal(first, flowtex.render(mesh, **SMALL))
+    assert len(traced) == 2
+
+
+@pytest.mark.usefixtures("opengl")
+def test_what_is_kept_fits_into_some_memory(
+    traced: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fields = [examples.double_gyre_field(shape=(21, 25 + n)) for n in range(3)]
+    flowtex.render(fields[0], **SMALL)
+    monkeypatch.setattr(_drawn, "max_bytes", int(1.5 * _drawn.nbytes))
+    flowtex.render(fields[1], **SMALL)
+    flowtex.render(fields[1], **SMALL)
+    assert len(_drawn) == 1 and len(traced) == 2
+    gone = weakref.ref(fields.pop(0))
+    gc.collect()
+    assert gone() is None
+
+
+def thinned(dataset: Any) -> Any:
+    """Every sixth line of a dataset of the Earth, and two of its times."""
+    lines = ("longitude", "latitude", "lon", "lat")
+    few = {"time": slice(2), **{name: slice(None, None, 6) for name in lines}}
+    return dataset.isel(few, missing_dims="ignore")
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize("make", [examples.weather, examples.ocean])
+def test_a_dataset_is_traced_once_until_its_values_change(
+    make: Callable[[], Any], traced: list[int]
+) -> None:
+    pytest.importorskip("xarray")
+    dataset = thinned(make())
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DatasetNotice)
+        first = flowtex.render(dataset, **SMALL)
+        count = len(traced)
+        gc.collect()
+        assert np.array_equal(first, flowtex.render(dataset.copy(), **SMALL))
+        assert len(traced) == count
+        for values in dataset.data_vars.values():
+            values.values *= np.linspace(-1, 1, values.shape[-1])  # in place
+        assert not np.array_equal(first, flowtex.render(dataset, **SMALL))
+    assert len(traced) > count
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_file_that_is_written_anew_is_drawn_anew(tmp_path: Path, traced: list[int]) -> None:
+    pytest.importorskip("xarray")
+    path, dataset = tmp_path / "winds.nc", thinned(examples.weather())
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DatasetNotice)
+        dataset.to_netcdf(path)
+        state = path.stat()
+        first = flowtex.render(path, **SMALL)
+        gc.collect()
+        assert np.array_equal(first, flowtex.render(path, **SMALL)) and len(traced) == 1
+        gc.collect()  # nobody holds it open
+        # Of the same size, at the same time, and no other file.
+        (dataset * dataset["longitude"] / 180).assign_attrs(dataset.attrs).to_netcdf(path)
+        os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
+        assert not np.array_equal(first, flowtex.render(path, **SMALL))
+    assert len(traced) == 2
+
+
+@pytest.mark.usefixtures("opengl")
+def test_what_is_kept_of_a_file_does_not_hold_it_open(tmp_path: Path) -> None:
+    pytest.importorskip("xarray")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DatasetNotice)
+        thinned(examples.weather()).to_netcdf(tmp_path / "winds.nc")
+        flowtex.render(tmp_path / "winds.nc", **SMALL)
+    assert len(_drawn) and all(isinstance(kept, TraceSlices) for kept in _drawn.values())
+
+
+@pytest.mark.usefixtures("opengl")
+def test_the_first_view_traces_what_it_needs_and_another_one_the_rest(traced: list[int]) -> None:
+    # Of no other test, whose slices would do for it.
+    field = examples.double_gyre_field(shape=(99, 203))
+    first = flowtex.render(field, size=(320, 240), samples=9)
+    (kept,) = (k for k in _drawn.values() if not isinstance(k, TraceSlices))
+    lags = len(kept.store.traced[0].lags)
+    assert lags < len(kept.store.lags)
+    flowtex.render(field, size=(320, 240), samples=9, zoom=0.05)
+    assert len(traced) == 2 and len(kept.store.traced[0].lags) > lags
+    # What was seen before makes no difference.
+    assert np.array_equal(first, flowtex.render(field, size=(320, 240), samples=9))
+    assert len(traced) == 2 and len(kept.store.at(0, lags).lags) == lags

@@ -1,0 +1,193 @@
+"""Arguments that every way of drawing takes: sorted, checked, and told once."""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista as pv
+from flows import gyre
+from hypothesis import example, given
+from hypothesis import strategies as st
+from strategies import junk, property_test
+
+import flowtex
+from flowtex.errors import FieldError
+from flowtex.scene.options import (
+    Appearance,
+    FieldOptions,
+    Options,
+    ViewOptions,
+    accepts_options,
+    option_text,
+)
+from flowtex.scene.scene import Scene, follow, lay_image
+from flowtex.settings import SettingsError
+
+
+def test_each_argument_goes_where_it_belongs() -> None:
+    options = Options.split(plane="k=2", cmap="magma", zoom=3, samples=7)
+    assert options.field == FieldOptions(plane="k=2")
+    assert vars(options.appearance) == vars(Appearance(cmap="magma"))
+    assert options.view == ViewOptions(zoom=3)
+    assert options.settings == {"samples": 7}
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({"zooom": 2}, r"^the setting or argument 'zooom' does not exist; did you mean 'zoom'\?$"),
+        (
+            {"sample": 2},
+            r"^the setting or argument 'sample' does not exist; did you mean 'samples'\?$",
+        ),
+        (
+            {"qqqq": 2},
+            r"^the setting .* 'qqqq' does not exist; for an .* expected one of: samples, ",
+        ),
+        ({"proj": "north"}, r"'proj' does not exist; did you mean 'projection'\?$"),
+        ({"opacity": 2}, r"^opacity is 2; expected a number from 0 to 1$"),
+        ({"opacity": None}, r"^opacity is None; expected a number from 0 to 1$"),
+        ({"clim": (1, 2, 3)}, r"^clim is \(1, 2, 3\); expected two numbers, \(low, high\), "),
+        ({"clim": "ab"}, r"^clim is 'ab'; expected two numbers, \(low, high\), the lower one fir"),
+        ({"clim": (2, 1)}, r"^clim is \(2, 1\); expected .* the lower one first, or \"robust\"$"),
+        ({"cmap": "virdis"}, r"^the colour map 'virdis' does not exist; did you mean 'viridis'"),
+        ({"cmap": 3}, r"^the colour map 3 does not exist; expected a name"),
+        ({"color": "greyy"}, r"greyy"),
+        ({"axes": "bar"}, r"^axes is 'bar'; expected 'ticks', 'scale', 'none', or None$"),
+        ({"opacity": -1, "clim": 3}, r"(?s)^2 things are wrong:.*opacity is -1;.*clim is 3;"),
+    ],
+)
+def test_what_is_unknown_or_wrong_is_refused(values: dict[str, Any], text: str) -> None:
+    with pytest.raises(ValueError, match=text):
+        Options.split(**values)
+
+
+def test_what_a_call_has_no_use_for_is_refused() -> None:
+    with pytest.raises(SettingsError, match=r"^the setting or argument 'zoom' does not exist; "):
+        Scene.of(gyre(), zoom=2)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [flowtex.render, flowtex.show, flowtex.movie, flowtex.export, flowtex.FlowWidget.__init__],
+)
+def test_signature_and_docstring_show_every_option(function: Any) -> None:
+    parameters = inspect.signature(function).parameters
+    lines = {line.strip() for line in inspect.getdoc(function).splitlines()}  # type: ignore[union-attr]
+    for kind in (FieldOptions, Appearance, ViewOptions):
+        for name in kind.__dataclass_fields__:
+            assert name in parameters
+            assert name in lines
+    assert "{options}" not in lines
+    assert option_text(ViewOptions, "zoom").startswith("Zoom: 1 shows")
+
+
+def test_an_argument_that_a_function_names_itself_stands_once() -> None:
+    @accepts_options(ViewOptions)
+    def draw(mesh: Any, zoom: float = 2.0, **options: Any) -> None:
+        pass
+
+    assert list(inspect.signature(draw).parameters)[:3] == ["mesh", "zoom", "focus"]
+
+
+def test_a_view_beside_another_differs_in_what_it_is_told() -> None:
+    options = Options.split(samples=7, cmap="magma", image=np.ones((4, 4)))
+    first = Scene.from_options(gyre(), options)
+    second = first.beside({"lod": False, "cmap": "viridis"})
+    assert second.field is first.field
+    assert (first.settings.lod, second.settings.lod) == (True, False)
+    assert (second.settings.samples, second.appearance.cmap) == (7, "viridis")
+    assert second.settings.noise == "image"
+    with pytest.raises(ValueError, match=r"^beside has plane, which selects data"):
+        first.beside({"plane": "k=2"})
+
+
+def test_a_second_view_follows_the_first_in_what_is_not_its_own() -> None:
+    field = gyre().with_derived("vorticity")
+    first = Scene.of(field, clim=(0.0, 2.0), cmap="magma", image=np.ones((4, 4)))
+    own = {"scalars": "vorticity", "noise": "procedural"}  # beside an image the noise
+    second = first.beside(own)
+    assert second.scalar_limits == second.scalar_range("vorticity") != first.scalar_limits
+    assert (second.settings.noise, second.appearance.cmap) == ("procedural", "magma")
+    end = follow(lambda: first, lambda: second, own)
+    first.settings.update(samples=9, noise="checkerboard")
+    first.appearance = replace(first.appearance, cmap="gray", clim=(0.0, 1.0), log_scale=False)
+    assert (second.settings.samples, second.settings.noise) == (9, "procedural")
+    assert second.appearance.cmap == "gray"
+    assert second.scalar_limits == second.scalar_range("vorticity")
+    lay_image([first, second], np.zeros((4, 4)), own)
+    assert (first.settings.noise, second.settings.noise) == ("image", "procedural")
+    # The logarithm of what has no sign is left to the first.
+    first.appearance = replace(first.appearance, log_scale=True, clim=(0.1, 1.0))
+    assert not second.appearance.log_scale and second.appearance.scalars == "vorticity"
+    end()
+    first.settings.samples = 5
+    assert second.settings.samples == 9
+
+
+def test_choices_of_a_mesh_are_refused_for_a_field() -> None:
+    with pytest.raises(
+        FieldError, match=r"^plane cannot be set for a field that already exists, FlowField"
+    ):
+        Scene.of(gyre(), plane="k=1")
+
+
+@property_test(60)
+@given(st.sampled_from(["opacity", "clim", "zoom", "focus", "camera"]), junk())
+@example("zoom", 10**400)
+@example("zoom", "near")
+@example("focus", {})
+@example("focus", [10**400, 0])
+@example("focus", [0.0, 0.0, 1e17])
+@example("clim", (float("nan"), 1.0))
+def test_any_value_of_an_argument_is_taken_or_named(name: str, value: Any) -> None:
+    try:
+        options = Options.split(**{name: value})
+        assert np.isfinite(options.view.first_camera(gyre().surface).position).all()
+    except ValueError as error:
+        # What is too far away to be looked at makes no camera.
+        assert str(error).startswith((f"{name} ", "camera")) and "expected" in str(error)
+
+
+def test_a_path_stands_for_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "gyre.vts"
+    flowtex.examples.double_gyre(2.5).save(path)
+    for file in (path, str(path)):
+        field = FieldOptions().field(file)
+        assert field.name == "gyre"
+        assert field.shape == (101, 201)
+    with pytest.raises(FieldError, match=r"^times is given, but '.*gyre.vts' already has times"):
+        FieldOptions(times=[1.0]).field(path)
+    with pytest.raises(FieldError, match=r"none\.vts: the file does not exist"):
+        FieldOptions().field(str(tmp_path / "none.vts"))
+
+
+@pytest.mark.usefixtures("quick_export")
+def test_every_front_end_takes_a_path(tmp_path: Path) -> None:
+    path = tmp_path / "gyre.vts"
+    flowtex.examples.double_gyre(2.5).save(path)
+    plotter = pv.Plotter(off_screen=True, window_size=[80, 60])
+    handle = plotter.flowtex.add(str(path))
+    assert handle.field.name == "gyre"
+    plotter.close()
+    assert flowtex.render(str(path), size=(80, 60), samples=5).std() > 0
+    assert flowtex.export(path, tmp_path / "page.html").steps == 1
+    assert flowtex.movie(path, tmp_path / "a.gif", size=(80, 60), seconds=0.1, fps=20).frames == 2
+    assert flowtex.FlowWidget(str(path)).field.name == "gyre"
+
+
+@pytest.mark.parametrize("view", [{"focus": (50.0, 50.0), "zoom": 8}, {"focus": (3.0, 0.5, 0)}])
+def test_a_view_of_nothing_is_warned_of(view: dict[str, Any]) -> None:
+    zoom = {"zoom": 20.0, **view}
+    with pytest.warns(UserWarning, match="^The surface is outside the picture"):
+        flowtex.render(gyre(), size=(60, 40), samples=3, **zoom)
+
+
+def test_a_picture_full_of_surface_is_none_of_nothing() -> None:
+    options: dict[str, Any] = {"zoom": 50, "scalars": False, "color": "black", "strength": 0.0}
+    assert np.ptp(flowtex.render(gyre(), size=(60, 40), **options)) == 0

@@ -1,0 +1,410 @@
+"""The method at one point: exact solutions, and the pixel that the NumPy renderer draws there."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+from collections.abc import Callable
+from dataclasses import fields
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from flows import gyre, swinging, torus
+from scipy import ndimage
+
+from flowtex import FlowField
+from flowtex._util.array_types import Floats
+from flowtex.rendering.camera import Camera
+from flowtex.rendering.cpu.mipmaps import Mips
+from flowtex.rendering.cpu.pixel import LoadedTextures, Window
+from flowtex.rendering.cpu.render import render
+from flowtex.rendering.uniforms import ViewState
+from flowtex.scene.options import Appearance
+from flowtex.scene.probe import Probe, locate, probe
+from flowtex.scene.scene import Scene
+from flowtex.settings import Settings
+
+# --- fields ---------------------------------------------------------------------------------
+
+
+def grid(rows: int = 41, columns: int = 61) -> Floats:
+    y, x = np.meshgrid(np.linspace(-1, 1, rows), np.linspace(-1.5, 1.5, columns), indexing="ij")
+    return np.stack([x, y], axis=-1)
+
+
+@cache
+def wind() -> FlowField:
+    """Everywhere (0.8, 0.6)."""
+    return FlowField.from_arrays(grid(), np.broadcast_to([0.8, 0.6], (41, 61, 2)), periodic="")
+
+
+@cache
+def turn() -> FlowField:
+    """Half a radian in a unit of time around the middle, which lies between the nodes."""
+    p = grid(80, 120)
+    return FlowField.from_arrays(p, 0.5 * np.stack([-p[..., 1], p[..., 0]], axis=-1), periodic="")
+
+
+@cache
+def fibres() -> FlowField:
+    """A singularity of half a turn, without a sign."""
+    p = grid(20, 30)
+    half = 0.5 * np.arctan2(p[..., 1], p[..., 0])
+    axes = np.stack([np.cos(half), np.sin(half)], axis=-1)
+    return FlowField.from_arrays(p, axes, sign_free=True, periodic="")
+
+
+def view_of(field: FlowField, **settings: Any) -> Scene:
+    chosen = Settings()
+    image = settings.pop("image", None)
+    chosen.update(**settings)
+    return Scene(field, chosen, Appearance(image=image))
+
+
+#: Width and height of the pictures in pixels.
+SIZE = (36, 24)
+
+
+def camera(field: FlowField, *, aside: bool = False) -> Camera:
+    """Straight on without perspective, or from aside with it."""
+    c, away = field.surface.center, np.array([0.5, -0.8, 1.2] if aside else [0.0, 0.0, 1.0])
+    at = c + 1.5 * field.surface.extent * away
+    scale = 0.3 * field.surface.extent
+    return Camera(tuple(at), tuple(c), (0.0, 1.0, 0.0), not aside, scale)
+
+
+# --- the pixel ------------------------------------------------------------------------------
+
+IMAGE = np.random.default_rng(5).integers(0, 256, (16, 32, 4), dtype=np.uint8)
+CASES: dict[str, tuple[Callable[[], FlowField], dict[str, Any]]] = {
+    "two-sided": (gyre, {}),
+    "one-sided": (gyre, {"two_sided": False, "kernel": "ramp"}),
+    "streaklets": (gyre, {"texture": "streaklets"}),
+    "lod off": (gyre, {"lod": False, "resolution": 200}),
+    "fixed grain": (gyre, {"fixed_grain": True, "resolution": 30}),
+    "even count": (gyre, {"samples": 10, "parameter": "time"}),
+    "one sample": (gyre, {"samples": 1}),
+    "streaming": (gyre, {"motion": "speed", "speed": 90.0}),
+    "paper": (gyre, {"noise": "texture", "resolution": 256}),
+    "paper uncorrected": (
+        gyre,
+        {"noise": "texture", "noise_correction": False, "two_sided": False, "kernel": "box"},
+    ),
+    "paper, lod off": (gyre, {"noise": "texture", "lod": False, "resolution": 256}),
+    "squares": (gyre, {"noise": "checkerboard", "resolution": 256}),
+    "image": (gyre, {"noise": "image", "image": IMAGE, "tiles": 2, "resolution": 256}),
+    "unsteady": (swinging, {}),
+    "unsteady paper": (swinging, {"noise": "texture", "resolution": 256}),
+    "no sign": (fibres, {}),
+    "curved": (torus, {}),
+    "curved paper": (torus, {"noise": "texture", "resolution": 256}),
+}
+
+
+@pytest.mark.parametrize("aside", [False, True], ids=["straight", "aside"])
+@pytest.mark.parametrize("case", CASES)
+def test_the_value_is_what_is_drawn(case: str, aside: bool, rng: np.random.Generator) -> None:
+    make, settings = CASES[case]
+    field = make()
+    view, shot, clock = view_of(field, **settings), camera(field, aside=aside), 1.3
+    if not field.steady:
+        view.time = 0.5
+    before, after, between = view.moment
+    state = ViewState(between=between, clock=clock)
+    picture = render(view.textures, view.settings, shot, SIZE, view=state, steps=(before, after))
+    for y, x in rng.permutation(np.argwhere(picture.covered))[:4]:
+        at = locate(field, picture.position[y, x])
+        assert at is not None
+        got = probe(view, at, pixel=shot, size=SIZE, clock=clock)
+        assert got.value == pytest.approx(picture.value[y, x], abs=1e-6)
+        assert got.level == pytest.approx(picture.noise_level[y, x], abs=1e-6)
+        assert got.slice_level == pytest.approx(picture.slice_level[y, x], abs=1e-6)
+        assert got.field_values.position == pytest.approx(picture.position[y, x], abs=1e-6)
+        # And it is the sum of what is told about it.
+        assert got.gain * (got.weights @ got.noise) == pytest.approx(got.value, abs=1e-9)
+        check_shapes(got)
+
+
+def check_shapes(got: Probe) -> None:
+    k = len(got.lags)
+    assert 1 <= k <= got.asked
+    for name in ("points", "coordinates", "slices", "shares", "weights", "noise", "greys"):
+        assert len(getattr(got, name)) == k, name
+    assert got.points.shape == (k, 3)
+    assert got.coordinates.shape == got.slices.shape == (k, 2)
+    assert got.path.shape == (len(got.path_lags), 3)
+    assert got.weights.sum() == pytest.approx(1)
+    assert (got.weights >= 0).all()  # zero behind a source, for streaklets
+    assert (np.diff(got.lags) < 0).all()
+    assert (np.diff(got.path_lags) < 0).all()
+    assert ((got.greys >= 0) & (got.greys <= 1)).all()
+    for field in fields(got):
+        values = getattr(got, field.name)
+        if isinstance(values, np.ndarray):
+            assert np.isfinite(values).all(), field.name
+    # A sample lies between its slices, in time and on the path.
+    near, far = got.slice_lags[got.slices].T
+    assert near + got.shares * (far - near) == pytest.approx(np.abs(got.lags), abs=1e-12)
+    within = np.abs(got.lags) <= got.slice_lags[-1]
+    assert (got.shares >= 0).all()
+    assert (got.shares[within] <= 1).all()
+    # The path passes through each.
+    spread = float(np.ptp(got.points, axis=0).max())
+    for axis in range(3):
+        along = np.interp(-got.lags, -got.path_lags, got.path[:, axis])
+        assert along == pytest.approx(got.points[:, axis], abs=0.01 * spread + 1e-9)
+
+
+def test_a_width_is_a_picture_seen_straight_on() -> None:
+    field = gyre()
+    view, shot = view_of(field), camera(field)
+    picture = render(view.textures, view.settings, shot, SIZE)
+    width = 2 * shot.parallel_scale / SIZE[1]
+    at = locate(field, picture.position[12, 20])
+    got = probe(view, at, pixel=width)  # type: ignore[arg-type]
+    assert got.pixel == pytest.approx(width)
+    assert got.value == pytest.approx(picture.value[12, 20], abs=1e-6)
+
+
+def test_a_width_on_a_curved_surface_is_that_width() -> None:
+    got = probe(view_of(torus()), (6.3, 11.2), pixel=0.01)
+    assert got.pixel == pytest.approx(0.01)
+    assert got.grain == pytest.approx(0.015, rel=1e-2)
+
+
+# --- exact solutions ------------------------------------------------------------------------
+
+
+def test_an_even_wind_has_straight_paths_and_even_samples() -> None:
+    view = view_of(wind(), samples=21, spacing=0.8, grain=2.0)
+    got = probe(view, (20.3, 30.4), pixel=0.004)
+    assert got.field_values.velocity == pytest.approx([0.8, 0.6, 0])
+    assert (got.asked, len(got.lags), got.parameter) == (21, 21, "arclength")
+    assert got.grain == pytest.approx(0.008)
+    assert got.step == pytest.approx(0.0064, rel=1e-3)
+    assert np.diff(got.points, axis=0) == pytest.approx(
+        np.tile([0.0064 * 0.8, 0.0064 * 0.6, 0], (20, 1)), abs=1e-5
+    )
+    assert got.points[10] == pytest.approx(got.field_values.position, abs=1e-6)
+    # Paths go backward along the wind for positive lags; by arc length a lag is a length.
+    away = (got.points - got.field_values.position) @ [0.8, 0.6, 0]
+    assert away == pytest.approx(-got.lags, abs=1e-5)
+    assert got.coordinates == pytest.approx((got.points[:, 1::-1] + [1, 1.5]) * 20, abs=1e-4)
+    hann = 0.5 + 0.5 * np.cos(np.pi * np.arange(-10, 11) / 11)
+    assert got.weights == pytest.approx(hann / hann.sum())
+    # The path as a whole is a straight line as well, as far as the slices lead.
+    bent = (got.path - got.field_values.position) @ [0.6, -0.8, 0]
+    assert np.abs(bent).max() < 1e-3
+    assert np.ptp(got.path_lags) > 10 * np.ptp(got.lags)
+
+
+def test_a_rotation_has_round_paths() -> None:
+    view = view_of(turn(), parameter="time", samples=41)
+    got = probe(view, (50.3, 70.8), pixel=0.01)
+    centre, radius = got.points[:, :2], np.hypot(*got.field_values.position[:2])
+    assert np.hypot(*centre.T) == pytest.approx(np.full(41, radius), rel=5e-3)
+    angle = np.unwrap(np.arctan2(centre[:, 1], centre[:, 0]))
+    assert angle - angle[20] == pytest.approx(-0.5 * got.lags, abs=2e-3)
+    assert np.diff(angle) == pytest.approx(np.full(40, 0.7 * 1.5 * 0.01 / radius), rel=2e-2)
+    assert np.ptp(angle) > 0.4
+    # A lag is a time: a step takes as long as the flow needs for it.
+    assert got.step == pytest.approx(0.7 * 1.5 * 0.01 / (0.5 * radius), rel=1e-2)
+
+
+def test_a_large_field_is_read_in_its_coarser_form() -> None:
+    x, y = np.meshgrid(np.linspace(0, 2, 801), np.linspace(0, 1, 401))
+    velocity = np.stack([-(y - 0.5), x - 1], axis=-1)
+    points = np.stack([x, y], axis=-1)
+    whole = Scene(FlowField.from_arrays(points, velocity))
+    small = Scene(FlowField.from_arrays(points[::5, ::5], velocity[::5, ::5]))
+    assert whole.pyramid is not None
+    one, other = (probe(s, at, pixel=2e-3) for s, at in ((whole, (120, 560)), (small, (24, 112))))
+    np.testing.assert_allclose(one.field_values.position, [1.4, 0.3, 0], atol=1e-12)
+    np.testing.assert_allclose(one.points, other.points, atol=2e-4)
+
+
+def test_each_doubling_of_the_pixel_is_a_level() -> None:
+    view = view_of(wind(), samples=5)
+    near, far = (probe(view, (20, 30), pixel=pixel) for pixel in (0.002, 0.004))
+    assert far.level - near.level == pytest.approx(1)
+    assert far.grain / near.grain == pytest.approx(2)
+    assert far.step / near.step == pytest.approx(2, rel=1e-3)
+    assert far.lags == pytest.approx(2 * near.lags, rel=1e-3)
+
+
+@pytest.mark.parametrize("noise", ["procedural", "texture", "checkerboard"])
+def test_a_fine_screen_shows_the_same(noise: str) -> None:
+    view = view_of(wind(), samples=5, noise=noise, resolution=64)
+    one = probe(view, (20.3, 30.4), pixel=0.1)
+    fine = probe(view, (20.3, 30.4), pixel=0.05, density=2.0)
+    assert fine.pixel == pytest.approx(0.05)
+    for name in ("level", "grain", "step", "value"):
+        assert getattr(fine, name) == pytest.approx(getattr(one, name), abs=1e-6), name
+
+
+def test_the_paper_steps_one_texel() -> None:
+    """Equation 3: in the step, the flow goes one texel of the level that is looked up."""
+    settings = {"noise": "texture", "resolution": 256, "spacing": 1.0, "two_sided": False}
+    view = view_of(wind(), **settings, samples=8, kernel="box")
+    paper = view.textures.paper
+    assert paper is not None
+    for pixel in (0.003, 3.0 / 256, 3.0 / 32):
+        got = probe(view, (20.3, 30.4), pixel=pixel)
+        assert got.noise_coordinates is not None
+        texels = np.diff(got.noise_coordinates, axis=0) * paper.noise.shape[::-1]
+        assert np.abs(texels).max(axis=-1) == pytest.approx(np.full(7, 2.0**got.level), rel=1e-2)
+        assert got.weights == pytest.approx(np.full(8, 1 / 8))
+        assert got.lags[-1] == 0.0
+        # A texel is 3 / 256 long and 2 / 256 high.
+        assert got.grain == pytest.approx(max(pixel, 6.0**0.5 / 256), rel=0.01)
+
+
+def test_the_paper_looks_up_twice() -> None:
+    """Figure 2: the slice at (i, j) gives (a, b), and the noise there is what is met."""
+    view = view_of(gyre(), noise="texture", lod=False, resolution=128, samples=9)
+    paper = view.textures.paper
+    assert paper is not None
+    got = probe(view, (14.0, 33.0), pixel=0.01)
+    assert (got.level, got.slice_level) == (0.0, 0.0)
+    at = got.noise_coordinates
+    assert at is not None
+    # The first look-up, in the traces themselves: half precision apart.
+    slices, (j, i) = view.store.at(0), (14, 33)
+    for lag, where in zip(got.lags, got.coordinates, strict=True):
+        forward = bool(lag < 0)
+        held = abs(lag) / slices.unit[j, i]
+        traced = slices.positions(held, forward=forward)[j, i][::-1]
+        assert where == pytest.approx(traced, abs=5e-3)
+        assert paper.at(where[None, ::-1])[0] == pytest.approx(at[np.argmax(got.lags == lag)])
+    # The second one, in the texture.
+    texel = at[:, ::-1] * paper.noise.shape - 0.5
+    met = ndimage.map_coordinates(paper.noise.astype(float), texel.T, order=1, mode="nearest")
+    # The level's own deviation is made good for.
+    assert got.noise == pytest.approx(met / paper.deviations[0], abs=2e-2)
+
+
+def test_a_picture_is_met_in_its_colours() -> None:
+    dye = np.zeros((8, 8, 4), np.uint8)
+    dye[...] = [255, 0, 0, 255]
+    got = probe(view_of(gyre(), noise="image", image=dye), (14, 33), pixel=0.01)
+    assert got.noise == pytest.approx(np.tile([1.0, 0.0, 0.0, 1.0], (len(got.lags), 1)))
+    assert got.value == pytest.approx([1, 0, 0, 1])
+    assert got.gain == pytest.approx(1)
+
+
+def test_streaming_moves_with_the_clock() -> None:
+    view = view_of(gyre(), motion="uniform", speed=200.0, period=2.0)
+    one, later, round_ = (probe(view, (14, 33), pixel=0.01, clock=c).value for c in (0, 0.3, 2.0))
+    assert later != pytest.approx(one, abs=1e-3)
+    assert round_ == pytest.approx(one)
+
+
+# --- ends, seams and faults -------------------------------------------------------------------
+
+
+def test_a_path_that_ends_has_fewer_samples() -> None:
+    view = view_of(wind(), samples=61)
+    got = probe(view, (20.0, 2.0), pixel=0.01)
+    # The wind comes from the left border, a tenth away; half a step more or less.
+    behind = got.lags[got.lags > 0]
+    assert len(got.lags) == 31 + len(behind) < got.asked == 61
+    assert behind.max() == pytest.approx(0.1 / 0.8, abs=2 * got.step)
+    assert got.points[:, 0].min() > -1.5 - got.step
+    assert got.path[0, 0] == pytest.approx(-1.5, abs=1e-2)
+    assert got.weights.sum() == pytest.approx(1)
+    check_shapes(got)
+
+
+def test_where_nothing_moves_there_is_one_sample() -> None:
+    p = grid(21, 31)
+    speed = np.where(p[..., 0] > 0, 1.0, 0.0)
+    field = FlowField.from_arrays(p, np.stack([speed, 0 * speed], axis=-1), periodic="")
+    got = probe(view_of(field), (10.5, 4.5), pixel=0.01)
+    assert len(got.lags) == len(got.path) == 1
+    assert np.isnan(got.step)
+    assert got.value == pytest.approx(got.noise[0])
+
+
+def test_a_seam_is_passed() -> None:
+    x, y = np.meshgrid(np.arange(0.0, 361.0, 5.0), np.arange(-60.0, 61.0, 5.0))
+    east = np.stack([np.ones_like(x), np.zeros_like(x)], axis=-1)
+    field = FlowField.from_arrays(np.stack([x, y], axis=-1), east, periodic="i")
+    for noise in ("procedural", "texture"):
+        got = probe(view_of(field, noise=noise, samples=31), (12.0, 0.4), pixel=1.0)
+        assert len(got.lags) == got.asked
+        # On straight in space, and around in the indices.
+        assert got.points[:, 0] == pytest.approx(2 - got.lags, abs=0.05)
+        assert got.points[0, 0] < -5
+        assert got.coordinates[:, 1] == pytest.approx((got.points[:, 0] / 5) % 72, abs=0.02)
+    one, again = (probe(view_of(field), (12.0, i), pixel=1.0).value for i in (0.4, 72.4))
+    assert again == pytest.approx(one)
+
+
+def test_a_path_around_a_ring_comes_back() -> None:
+    a, r = np.meshgrid(np.linspace(0, 2 * np.pi, 61), np.linspace(1, 2, 21))
+    points = np.stack([r * np.cos(a), r * np.sin(a)], axis=-1)
+    field = FlowField.from_arrays(points, np.stack([-points[..., 1], points[..., 0]], axis=-1))
+    got = probe(view_of(field, samples=31), (10.0, 0.0), pixel=0.02)
+    assert len(got.lags) == got.asked
+    assert np.linalg.norm(got.points, axis=-1) == pytest.approx(np.full(31, 1.5), rel=3e-3)
+    angle = np.arctan2(got.points[:, 1], got.points[:, 0])
+    assert got.coordinates[:, 1] == pytest.approx(angle / (2 * np.pi) * 60 % 60, abs=0.02)
+    assert got.coordinates[:, 0] == pytest.approx(np.full(31, 10.0), abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("at", "pixel", "fault"),
+    [
+        ((41.0, 3.0), 0.1, r"\(41, 3\), outside the surface"),
+        ((1.0, 3.0), 0.0, r"pixel is 0\.0; expected a positive length"),
+        ((1.0, 3.0), np.nan, "pixel is nan"),
+        ((1.0, 3.0), Camera((0, 0, -1), (0, 0, -2), (0, 1, 0)), "is behind the camera"),
+        ((1.0, 3.0), Camera((0, -9, 0), (0, 0, 0), (0, 0, 1), parallel=True), "seen edge-on"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(
+    at: tuple[float, float], pixel: float | Camera, fault: str
+) -> None:
+    with pytest.raises(ValueError, match=fault):
+        probe(view_of(wind()), at, pixel=pixel, size=(9, 9))
+
+
+def test_a_window_filters_as_the_whole_does(rng: np.random.Generator) -> None:
+    texels = rng.standard_normal((3, 64, 96, 4)).astype(np.float32)
+    whole, window = Mips(texels, levels=4), Window(texels, 4)
+    assert window.levels == whole.levels == 4
+    for coordinate in np.concatenate([rng.uniform(-0.01, 1.01, (60, 2)), [[0, 0], [1, 1]]]):
+        level = rng.uniform(-1, 5, 1)
+        one, two = (mips.at(coordinate[None], level, layer=2) for mips in (whole, window))
+        assert two == pytest.approx(one, abs=1e-12)
+
+
+def test_from_afar_slices_are_coarse() -> None:
+    field = turn()
+    view, c = view_of(field), field.surface.center
+    shot = Camera((*c[:2], 5.0), (*c[:2], 0.0), (0.0, 1.0, 0.0), True, 1.2)
+    picture = render(view.textures, view.settings, shot, (12, 9))
+    for y, x in np.argwhere(picture.covered)[::7]:
+        at = locate(field, picture.position[y, x])
+        got = probe(view, at, pixel=shot, size=(12, 9))  # type: ignore[arg-type]
+        assert got.slice_level > 2
+        assert got.value == pytest.approx(picture.value[y, x], abs=1e-6)
+
+
+def test_textures_are_let_go() -> None:
+    # A flow that no other test draws: views of equal fields share their textures.
+    whole = swinging()
+    field = FlowField.from_arrays(whole.points, 1.5 * whole.velocity, times=whole.times)
+    view = view_of(field)
+    textures = view.textures
+    for time in (0.1, 0.5, 0.7):
+        view.time = time
+        probe(view, (15, 15), pixel=0.01)
+    loaded = LoadedTextures.of(textures)
+    assert len(loaded._mips) == 2
+    reference = weakref.ref(loaded)
+    del view, textures, loaded
+    gc.collect()
+    assert reference() is None

@@ -1,0 +1,95 @@
+"""A scene tells what a change makes necessary, and makes nothing twice."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flowtex
+from flowtex import FieldError
+from flowtex.scene.scene import Scene
+from flowtex.settings import Settings
+from flowtex.textures.images import ImageError
+
+
+def field(steps: int = 1) -> flowtex.FlowField:
+    y, x = np.mgrid[0:1:9j, 0:2:17j]
+    points = np.stack([x, y], axis=-1)
+    velocity = np.stack([np.stack([1 + 0 * x, x * k], axis=-1) for k in range(1, steps + 1)])
+    times = None if steps == 1 else np.arange(steps) * 2.0
+    return flowtex.FlowField.from_arrays(points, velocity, times=times, scalars={"height": y})
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "affects", "textures", "traces"),
+    [
+        ("samples", 9, "uniform", True, True),
+        ("lod", False, "uniform", True, True),
+        ("noise", "texture", "shader", False, True),
+        ("parameter", "time", "trace", False, False),
+    ],
+)
+def test_a_change_costs_what_the_table_says(
+    name: str, value: object, affects: str, textures: bool, traces: bool
+) -> None:
+    scene = Scene(field())
+    heard: list[str] = []
+    before, store = scene.textures, scene.store
+    scene.observe(heard.append)
+    scene.settings.update(**{name: value})
+    assert heard == [affects]
+    assert (scene.textures is before) == textures
+    assert (scene.store is store) == traces
+
+
+def test_a_closed_view_hears_nothing() -> None:
+    scene = Scene(field())
+    heard: list[str] = []
+    scene.observe(heard.append)
+    scene.close()
+    scene.settings.samples = 5
+    assert heard == []
+
+
+def test_time_lies_between_two_steps() -> None:
+    scene = Scene(field(3))
+    scene.time = 3.0
+    assert scene.moment == (1, 2, 0.5)
+    x = scene.field.points[..., 0]
+    np.testing.assert_allclose(
+        scene.scalar("speed"), (np.hypot(1, 2 * x) + np.hypot(1, 3 * x)) / 2, rtol=1e-12
+    )
+    scene.time = 4.0
+    assert scene.moment == (1, 2, 1.0)
+
+
+def test_time_outside_is_refused() -> None:
+    scene = Scene(field(3))
+    with pytest.raises(ValueError, match=r"^time is 4.5; expected 0 to 4, the times of the field$"):
+        scene.time = 4.5
+
+
+def test_an_unknown_scalar_lists_those_that_exist() -> None:
+    with pytest.raises(FieldError, match=r"no scalar 'mach'; expected one of 'speed'"):
+        Scene(field()).scalar("mach")
+
+
+def test_only_the_steps_that_are_shown_are_traced() -> None:
+    scene = Scene(field(5), Settings())
+    scene.textures.layers(3)
+    assert 3 in scene.store._cache
+    assert len(scene.store._cache) == 1
+
+
+@pytest.mark.parametrize("image", [np.zeros((2, 2, 7)), "missing.png"])
+def test_an_appearance_with_an_image_that_is_refused_changes_nothing(image: object) -> None:
+    scene = Scene(field())
+    before, shown, heard = scene.appearance, scene.field, list[str]()
+    scene.observe(heard.append)
+    with pytest.raises(ImageError):
+        scene.appearance = replace(before, scalars="vorticity", color="red", image=image)
+    assert scene.appearance is before and scene.image is None and heard == []
+    assert scene.field is shown
+    assert scene.settings.noise == "procedural"

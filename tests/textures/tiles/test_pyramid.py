@@ -1,0 +1,229 @@
+"""What a pyramid's tiles cover, and that they hold what the whole field has there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from small_tiles import TILE_CELLS
+
+from flowtex._util.array_types import Floats
+from flowtex.field import FlowField
+from flowtex.textures import SurfaceGeometry, TextureSet
+from flowtex.textures.tiles import Pyramid, TileKey, block_places
+from flowtex.textures.tiles.pyramid import MOST_RING, _ring, is_cut
+from flowtex.trace import SliceStore, trace
+
+
+@pytest.fixture(autouse=True)
+def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 190)
+
+
+def grid(rows: int, columns: int) -> tuple[Floats, Floats]:
+    y, x = np.mgrid[0:rows, 0:columns].astype(float) / 100
+    return x, y
+
+
+def waves(rows: int = 74, columns: int = 84, **options: Any) -> FlowField:
+    x, y = grid(rows, columns)
+    velocity = np.stack([np.cos(3 * y) + 0.3, np.sin(4 * x)], axis=-1)
+    return FlowField.from_arrays(np.stack([x, y], axis=-1), velocity, periodic="", **options)
+
+
+def whole_layers(field: FlowField, like: TextureSet, step: int = 0) -> Floats:
+    """Layers of all nodes, at the lags of a tile, (layers, J, I, 4)."""
+    unit = like.store.unit.flat[0]
+    slices = trace(field, lags=like.store.lags, unit=unit, compose=field.steady, progress=False)
+    textures = TextureSet(
+        SurfaceGeometry.of(field), SliceStore(field, slices=slices), whole_speed=like.whole_speed
+    )
+    layers = textures.layers(step, dtype=np.float64)
+    layers[0, ..., 3] *= textures.unit / like.unit
+    rows, columns = textures.grid.rows, textures.grid.columns
+    return layers[
+        :, rows.before : rows.before + rows.nodes, columns.before : columns.before + columns.nodes
+    ]
+
+
+def nodal(tile: TextureSet, step: int = 0) -> Floats:
+    """Layers of the nodes that a tile draws."""
+    layers, geometry = tile.layers(step, dtype=np.float32), tile.grid
+    rows, columns = geometry.rows, geometry.columns
+    return layers[
+        :, rows.before : rows.before + rows.nodes, columns.before : columns.before + columns.nodes
+    ] * np.float64(1)
+
+
+def test_a_small_field_is_its_root() -> None:
+    field = waves(10, 13)
+    pyramid = Pyramid(field)
+    assert pyramid.depth == 0
+    assert pyramid.children(None) == []
+    np.testing.assert_array_equal(pyramid.root.velocity, field.velocity)
+
+
+@pytest.mark.parametrize("shape", [(74, 84), (65, 129), (66, 150)])
+def test_the_tiles_of_each_level_cover_its_cells_once(shape: tuple[int, int]) -> None:
+    pyramid = Pyramid(waves(*shape))
+    keys = pyramid.children(None)
+    for level in range(pyramid.depth - 1, -1, -1):
+        covered = np.zeros([n - 1 for n in pyramid.shape(level)], dtype=int)
+        for _, row, column in keys:
+            covered[
+                row * TILE_CELLS : (row + 1) * TILE_CELLS,
+                column * TILE_CELLS : (column + 1) * TILE_CELLS,
+            ] += 1
+        assert (covered == 1).all()
+        assert len(keys) == len({*keys})
+        keys = [child for key in keys for child in pyramid.children(key)]
+
+
+def test_nodes_of_a_level_are_nodes_of_the_field() -> None:
+    field = waves()
+    root = Pyramid(field).root
+    assert root.valid.size <= 190
+    assert {*map(tuple, root.points.reshape(-1, 3))} <= {*map(tuple, field.points.reshape(-1, 3))}
+    np.testing.assert_array_equal(root.points[-1, -1], field.points[-1, -1])
+    assert root.shape == Pyramid(field).shape(Pyramid(field).depth)
+
+
+def test_an_even_flow_stays_even_beside_land() -> None:
+    x, y = grid(74, 84)
+    land = np.hypot(x - 0.3, y - 0.3) < 0.1
+    velocity = np.where(land[..., None], np.nan, np.stack([1 + 0 * x, 2 + 0 * x], axis=-1))
+    root = Pyramid(FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)).root
+    np.testing.assert_allclose(root.velocity[0][root.valid] - [1, 2, 0], 0, atol=1e-12)
+    assert not root.velocity[0][~root.valid].any()
+
+
+@pytest.mark.parametrize("key", [TileKey(0, 0, 0), TileKey(0, 1, 1)])
+def test_slopes_of_a_tile_are_those_of_the_field(key: TileKey) -> None:
+    field = waves(84, 100)
+    tile = Pyramid(field).textures(key)
+    assert tile is not None
+    mine = nodal(tile)
+    row, column = (TILE_CELLS * at for at in key[1:])
+    theirs = whole_layers(field, tile)[
+        :, row : row + TILE_CELLS + 1, column : column + TILE_CELLS + 1
+    ]
+    assert mine.shape == theirs.shape
+    assert np.abs(mine - theirs)[..., :3].max() < 2e-3
+    np.testing.assert_allclose(mine[0, ..., 3], theirs[0, ..., 3], rtol=1e-5)
+
+
+def test_slopes_go_on_across_the_seam_of_a_ring() -> None:
+    a, r = np.meshgrid(np.linspace(0, 2 * np.pi, 301), np.linspace(1, 2, 40))
+    points = np.stack([r * np.cos(a), r * np.sin(a)], axis=-1)
+    velocity = np.stack([-np.sin(a) + 0.2 * np.cos(a), np.cos(a) + 0.2 * np.sin(a)], axis=-1)
+    field = FlowField.from_arrays(points, velocity)
+    assert field.periodic == (False, True)
+    tiles = [Pyramid(field).textures(TileKey(0, 0, at)) for at in (0, 4)]
+    assert tiles[0] is not None
+    assert tiles[1] is not None
+    off = np.abs(nodal(tiles[0])[:, :, 0] - nodal(tiles[1])[:, :, -1])[..., :3].max(axis=(1, 2))
+    lags = np.concatenate([[0.0], tiles[0].store.lags, tiles[0].store.lags, [0.0]])
+    assert off[lags <= 32].max() < 1e-4  # longer ones only close the last interval
+
+
+def test_a_field_that_varies_is_followed_in_time() -> None:
+    x, y = grid(74, 84)
+    steps = [
+        np.stack([np.cos(3 * y + t), np.sin(4 * x - t) + 0.2], axis=-1) for t in (0.0, 0.5, 1.0)
+    ]
+    field = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps), times=[0.0, 0.2, 0.4])
+    tile = Pyramid(field).textures(TileKey(0, 0, 0))
+    assert tile is not None
+    mine = nodal(tile, 2)
+    theirs = whole_layers(field, tile, 2)[:, : TILE_CELLS + 1, : TILE_CELLS + 1]
+    off = np.abs(mine - theirs)[..., :3]
+    assert np.percentile(off, 99.9) < 2e-3
+    assert off.max() < 0.02  # one is integrated, the other composed
+
+
+def test_a_tile_of_land_is_none() -> None:
+    x, y = grid(74, 150)
+    velocity = np.where((x < 0.8)[..., None], np.nan, np.ones((74, 150, 2)))
+    pyramid = Pyramid(FlowField.from_arrays(np.stack([x, y], axis=-1), velocity))
+    assert pyramid.textures(TileKey(0, 0, 0)) is None
+    assert pyramid.textures(TileKey(0, 0, 1)) is not None
+
+
+@pytest.mark.parametrize("key", [(9, 0, 0), (0, 5, 0), (0, 0, -1), (-1, 0, 0)])
+def test_a_tile_that_does_not_exist_is_refused(key: tuple[int, int, int]) -> None:
+    with pytest.raises(KeyError, match="does not exist"):
+        Pyramid(waves()).textures(TileKey(*key))
+
+
+@pytest.mark.parametrize("level", [0, 1, 2])
+def test_places_of_blocks_are_known_from_the_root(level: int) -> None:
+    field = waves(75, 125)
+    pyramid = Pyramid(field)
+    lines = [
+        np.minimum(np.arange(n) << level, full - 1)
+        for n, full in zip(pyramid.shape(level), field.shape, strict=True)
+    ]
+    exact = block_places(field.points[np.ix_(*lines)])
+    guess = pyramid.places(level)
+    assert guess.shape == exact.shape
+    apart = np.linalg.norm(guess[..., :3] - exact[..., :3], axis=-1)
+    assert (apart + exact[..., 3] < guess[..., 3] + 3 * exact[..., 4] * 8).all()
+    np.testing.assert_allclose(guess[..., 4], exact[..., 4], rtol=0.1)
+
+
+@pytest.mark.parametrize("speed", [1e-40, 1e40])
+def test_paths_that_a_halo_cuts_are_noticed_in_any_unit_of_time(speed: float) -> None:
+    x, y = grid(74, 225)
+    fast = 1 + 30 * np.exp(-(((y - 0.3) / 0.035) ** 2))
+    points, velocity = np.stack([x, y], axis=-1), np.stack([fast, 0 * x], axis=-1)
+    cut, layers = [], []
+    for s in (1.0, speed):
+        pyramid = Pyramid(FlowField.from_arrays(points, s * velocity, periodic=""), "time")
+        for widening in (1, 8):
+            tile = pyramid.textures(TileKey(0, 0, 1), widening)
+            assert tile is not None
+            cut.append(is_cut(tile, 0))
+            product = tile.store.lags[:, None, None] * tile.store.unit * tile.pace
+            assert tile.longest <= product[-1].max() < 8 * tile.longest
+        assert tile is not None
+        layers.append(nodal(tile))
+    assert cut == [True, False] * 2
+    np.testing.assert_allclose(layers[1][..., :3], layers[0][..., :3], rtol=1e-2, atol=1e-2)
+
+
+def test_a_ring_around_a_pole_is_complete_where_it_is_near() -> None:
+    for count in (900, 1537, 5_000, 100_000):
+        lines = _ring(384, count)
+        apart = np.diff(lines)
+        assert lines[0] == 0 and lines[-1] == count - 1 and len(lines) < 1.1 * MOST_RING
+        np.testing.assert_array_equal(lines[:385], np.arange(385))
+        assert apart.min() == 1 and np.maximum(apart[1:] / apart[:-1], 0.5).max() <= 2
+
+
+def test_paths_over_a_pole_need_not_all_of_a_long_ring(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1000)
+    lon, lat = np.meshgrid(np.linspace(0, 2 * np.pi, 501), np.linspace(-0.5, 0.5, 130) * np.pi)
+    points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    pyramid = Pyramid(FlowField.from_arrays(points, np.cross([0.3, 1.0, 0.1], points)))
+    whole = pyramid.textures(TileKey(0, 0, 1))
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.MOST_RING", 350)
+    some = pyramid.textures(TileKey(0, 0, 1))
+    assert whole is not None and some is not None
+    assert [t.geometry.field.shape[1] for t in (whole, some)][1] < 380 < 501
+    np.testing.assert_array_equal(some.geometry.points, whole.geometry.points)
+    count = min(len(whole.lags), len(some.lags)) - 2
+    away = np.abs(nodal(some)[1:count, ..., :3] - nodal(whole)[1:count, ..., :3])
+    assert np.percentile(away, 99) < 0.02
+    assert np.abs(nodal(whole)[1:count, ..., :3]).mean() > 0.3
+
+
+def test_windows_have_no_more_nodes_than_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    pyramid = Pyramid(waves())
+    wide = pyramid.textures(TileKey(0, 0, 0), widening=4)
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.MOST_WINDOW", 5_000)
+    narrow = pyramid.textures(TileKey(0, 0, 0), widening=4)
+    assert wide is not None and narrow is not None
+    fields = narrow.geometry.field, wide.geometry.field
+    assert fields[0].valid.size < 5_000 < fields[1].valid.size
+    assert narrow.geometry.shape == wide.geometry.shape

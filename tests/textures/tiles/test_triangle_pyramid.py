@@ -1,0 +1,257 @@
+"""Levels and tiles of surfaces of triangles."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from triangle_meshes import cube, random_plane, sphere
+
+import flowtex
+from flowtex import FlowField
+from flowtex._util.array_types import Floats, Indices
+from flowtex.field.steps import LazySteps
+from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part
+from flowtex.textures import TextureSet, TriangleGeometry
+from flowtex.textures.tiles import TileKey, TrianglePyramid, levels_of, shared_pyramid
+from flowtex.trace import SliceStore, trace
+
+
+@pytest.fixture(autouse=True)
+def _small_roots(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 350)
+    # As any surface has:
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.MOST_OVERLAP", 4.0)
+
+
+def flow_on(points: Floats, triangles: Indices, **options: Any) -> FlowField:
+    flat = not points[:, 2].any()
+    velocity = np.cross(points, [0.3, 0.2, 1.0]) + np.array([0.2, 0.1, 0.3])
+    velocity[:, 2] *= not flat
+    return FlowField.from_triangles(points, triangles, velocity, **options)
+
+
+def plane(rng: np.random.Generator, nodes: int = 3000, **options: Any) -> FlowField:
+    return flow_on(*random_plane(rng, nodes), **options)
+
+
+def graded(rng: np.random.Generator) -> FlowField:
+    return flow_on(*random_plane(rng, 4000, grading=1000.0))
+
+
+def ball() -> FlowField:
+    return flow_on(*sphere(4))
+
+
+def drawn(pyramid: TrianglePyramid, key: TileKey) -> TriangleGeometry:
+    textures = pyramid.textures(key)
+    assert textures is not None
+    assert isinstance(textures.geometry, TriangleGeometry)
+    return textures.geometry
+
+
+def test_a_surface_of_thin_layers_is_one_root(
+    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 3000)
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.MOST_OVERLAP", 2.0)
+    layers = flowtex.examples.airfoil_field((60, 121))
+    node = np.arange(60 * 121).reshape(60, 121)
+    a, b, c, d = (
+        part.ravel() for part in (node[:-1, :-1], node[:-1, 1:], node[1:, 1:], node[1:, :-1])
+    )
+    triangles = np.concatenate([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)])
+    assert TrianglePyramid(flow_on(layers.points.reshape(-1, 3), triangles)).depth == 0
+    assert TrianglePyramid(plane(rng, 8000)).depth == 1
+
+
+def test_levels_keep_the_means(rng: np.random.Generator) -> None:
+    points, triangles = random_plane(rng, 3000)
+    pressure = points[:, 0] ** 2
+    field = flow_on(points, triangles, scalars={"p": pressure})
+    for level in levels_of(field, 200)[1:]:
+        inside = level.number >= 0
+        assert inside.mean() > 0.99
+        count = np.bincount(level.number[inside], minlength=level.field.shape[1])
+        mean = count @ level.field.velocity[0, 0] / count.sum()
+        np.testing.assert_allclose(mean, field.velocity[0, 0, inside].mean(axis=0), rtol=1e-9)
+        mean = count @ level.field.scalars["p"][0, 0] / count.sum()
+        assert mean == pytest.approx(pressure[inside].mean())
+
+
+@pytest.mark.parametrize("make", [plane, graded])
+def test_a_level_has_the_outline_of_the_field(make: Any, rng: np.random.Generator) -> None:
+    field = make(rng)
+    for level in levels_of(field, 200)[1:]:
+        p, side = level.field.points[0], level.sides / 2
+        corners = p[level.triangles]
+        area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] / 2
+        # Nothing is turned over, and what is missing is at the corners.
+        assert area.min() > 0 or area.max() < 0
+        assert abs(np.abs(area).sum() - 1) < 4 * side.max() ** 2
+        outside = np.stack([p[:, 0], 1 - p[:, 0], p[:, 1], 1 - p[:, 1]]).min(axis=0)
+        used = np.isin(np.arange(len(p)), level.triangles)
+        assert outside.min() > -1e-9
+        assert (outside < side)[level.border & used].all()
+
+
+def test_a_closed_surface_stays_closed() -> None:
+    levels = levels_of(ball(), 200)
+    assert [level.field.shape[1] for level in levels][-1] < 230
+    for level in levels[1:]:
+        surface = level.field.surface
+        assert (surface.neighbours >= 0).mean() > 0.99  # type: ignore[attr-defined]
+        p = level.field.points[0]
+        outward = np.einsum("nc,nc->n", surface.normals[0], p)  # type: ignore[attr-defined]
+        assert outward.min() > 0 or outward.max() < 0
+        assert np.ptp(np.linalg.norm(p, axis=1)) < (level.sides.max() / 2) ** 2
+
+
+def test_sides_of_a_thin_sheet_stay_apart(rng: np.random.Generator) -> None:
+    points, triangles = cube(40)
+    field = flow_on(points * [1.0, 1.0, 1e-3], triangles)
+    level = levels_of(field, 200)[1]
+    near = np.abs(level.field.points[0][:, :2]).max(axis=1) < 0.9
+    assert (np.abs(level.field.points[0][near, 2]) > 0.9e-3).all()
+
+
+@pytest.mark.parametrize("make", [plane, graded, lambda rng: ball()])
+def test_every_point_is_covered_by_the_tiles_of_a_level(
+    make: Any, rng: np.random.Generator
+) -> None:
+    field = make(rng)
+    pyramid = TrianglePyramid(field)
+    assert pyramid.depth >= 2
+    keys = pyramid.children(None)
+    while keys:
+        level = pyramid.at_level(keys[0].level)
+        assert level.triangles is not None
+        found = np.zeros(len(level.triangles), dtype=int)
+        order = np.lexsort(np.sort(level.triangles, axis=1).T)
+        for key in keys:
+            geometry = drawn(pyramid, key)
+            # By its corners' places a triangle is found again in the whole level.
+            middle = geometry.points[0][geometry.triangles].mean(axis=1)
+            whole = level.points[0][level.triangles].mean(axis=1)
+            places = {tuple(p): n for n, p in enumerate(np.round(whole, 9))}
+            at = [places[tuple(p)] for p in np.round(middle, 9)]
+            found[at] += 1
+            assert geometry.blocks.min() >= 1 and geometry.blocks.max() <= 15
+        assert (found[order] >= 1).all()
+        assert (found > 1).mean() < 0.5
+        keys = [child for key in keys for child in pyramid.children(key)]
+
+
+def test_places_hold_the_triangles_of_their_blocks(rng: np.random.Generator) -> None:
+    pyramid = TrianglePyramid(graded(rng))
+    for level in range(pyramid.depth + 1):
+        places = pyramid.places(level)
+        assert places.shape == (2 ** (pyramid.depth + 1 - level),) * 2 + (5,)
+        away = pyramid.field.points[0][:, None] - places[..., :3].reshape(-1, 3)
+        inside = np.linalg.norm(away, axis=-1) <= places[..., 3].ravel() + 1e-12
+        assert inside.any(axis=1).all()
+        if level:
+            halves = pyramid.places(level - 1)[..., 4].reshape(*places.shape[:2][:1], 2, -1, 2)
+            np.testing.assert_allclose(places[..., 4], 2 * halves.max(axis=(1, 3)))
+
+
+def test_a_small_field_is_its_root(rng: np.random.Generator) -> None:
+    pyramid = TrianglePyramid(plane(rng, 200))
+    assert pyramid.depth == 0
+    assert pyramid.root is pyramid.field
+    assert pyramid.children(None) == []
+
+
+@pytest.mark.parametrize("key", [(9, 0, 0), (0, 99, 0), (0, 0, -1), (-1, 0, 0)])
+def test_a_tile_that_does_not_exist_is_refused(
+    key: tuple[int, int, int], rng: np.random.Generator
+) -> None:
+    with pytest.raises(KeyError, match="does not exist"):
+        TrianglePyramid(plane(rng)).textures(TileKey(*key))
+
+
+@pytest.mark.parametrize("make", [plane, lambda rng: ball()])
+def test_slopes_of_a_tile_are_those_of_the_field(make: Any, rng: np.random.Generator) -> None:
+    field = make(rng)
+    tile = TrianglePyramid(field).textures(TileKey(0, 1, 2))
+    assert tile is not None
+    mine = tile.layers(0).reshape(tile.count, -1, 4)[:, : tile.geometry.shape[1]]
+    unit = float(tile.store.unit.flat[0])
+    slices = trace(field, lags=tile.store.lags, unit=unit, progress=False)
+    whole = TextureSet(
+        TriangleGeometry.of(field), SliceStore(field, slices=slices), whole_speed=tile.whole_speed
+    )
+    theirs = whole.layers(0).reshape(whole.count, -1, 4)[:, : field.shape[1]]
+    points = {tuple(p): n for n, p in enumerate(field.points[0])}
+    at = [points[tuple(p)] for p in tile.geometry.points[0]]
+    off = np.abs(mine - theirs[:, at])[..., :3]
+    assert np.percentile(off, 99.5) < 2e-3
+
+
+def test_steps_that_are_read_late_stay_so(rng: np.random.Generator) -> None:
+    from dataclasses import replace
+
+    field, reads = plane(rng), []
+
+    def read(step: int) -> Floats:
+        reads.append(step)
+        return np.asarray(field.velocity[0] * (1 + step))
+
+    late = replace(field, velocity=LazySteps(50, read), times=np.arange(50.0))
+    pyramid = TrianglePyramid(late)
+    assert not reads
+    np.testing.assert_allclose(
+        pyramid.root.velocity[3], 4 * TrianglePyramid(field).root.velocity[0]
+    )
+    assert reads == [3]
+
+
+def test_nodes_without_data_are_in_no_mean(rng: np.random.Generator) -> None:
+    points, triangles = random_plane(rng, 3000)
+    land = np.hypot(points[:, 0] - 0.5, points[:, 1] - 0.5) < 0.2
+    velocity = np.where(land[:, None], np.nan, [1.0, 2.0, 0.0])
+    pyramid = TrianglePyramid(FlowField.from_triangles(points, triangles, velocity))
+    root = pyramid.root
+    used = np.unique(pyramid.root_geometry.triangles)
+    np.testing.assert_allclose(root.velocity[0, 0, used] - [1, 2, 0], 0, atol=1e-12)
+    away = np.hypot(*(root.points[0, used, :2] - 0.5).T)
+    assert away.min() > 0.2
+
+
+def test_a_view_is_covered_by_what_is_chosen(rng: np.random.Generator) -> None:
+    pyramid = TrianglePyramid(plane(rng))
+    planes = np.array([[1.0, 0, 0, -0.3], [-1.0, 0, 0, 0.5], [0, 1.0, 0, -0.4], [0, -1.0, 0, 0.6]])
+    chosen = choose_tiles(pyramid, TileView(None, 0.1, 400.0, planes))
+    shown = cover(chosen, lambda key: True)
+    finest = {key for key in shown if key is not None and key.level == 0}
+    assert finest
+    assert len(finest) < 4**pyramid.depth
+    for x, y in rng.uniform([0.3, 0.4], [0.5, 0.6], (50, 2)):
+        hits = 0
+        for key, finer in shown.items():
+            geometry = pyramid.root_geometry if key is None else drawn(pyramid, key)
+            own = np.ones(4, dtype=bool).reshape(2, 2)
+            for child in finer:
+                own[finer_part(pyramid, child, key)] = False
+            some = (geometry.blocks[:, None] & (1 << np.flatnonzero(own))).any(axis=1)
+            corners = geometry.points[0][geometry.triangles[some]][..., :2] - [x, y]
+            after = np.roll(corners, -1, axis=1)
+            turns = corners[..., 0] * after[..., 1] - corners[..., 1] * after[..., 0]
+            hits += int((turns >= 0).all(axis=1).sum() + (turns <= 0).all(axis=1).sum())
+        assert hits >= 1
+
+
+@pytest.mark.parametrize("zoom", [1.0, 6.0])
+def test_a_picture_of_tiles_is_that_of_the_whole(
+    zoom: float, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    points, triangles = random_plane(rng, 5000)
+    options: dict[str, Any] = {"size": (160, 120), "zoom": zoom, "scalars": "speed"}
+    tiled = flowtex.render(flow_on(points, triangles), **options).astype(float)
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 10**6)
+    whole = flow_on(points * 1.0, triangles)
+    assert shared_pyramid(whole, "arclength", "streamlines").depth == 0
+    off = np.abs(tiled - flowtex.render(whole, **options))[..., :3]
+    assert np.median(off) <= 4
+    assert off.mean() < 10
