@@ -17,7 +17,7 @@ from rich.table import Table
 from scenes import grid_of, lic_actor
 
 import flowtex
-from flowtex.diagnostics import require_opengl
+from flowtex.rendering.diagnostics import require_opengl
 
 
 def frame(

@@ -16,9 +16,9 @@ from rich.console import Console
 from rich.table import Table
 
 import flowtex
-from flowtex.diagnostics import require_opengl
 from flowtex.plotting.offscreen.encoders import write_movie
 from flowtex.plotting.offscreen.movie import frames
+from flowtex.rendering.diagnostics import require_opengl
 
 EXAMPLES = ("double_gyre", "vortex", "cylinder", "airfoil", "delta_wing")
 

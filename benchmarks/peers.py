@@ -167,7 +167,7 @@ def measure(case: str, mesh: str, size: tuple[int, int]) -> dict[str, float]:
     from scenes import gyre_view
 
     import flowtex.plotting.component  # noqa: F401 plotter.flowtex
-    from flowtex.diagnostics import prefer_headless
+    from flowtex.rendering.diagnostics import prefer_headless
 
     prefer_headless()
     field = flow(mesh)
@@ -225,8 +225,8 @@ def measure_surface(case: str, name: str, size: tuple[int, int]) -> dict[str, fl
     from surfaces import SURFACES, surface_view
 
     import flowtex.plotting.component  # noqa: F401 plotter.flowtex
-    from flowtex.diagnostics import prefer_headless
     from flowtex.rendering.camera import Camera
+    from flowtex.rendering.diagnostics import prefer_headless
 
     prefer_headless()
     field = SURFACES[name]()
@@ -334,7 +334,7 @@ def main() -> None:
     if arguments.one:
         print(json.dumps(measure(arguments.one, arguments.meshes[0], size)))  # noqa: T201
         return
-    from flowtex.diagnostics import require_opengl
+    from flowtex.rendering.diagnostics import require_opengl
 
     console = Console(width=120)
     console.print(f"[bold]{require_opengl().renderer}[/]")

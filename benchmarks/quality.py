@@ -28,7 +28,7 @@ from seams import across_lines, seams
 import flowtex
 from flowtex import quality
 from flowtex._util.blocks import block_means
-from flowtex.diagnostics import require_opengl
+from flowtex.rendering.diagnostics import require_opengl
 
 Figures = dict[str, dict[str, float]]
 

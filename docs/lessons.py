@@ -14,7 +14,7 @@ from typing import Any
 
 import live
 
-from flowtex.diagnostics import prefer_headless
+from flowtex.rendering.diagnostics import prefer_headless
 
 HERE = Path(__file__).resolve().parent
 NOTEBOOKS = HERE.parent / "notebooks"

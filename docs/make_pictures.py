@@ -370,7 +370,7 @@ def app() -> None:
             settle(page)
         return page
 
-    command = [sys.executable, "-m", "flowtex.cli", "demo", "--no-browser", "--port", "0"]
+    command = [sys.executable, "-m", "flowtex", "demo", "--no-browser", "--port", "0"]
     with (
         subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as served,
         sync_playwright() as playwright,

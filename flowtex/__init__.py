@@ -92,7 +92,7 @@ def __getattr__(name: str) -> Any:
     if name in ("examples", "pyramid", "quality"):
         return importlib.import_module(f"flowtex.{name}")
     if name in _DRAWS:
-        importlib.import_module("flowtex.diagnostics").begin_trial()
+        importlib.import_module("flowtex.rendering.diagnostics").begin_trial()
         if name != "show":  # in notebooks the browser draws
             importlib.import_module("flowtex._util.extras").require_pyvista(f"flowtex.{name}")
     if name in _LAZY:

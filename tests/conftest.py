@@ -23,7 +23,7 @@ import barred
 import numpy as np
 import pytest
 
-from flowtex import diagnostics
+from flowtex.rendering import diagnostics
 
 if TYPE_CHECKING:
     import pyvista as pv

@@ -73,7 +73,7 @@ def start(*words: str) -> Served:
     """Start ``flowtex`` with a page, and wait for its address."""
     with signals_of_a_terminal():
         process = subprocess.Popen(
-            [sys.executable, "-m", "flowtex.cli", *words, "--no-browser", "--port", "0"],
+            [sys.executable, "-m", "flowtex", *words, "--no-browser", "--port", "0"],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

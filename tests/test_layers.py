@@ -34,7 +34,6 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("textures",),
     ("rendering",),
     ("pyramid",),
-    ("diagnostics",),
     ("examples",),
     ("scene",),
     ("web",),
@@ -43,6 +42,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("",),
     ("xarray",),
     ("cli",),
+    ("__main__",),
 )
 RENDERERS = ("rendering.cpu", "rendering.vtk", "rendering.webgl")
 #: Folders of the checkout that import the package and that it knows nothing of.
@@ -64,7 +64,13 @@ class Library:
 VTK = Library(
     ("vtk", "vtkmodules", "pyvista"),
     on_load=("rendering.vtk", "plotting", "app"),
-    in_functions=("_util.colours", "field.io", "trace.structure", "diagnostics", "examples"),
+    in_functions=(
+        "_util.colours",
+        "field.io",
+        "trace.structure",
+        "rendering.diagnostics",
+        "examples",
+    ),
 )
 LIBRARIES = (
     VTK,
@@ -418,9 +424,9 @@ def loaded() -> dict[str, set[str]]:
     load a library of ``SLOW``, comes last.
     """
     names = [module_name(path, PACKAGE) for path in PACKAGE.rglob("*.py")]
-    rooms = (*VTK.on_load, "widget", "cli", "xarray", "pyramid.objects")
+    rooms = (*VTK.on_load, "widget", "cli", "__main__", "xarray", "pyramid.objects")
     below = sorted(f"flowtex.{name}" for name in names if name and not is_in(name, rooms))
-    assert "flowtex.diagnostics" in below and "flowtex.web.export" in below
+    assert "flowtex.rendering.diagnostics" in below and "flowtex.web.export" in below
     stages = {"flowtex": ["flowtex"], "below VTK": below, "flowtex.widget": ["flowtex.widget"]}
     code = (
         f"import json, sys\nfound = {{}}\nfor stage, modules in {stages!r}.items():\n"

@@ -17,7 +17,7 @@ stamp=$(dirname "$(dirname "$python")")/.opengl-$kind
 [ -e "$stamp" ] && exit 0
 
 # The trial alone, which does not load the package, succeeds within a second.
-case $("$python" -P "$here/../flowtex/diagnostics.py" --try 2>/dev/null) in
+case $("$python" -P "$here/../flowtex/rendering/diagnostics.py" --try 2>/dev/null) in
 *'"usable": true'*) touch "$stamp" && exit 0 ;;
 esac
 
@@ -25,7 +25,7 @@ esac
 # like that.
 draws() {
     lacks=$("$python" -c 'import sys
-from flowtex import diagnostics
+from flowtex.rendering import diagnostics
 try:
     diagnostics.require_opengl()
 except diagnostics.OpenGLMissingError as error:

@@ -59,7 +59,7 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
     """
     if in_notebook():
         return _show_widget(mesh, size, options)
-    from flowtex.diagnostics import has_display, prefer_headless, require_opengl
+    from flowtex.rendering.diagnostics import has_display, prefer_headless, require_opengl
 
     require_pyvista("a window or a page with a server")
     prefer_headless()

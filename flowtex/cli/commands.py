@@ -48,7 +48,7 @@ for _command in (render, movie, export, formula, info, pyramid, serve):
 @app.command
 def doctor() -> int:
     """Check the system that flowtex runs on, and name what is missing."""
-    from flowtex import diagnostics
+    from flowtex.rendering import diagnostics
 
     return diagnostics.main()
 
@@ -122,7 +122,7 @@ def _warn(message: Warning | str, *_: Any) -> None:
 
 def _exit_code(error: Exception) -> int | None:
     """Exit code of an error that the user can correct; ``None`` for a defect of the program."""
-    from flowtex.diagnostics import OpenGLMissingError
+    from flowtex.rendering.diagnostics import OpenGLMissingError
 
     if isinstance(error, OpenGLMissingError):
         return 1

@@ -15,12 +15,12 @@ from contextvars import ContextVar
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from flowtex import diagnostics
 from flowtex._util.child import FORKS, prepare
 from flowtex._util.progress import waiting
 from flowtex.cli.checks import require_app
 from flowtex.cli.console import announcer, describe
 from flowtex.cli.options import ServeFlags
+from flowtex.rendering import diagnostics
 
 if TYPE_CHECKING:
     from flowtex.app import Library

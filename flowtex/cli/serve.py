@@ -66,7 +66,7 @@ def serve(
     from flowtex.app.server.security import known_hosts, new_secret
     from flowtex.app.server.served_store import ServedStore
     from flowtex.app.server.store_site import run_store
-    from flowtex.diagnostics import has_display
+    from flowtex.rendering.diagnostics import has_display
 
     with waiting(f"Reading {store.name}") as end_waiting:
         field = open_store(store)

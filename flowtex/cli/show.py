@@ -60,7 +60,7 @@ def demo(
         msg = f"the example {example!r} does not exist; expected one of {', '.join(NAMES)}"
         raise UsageError(msg)
     options = drawing(settings)
-    from flowtex import diagnostics
+    from flowtex.rendering import diagnostics
 
     diagnostics.begin_trial()
     begin()
@@ -107,7 +107,7 @@ def show(
     """
     choice, options, window = arguments(flow), drawing(look, settings), pixels(size)
     check_lines(choice, options)
-    from flowtex import diagnostics
+    from flowtex.rendering import diagnostics
 
     on_page = page is not None or not diagnostics.has_display()
     on_page = on_page or not (len(files) == 1 or _belong_together(files)) or _is_folder(files[0])

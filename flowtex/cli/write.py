@@ -55,7 +55,7 @@ def render(
     start = time.perf_counter()
     choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_picture_file(output)
-    from flowtex import diagnostics
+    from flowtex.rendering import diagnostics
 
     diagnostics.begin_trial()
     shown: dict[str, Any] = {"clock": clock}
@@ -111,7 +111,7 @@ def movie(
     choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
     check_movie_file(output, options["size"], fps, quality)
     check_lines(choice, options)
-    from flowtex import diagnostics
+    from flowtex.rendering import diagnostics
 
     diagnostics.begin_trial()
     field = load_field(files, choice)

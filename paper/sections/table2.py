@@ -46,7 +46,7 @@ def _timed(bench: Bench, name: str, field: FlowField) -> dict[str, float]:
 
 def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float]:
     """Time the first frame, which loads the textures, and the next; nothing without OpenGL."""
-    from flowtex.diagnostics import opengl_report, prefer_headless
+    from flowtex.rendering.diagnostics import opengl_report, prefer_headless
 
     prefer_headless()
     if not opengl_report().usable:
@@ -83,7 +83,7 @@ def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float
 
 
 def _table2(bench: Bench) -> Finding:
-    from flowtex.diagnostics import opengl_report
+    from flowtex.rendering.diagnostics import opengl_report
 
     flows = {"post": bench.post, "shuttle": bench.shuttle}
     # All steps of the whole vortex field take ten seconds; the quick form takes every fourth node.

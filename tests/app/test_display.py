@@ -15,9 +15,9 @@ from flowtex._util.notices import Notice
 def host(monkeypatch: pytest.MonkeyPatch, *, display: bool) -> list[Any]:
     """Let there be a display or none; return the fields of pages that are served."""
     served: list[Any] = []
-    monkeypatch.setattr("flowtex.diagnostics.has_display", lambda: display)
-    monkeypatch.setattr("flowtex.diagnostics.prefer_headless", lambda: None)
-    monkeypatch.setattr("flowtex.diagnostics.require_opengl", lambda: None)
+    monkeypatch.setattr("flowtex.rendering.diagnostics.has_display", lambda: display)
+    monkeypatch.setattr("flowtex.rendering.diagnostics.prefer_headless", lambda: None)
+    monkeypatch.setattr("flowtex.rendering.diagnostics.require_opengl", lambda: None)
     monkeypatch.setattr("flowtex.app.serve", lambda field, **_: served.append(field))
     return served
 

@@ -13,9 +13,10 @@ from cfd_files import CGNS, TIMES, box
 from page_reader import Reader
 from PIL import Image
 
-from flowtex import diagnostics, examples
+from flowtex import examples
 from flowtex.cli import commands, main
 from flowtex.cli.console import in_flags
+from flowtex.rendering import diagnostics
 from flowtex.scene.options import Appearance, FieldOptions, ViewOptions
 from flowtex.settings import TABLE
 
@@ -244,7 +245,7 @@ def test_a_missing_extra_is_told_with_its_command(
     run: Run, gyre: Path, monkeypatch: pytest.MonkeyPatch, opengl: object
 ) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    monkeypatch.setattr("flowtex.diagnostics.has_display", lambda: True)
+    monkeypatch.setattr("flowtex.rendering.diagnostics.has_display", lambda: True)
     for words in (("demo",), ("show", gyre.parent)):
         code, _, err = run(*words)
         assert code == 2 and 'pip install -e ".[app]"' in err and "trame_rca" in err

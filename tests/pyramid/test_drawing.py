@@ -145,7 +145,7 @@ def test_the_shell_shows_a_store_on_a_page(
 
     monkeypatch.setattr("flowtex.cli.page.FORKS", False)
     monkeypatch.setattr("flowtex.cli.show.serve_library", serve)
-    monkeypatch.setattr("flowtex.diagnostics.has_display", lambda: False)
+    monkeypatch.setattr("flowtex.rendering.diagnostics.has_display", lambda: False)
     assert main(["show", str(store)]) == 0
     (library,) = shown
     assert has_pyramid(library.source(library.names[0]).field())

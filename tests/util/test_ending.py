@@ -95,7 +95,7 @@ def test_a_movie_that_is_ended_leaves_nothing(tmp_path: Path, opengl: object) ->
     temporary.mkdir()
     command = ["movie", str(mesh), "-o", str(path), "--seconds", "600", "--size", "64x64"]
     process = subprocess.Popen(
-        [sys.executable, "-m", "flowtex.cli", *command],
+        [sys.executable, "-m", "flowtex", *command],
         stderr=subprocess.PIPE,
         text=True,
         env={**os.environ, "TMPDIR": str(temporary)},

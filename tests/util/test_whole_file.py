@@ -135,7 +135,7 @@ def test_a_render_that_cannot_be_written_leaves_the_old_picture(
 ) -> None:
     from flowtex.cli import main
 
-    monkeypatch.setattr("flowtex.diagnostics.require_opengl", lambda: None)
+    monkeypatch.setattr("flowtex.rendering.diagnostics.require_opengl", lambda: None)
     monkeypatch.setattr("flowtex.render", lambda field, **options: pictures()[0])
     mesh, path = tmp_path / "gyre.vts", tmp_path / "gyre.png"
     flowtex.examples.double_gyre().save(mesh)

@@ -43,8 +43,8 @@ from flowtex.app.server.sessions.registry import (
     Sessions,
     usual_limit,
 )
-from flowtex.diagnostics import has_display
 from flowtex.errors import FieldError
+from flowtex.rendering.diagnostics import has_display
 
 DOOR = Path(__file__).parents[1] / "ui" / "static" / "door.html"
 #: Minutes for which a session waits for its page.

@@ -11,7 +11,6 @@ import numpy as np
 from flowtex._util.arguments import checked_size
 from flowtex._util.array_types import Bytes
 from flowtex._util.notices import notify
-from flowtex.diagnostics import begin_trial, require_opengl
 from flowtex.errors import FieldError
 from flowtex.field.datasets.notices import notify_section
 from flowtex.plotting.component import FlowtexComponent
@@ -19,6 +18,7 @@ from flowtex.plotting.handle import FlowHandle
 from flowtex.plotting.offscreen.annotations import annotate, difference_text
 from flowtex.plotting.vtk_camera import apply_camera, look, read_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraError
+from flowtex.rendering.diagnostics import begin_trial, require_opengl
 from flowtex.scene.options import FieldOptions, Options, ViewOptions
 from flowtex.scene.scene import Scene, share_field
 from flowtex.textures.images import averaged

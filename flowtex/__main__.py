@@ -1,4 +1,4 @@
-"""``python -m flowtex.cli``, for where the script ``flowtex`` is not on the path."""
+"""``python -m flowtex``, for where the script ``flowtex`` is not on the path."""
 
 from __future__ import annotations
 

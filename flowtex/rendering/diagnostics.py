@@ -46,7 +46,7 @@ class OpenGLMissingError(RuntimeError):
     Examples
     --------
     >>> import flowtex
-    >>> from flowtex.diagnostics import OpenGLMissingError
+    >>> from flowtex.rendering.diagnostics import OpenGLMissingError
     >>> try:
     ...     picture = flowtex.render(flowtex.examples.airfoil_field(), size=(80, 60), samples=5)
     ... except OpenGLMissingError as error:
@@ -65,7 +65,7 @@ class OpenGLReport:
 
     Examples
     --------
-    >>> from flowtex.diagnostics import opengl_report
+    >>> from flowtex.rendering.diagnostics import opengl_report
     >>> opengl_report().texture_units >= 16
     True
     """
@@ -88,7 +88,7 @@ class Check:
 
     Examples
     --------
-    >>> from flowtex.diagnostics import Check
+    >>> from flowtex.rendering.diagnostics import Check
     >>> Check("OpenGL", "fail", "not found", "apt-get install libegl1").status
     'fail'
     """
@@ -141,7 +141,7 @@ def opengl_report() -> OpenGLReport:
 
     Examples
     --------
-    >>> from flowtex.diagnostics import opengl_report
+    >>> from flowtex.rendering.diagnostics import opengl_report
     >>> opengl_report().usable
     True
     """
@@ -190,7 +190,7 @@ def require_opengl() -> OpenGLReport:
 
     Examples
     --------
-    >>> from flowtex.diagnostics import require_opengl
+    >>> from flowtex.rendering.diagnostics import require_opengl
     >>> require_opengl().usable
     True
     """
@@ -245,7 +245,7 @@ def diagnose() -> list[Check]:
 
     Examples
     --------
-    >>> from flowtex.diagnostics import diagnose
+    >>> from flowtex.rendering.diagnostics import diagnose
     >>> [check.name for check in diagnose()][:4]
     ['Python', 'OpenGL', 'Display', 'Shaders']
     """

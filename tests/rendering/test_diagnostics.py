@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from flowtex import diagnostics
+from flowtex.rendering import diagnostics
 
 CRASHES = (sys.executable, "-c", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
 OK = diagnostics.Check("Thing", "ok", "there", "never shown")
