@@ -199,8 +199,8 @@ PROTOCOLS = {
     "pyramid/checks.py: ValueError",
     "pyramid/objects.py: ValueError",  # of a codec of Zarr's
     "rendering/webgl/client_data.py: IndexError",
-    "tiles/pyramid.py: KeyError",
-    "tiles/triangle_pyramid.py: KeyError",
+    "textures/tiles/pyramid.py: KeyError",
+    "textures/tiles/triangle_pyramid.py: KeyError",
 }
 
 
