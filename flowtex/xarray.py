@@ -240,7 +240,7 @@ class FlowtexAccessor:
         --------
         >>> import flowtex
         >>> import flowtex.xarray
-        >>> values = flowtex.examples.weather().flowtex.scene.probe(7.4, 46.9, level=250)
+        >>> values = flowtex.examples.weather().flowtex.probe(7.4, 46.9, level=250)
         >>> f"{values.eastward:.0f} m/s to the east, {values.northward:.0f} m/s to the north"
         '22 m/s to the east, -17 m/s to the north'
         """

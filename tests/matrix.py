@@ -135,6 +135,10 @@ VIEWS: dict[str, View] = {
     "streaklets, near triangles": View(scattered_fountain, straight(16, (0.3, 0.25)), STREAKLETS),
     "between two steps": View(swinging, MIDDLE, {"lines": "pathlines"}, time=0.55),
     "streamlines": View(swinging, MIDDLE, {"lines": "streamlines"}, time=0.55),
+    # At this moment the centre is within a cell.
+    "streamlines, near": View(
+        swinging, straight(16, (0.11, 0.32)), {"lines": "streamlines"}, time=0.55
+    ),
     "without a sign": View(lines, MIDDLE),
     "centre": View(camera=straight(64, (0.5, 0.5))),
     "centre, streaming": View(camera=straight(8, (0.5, 0.5)), settings=MOTION, clock=1.7),

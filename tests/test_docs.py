@@ -110,7 +110,7 @@ def test_the_tables_of_what_pyramids_cost_are_those_of_the_benchmark() -> None:
     assert not wrong, "run python benchmarks/pyramid.py --only-tables --docs"
 
 
-MODULES = ("", ".app", ".examples", ".probe", ".pyramid", ".xarray")
+MODULES = ("", ".app", ".examples", ".pyramid", ".scene.probe", ".xarray")
 
 
 def test_the_reference_has_every_public_name_and_each_an_example() -> None:

@@ -30,21 +30,24 @@ OF_MODULES = {"os.open", "os.replace", "shutil.copy", "shutil.move"}
 WHOLE = {
     "app/controllers/export_jobs.py: Image.fromarray(picture).save",
     "cli/write.py: Image.fromarray(picture).save",
-    "offscreen/encoders.py: av.open",
-    "offscreen/encoders.py: next(pictures).save",
+    "plotting/offscreen/encoders.py: av.open",
+    "plotting/offscreen/encoders.py: next(pictures).save",
     "trace/slices.py: np.savez_compressed",
 }
 #: ... memory, ...
 MEMORY = {
-    "offscreen/plotter.py: self._plotter.screenshot",
-    "plotting/jupyter_backend.py: plotter.screenshot",
+    "plotting/offscreen/plotter.py: self._plotter.screenshot",
+    "app/jupyter_backend.py: plotter.screenshot",
     "app/streaming/stream.py: Image.fromarray(pixels).save",
     "pyramid/workers.py: import_extra('cloudpickle', 'store').Pickler(file).dump",
     "web/preview.py: reduced.save",
     "widget/views.py: Image.fromarray(np.hstack(columns)).save",
 }
 #: ... a file in a temporary folder, or one without a name, ...
-TEMPORARY = {"app/server/uploads.py: path.open", "offscreen/encoders.py: tempfile.TemporaryFile"}
+TEMPORARY = {
+    "app/server/uploads.py: path.open",
+    "plotting/offscreen/encoders.py: tempfile.TemporaryFile",
+}
 #: ... or belongs to the system.
 SYSTEM = {
     "_util/child/worker.py: Path('/proc/self/oom_score_adj').write_text",

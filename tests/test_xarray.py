@@ -63,14 +63,14 @@ def test_values_are_told_at_a_place_of_the_earth(tmp_path: Path) -> None:
     ds = winds(lon, lat)
     ds["u"][:], ds["v"][:] = 3.0 + 0.1 * ds["lon"], -1.0
     for place, tolerance in (((4.0, 50.0), 1e-6), ((5.0, 51.0), 0.02)):  # a node, and in a cell
-        at = ds.flowtex.scene.probe(*place, projection="robinson")
+        at = ds.flowtex.probe(*place, projection="robinson")
         expected = (3.0 + 0.1 * place[0], -1.0)
         assert (at.eastward, at.northward) == pytest.approx(expected, abs=tolerance)
         assert at.lonlat == pytest.approx(place, abs=tolerance)
     for beside in ((50.0, 51.0), (5.0, 95.0)):
-        assert ds.flowtex.scene.probe(*beside, globe=True) is None
+        assert ds.flowtex.probe(*beside, globe=True) is None
     with pytest.raises(FieldError, match="y is inf; expected a finite number"):
-        ds.flowtex.scene.probe(5.0, np.inf)
+        ds.flowtex.probe(5.0, np.inf)
     assert ds.flowtex.pyramid(tmp_path / "flow.zarr", progress=False).made > 0
 
 

@@ -116,6 +116,19 @@ class FlowHandle(AppearanceAttributes):
         self._draw()
 
     @property
+    def still(self) -> bool:
+        """Whether the grains of a time-varying flow stand still unless ``motion`` moves them.
+
+        A picture of one moment is sharper so; from one frame to the next, grains should move.
+        """
+        return self._surface.view.still
+
+    @still.setter
+    def still(self, value: bool) -> None:
+        self._surface.view.still = value
+        self._draw()
+
+    @property
     def density(self) -> float:
         """Number of drawn pixels, along a side, per pixel of the settings; 1 on an ordinary screen.
 

@@ -57,6 +57,8 @@ class ViewState:
     #: How far the time has come from one destination time of the slices to the next, 0 to 1.
     between: float = 0.0
     time: float = 0.0  #: Time that is shown of a field that varies, in its own unit.
+    #: Whether the grains of a field that varies stand still, as for a picture of one moment.
+    still: bool = False
     clock: float = 0.0  #: Clock of the streaming of a steady flow, in seconds.
     #: Pixels drawn, along a side, for one that the settings speak of: a picture of twice the
     #: density has grains of twice as many pixels, and shows the same.
@@ -153,7 +155,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     finest = float(2.0 ** (np.floor(np.log2(geometry.extent)) - NOISE_DOUBLINGS))
     even = _origin_cell(geometry.local(view.focus), finest)
     sides, kernel = _direction(textures, settings)
-    moving, sparse = is_moving(textures, settings), is_sparse(textures, settings)
+    moving, sparse = is_moving(textures, settings, view), is_sparse(textures, settings)
     eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
     eye -= view.eye[3] * view.anchor
     lags = textures.lags[: view.lags]
@@ -168,7 +170,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_cell": textures.cell,
         "u_sides": sides,
         "u_unit": textures.unit,
-        "u_samples": _samples(textures, settings),
+        "u_samples": _samples(textures, settings, view),
         "u_spacing": settings.spacing,
         "u_grain": settings.grain * view.density,
         "u_kernel": KERNELS.index(kernel),
@@ -197,7 +199,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     return values
 
 
-def is_moving(textures: TextureSet, settings: Settings) -> bool:
+def is_moving(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
     """Return whether the grains change in time: with a field that varies, or by the clock.
 
     A sign-free field has no forward, so nothing streams; the paper's textures stand still.
@@ -205,7 +207,7 @@ def is_moving(textures: TextureSet, settings: Settings) -> bool:
     if textures.paper is not None:
         return False
     streams = settings.motion != "off" and not textures.geometry.field.sign_free
-    return textures.store.steps > 1 or streams
+    return streams or (textures.store.steps > 1 and not view.still)
 
 
 def is_sparse(textures: TextureSet, settings: Settings) -> bool:
@@ -245,7 +247,7 @@ def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> in
         return None
     facing = abs(geometry.frame[2] @ view.eye[:3]) / np.linalg.norm(view.eye[:3])
     pixel = view.pixel / max(float(facing), 1e-30)
-    sides, samples = _direction(textures, settings)[0], _samples(textures, settings)
+    sides, samples = _direction(textures, settings)[0], _samples(textures, settings, view)
     count = samples // 2 if sides == 2 else samples - 1
     longest = count * _distance(textures, settings, view, pixel)
     if has_arrows(textures, settings):
@@ -276,9 +278,9 @@ def _pixel_at(textures: TextureSet, view: ViewState, extents: float) -> float:
     return view.pixel * gap / float(np.linalg.norm(focus))
 
 
-def _samples(textures: TextureSet, settings: Settings) -> int:
+def _samples(textures: TextureSet, settings: Settings, view: ViewState) -> int:
     """Return the number of samples along a path."""
-    return 2 * settings.samples - 1 if is_moving(textures, settings) else settings.samples
+    return 2 * settings.samples - 1 if is_moving(textures, settings, view) else settings.samples
 
 
 def _distance(textures: TextureSet, settings: Settings, view: ViewState, pixel: float) -> float:

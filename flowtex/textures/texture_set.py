@@ -11,7 +11,7 @@ layer                 first three channels                                   fou
 0                     slope at lag zero                                      unit of lag
 1 ... M               slopes of the backward slices                          1: reach; 2: speed; 3
 M + 1 ... 2 M         slopes of the forward slices, where there are any      M + 1: reach
-the last              of a steady field: layer 0 in cells, two channels      speed
+the last              of streamlines: layer 0 in cells, two channels         speed
 ====================  =====================================================  =================
 
 The fourth channels of layers 3 and M + 3 hold the uncertainty of the direction, from 0 to 1, if the
@@ -167,7 +167,8 @@ class TextureSet:
     @property
     def in_cells(self) -> bool:
         """Whether there is the last layer, of the velocity in cells."""
-        return self.store.steps == 1 and self.paper is None and not self.geometry.field.sign_free
+        alike = self.store.streamlines and not self.geometry.field.sign_free
+        return alike and self.paper is None
 
     @cached_property
     def least_unit(self) -> float:
@@ -181,10 +182,15 @@ class TextureSet:
 
     @cached_property
     def critical_cell(self) -> float:
-        """Length of the longest cell whose nodes do not agree on the direction; 0 if all do."""
+        """Length of the longest cell whose nodes may not agree on the direction; 0 if all do.
+
+        Of a field that varies, whose steps may be read late, any cell may be one of these.
+        """
         if not self.in_cells:
             return 0.0
         field = self.geometry.field
+        if not field.steady:
+            return float(field.surface.cell_lengths[field.surface.cells].max(initial=0.0))
         flow, tangents = field.index_velocity.components[0], field.surface.tangents
         along = flow[..., :1] * tangents[0] + flow[..., 1:] * tangents[1]
         length = norm(along)[..., None]

@@ -24,6 +24,18 @@ void flowtexSetBy(vec3 dx, vec3 dy, vec2 byX, vec2 byY)
 }
 
 #ifdef FLOWTEX_CELLS
+#ifndef FLOWTEX_TRIANGLES
+vec4 flowtexFetch(ivec2 node, int layer)
+{
+  ivec3 texel = ivec3(clamp(node, ivec2(0), ivec2(u_slicesSize) - 1), layer);
+#ifdef FLOWTEX_UNSTEADY
+  return mix(texelFetch(u_slices, texel, 0), texelFetch(u_slicesNext, texel, 0), u_between);
+#else
+  return texelFetch(u_slices, texel, 0);
+#endif
+}
+#endif
+
 // Basis functions of the velocity, for a point x, y cells away: 1, x, y and x y between four
 // nodes; between the three of a triangle x and y are shares of its corners, and there is no x y.
 #ifdef FLOWTEX_TRIANGLES
@@ -85,9 +97,9 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
       off = max(off, abs(dot(flowtexCellNormal, slope)) / max(length(slope), FLOWTEX_LEAST_SPEED));
     }
 #else
-    ivec2 node = clamp(ivec2(floor(at)) + ivec2(n & 1, n >> 1), ivec2(0), ivec2(u_slicesSize) - 1);
-    vec4 tangent = texelFetch(u_slices, ivec3(node, 0), 0);
-    vec4 turn = texelFetch(u_slices, ivec3(node, u_rateLayer), 0);
+    ivec2 node = ivec2(floor(at)) + ivec2(n & 1, n >> 1);
+    vec4 tangent = flowtexFetch(node, 0);
+    vec4 turn = flowtexFetch(node, u_rateLayer);
     velocity[n] = tangent.xyz * turn.w;
     rate[n] = turn.xy * (turn.w / (tangent.w * u_cell));
     float cells = length(rate[n]);

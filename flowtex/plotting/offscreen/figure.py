@@ -239,15 +239,29 @@ class FlowImage(AxesImage):
         # Pixels have no values, but a colour bar asks for some.
         self.set_data([[scene.scalar_limits[0] if scene.scalar_name else 0.0]])
         self.mouseover = False
-        look = scene.appearance
         if scene.scalar_name is not None:
-            # A word in matplotlib, and a bool in its types.
-            colours: Any = ListedColormap(scene.legend_colours[:, :3] / 255)
-            colours.colorbar_extend = EXTENDED.get(scene.beyond, "neither")
-            self.set_cmap(colours)
-            self.set_norm((LogNorm if look.log_scale else Normalize)(*scene.legend_limits))
+            super().set_cmap(self._bar_colours())
+            log_scale = scene.appearance.log_scale
+            self.set_norm((LogNorm if log_scale else Normalize)(*scene.legend_limits))
         self._first_clim = self.get_clim()
         self._title = ""
+
+    def _bar_colours(self) -> Any:
+        """Return the colours of a colour bar, which are those of the picture."""
+        # The colours to extend a bar with are a word in matplotlib, and a bool in its types.
+        colours: Any = ListedColormap(self._scene.legend_colours[:, :3] / 255)
+        colours.colorbar_extend = EXTENDED.get(self._scene.beyond, "neither")
+        return colours
+
+    def set_cmap(self, cmap: Any) -> None:
+        """Draw the scalars with another colour map, by its name or a colour map of matplotlib."""
+        if self._scene.scalar_name is None:
+            return
+        look, time = replace(self._options.appearance, cmap=cmap), self.time
+        self._options = replace(self._options, appearance=look)
+        self._scene = Scene.from_options(self._scene.field, self._options)
+        self._scene.time = time
+        super().set_cmap(self._bar_colours())
 
     def _follow_scales(self, scales: AxesScales | None) -> None:
         """Show the flow as the scales of the axes take it."""
@@ -321,13 +335,17 @@ class FlowImage(AxesImage):
         ax.set(xlabel=ax.get_xlabel() or section.x, ylabel=ax.get_ylabel() or section.y)
 
     def _tell(self) -> None:
-        """Show level and time of data of the Earth in the title, unless it has been set."""
-        field = self._scene.field
-        if self._projection is not None and self.axes.get_title() == self._title:
+        """Show level and time of data of the Earth in the title, unless one has been set."""
+        field, ax = self._scene.field, self.axes
+        if self._projection is None or ax.get_title() != self._title:
+            return
+        if ax.get_title("left") or ax.get_title("right"):
+            self._title = ""
+        else:
             dated = len(field.times) > 1 or field.start is not None
             time = [time_text(field, self.time)] if dated else []
             self._title = ", ".join([*filter(None, [field.name]), *time])
-            self.axes.set_title(self._title)
+        ax.set_title(self._title)
 
     def make_image(
         self,
@@ -337,6 +355,7 @@ class FlowImage(AxesImage):
     ) -> tuple[Any, float, float, Any]:
         """Return the pixels of the axes and their position, for matplotlib."""
         del renderer, unsampled
+        self._tell()  # another title may have been set meanwhile
         if self._projection is None:
             straight = self.axes.get_aspect() != "auto" and _kind(self.axes) == LINEAR
             try:
@@ -355,7 +374,8 @@ class FlowImage(AxesImage):
         width, height = (int(n) for n in np.maximum(high - low, 1))
         density = self.axes.figure.dpi * magnification / USUAL_DPI
         shown = (*corners.ravel(), width, height, density, self.time, self.clock)
-        shown += (self.axes.get_facecolor(), *self.get_clim())
+        look = self._options.appearance
+        shown += (self.axes.get_facecolor(), *self.get_clim(), look.cmap, self.get_alpha())
         if shown != self._shown:
             self._picture = self._draw(corners, (width, height), density)
             self._shown = shown
@@ -373,6 +393,8 @@ class FlowImage(AxesImage):
         look = self._options.appearance
         if self.get_clim() != self._first_clim:  # by matplotlib's own means
             look = replace(look, clim=self.get_clim())
+        if (alpha := self.get_alpha()) is not None:
+            look = replace(look, opacity=look.opacity * float(alpha))
         view = ViewOptions(
             camera=self._camera(corners.mean(axis=0), float(spans[1])),
             background=self.axes.get_facecolor(),
@@ -383,6 +405,7 @@ class FlowImage(AxesImage):
             size=(width, height),
             supersampling=self._supersampling,
             density=density,
+            still=True,
         )
         with closing(plotter), warnings.catch_warnings():
             warnings.filterwarnings("ignore", NOTHING_SEEN)  # axes may be elsewhere

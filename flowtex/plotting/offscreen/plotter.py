@@ -39,8 +39,8 @@ NOTHING_SEEN = (
 class OffscreenPlotter:
     """A plotter without a window that draws pictures of a flow.
 
-    Parameters and errors are those of :func:`flowtex.render`; ``density`` is that of the handles,
-    which are the textures of the views.
+    Parameters and errors are those of :func:`flowtex.render`; ``density`` and ``still`` are those
+    of the handles, which are the textures of the views.
     """
 
     def __init__(
@@ -52,6 +52,7 @@ class OffscreenPlotter:
         supersampling: int = 1,
         margin: float = CAMERA_LIMITS.margin,
         density: float = 1.0,
+        still: bool = False,
         annotations: bool = False,
         scalar_bar_args: Mapping[str, Any] | None = None,
     ) -> None:
@@ -87,7 +88,7 @@ class OffscreenPlotter:
             window = self._plotter.render_window
             window.SetDPI(window.GetDPI() * supersampling)
             for handle in self.handles:
-                handle.density = supersampling * density
+                handle.density, handle.still = supersampling * density, still
             point_camera(self._plotter, self.handles[0].scene, options.view, margin)
         except BaseException:
             self._plotter.close()

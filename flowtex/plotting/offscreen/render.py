@@ -89,6 +89,7 @@ def render(
         size=size,
         supersampling=supersampling,
         margin=margin,
+        still=True,
         annotations=annotations,
         scalar_bar_args=scalar_bar_args,
     )

@@ -243,7 +243,7 @@ class FlowLayer:
 
     def _write_text(self) -> None:
         unsteady = self._textures.store.steps > 1
-        moving = is_moving(self._textures, self._settings)
+        moving = is_moving(self._textures, self._settings, self.view)
         near = is_near(self._textures, self._settings, self.view)
         sparse = is_sparse(self._textures, self._settings)
         variant = variants(

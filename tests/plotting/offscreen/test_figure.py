@@ -203,6 +203,47 @@ def test_a_colour_bar_has_the_range_and_the_colours(figure: Figure) -> None:
     pixels(figure)
 
 
+def of_one_place(figure: Figure, image: Any) -> Any:
+    """Picture of an image, whose axes leave their place to others."""
+    shot = np.asarray(image.make_image(None)[0])
+    image.axes.remove()
+    return shot
+
+
+def test_another_colour_map_is_that_of_picture_and_bar(figure: Figure) -> None:
+    field = flowtex.examples.double_gyre_field(shape=(11, 21))
+    image = flowtex.axes(figure.add_subplot(), field, samples=3)
+    image.make_image(None)
+    image.set_cmap("magma")
+    shot = of_one_place(figure, image)
+    expected = flowtex.axes(figure.add_subplot(), field, samples=3, cmap="magma")
+    share = np.linspace(0, 1)
+    np.testing.assert_array_equal(image.cmap(share), expected.cmap(share))
+    np.testing.assert_array_equal(shot, of_one_place(figure, expected))
+
+
+def test_alpha_is_opacity(figure: Figure) -> None:
+    field = flowtex.examples.double_gyre_field(shape=(11, 21))
+    image = flowtex.axes(figure.add_subplot(), field, samples=3)
+    image.make_image(None)
+    image.set_alpha(0.3)
+    shot = of_one_place(figure, image)
+    expected = flowtex.axes(figure.add_subplot(), field, samples=3, opacity=0.3)
+    np.testing.assert_array_equal(shot, of_one_place(figure, expected))
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_a_title_at_the_left_replaces_that_of_the_data(figure: Figure, *, before: bool) -> None:
+    ax = figure.add_subplot()
+    if before:
+        ax.set_title("(a)", loc="left")
+    flowtex.axes(ax, flowtex.examples.ocean(), samples=3)
+    assert before or ax.get_title()
+    ax.set_title("(a)", loc="left")
+    pixels(figure)
+    assert not ax.get_title()
+
+
 def section() -> tuple[Floats, Floats]:
     """Positions and velocity of cells in a section whose height counts by the logarithm."""
     x, y = np.meshgrid(np.linspace(-60, 60, 61), np.logspace(0, 3, 41))

@@ -202,10 +202,11 @@ def test_a_field_that_varies_is_shown_from_first_to_last(opengl: object) -> None
     field = shear(steps=4, turn=1.5)
     moments = frame_times(field, Settings(), fps=2, seconds=3)
     assert moments.times == pytest.approx(np.linspace(0, 3, 6)) and not moments.closed
-    drawn = list(frames(field, size=SIZE, fps=2, seconds=3, samples=5))
+    look = {"size": SIZE, "samples": 5}
+    drawn = list(frames(field, fps=2, seconds=3, **look))
     assert len(drawn) == 6
     for n, time in ((0, 0.0), (5, 3.0)):
-        assert (drawn[n] == flowtex.render(field, size=SIZE, time=time, samples=5)).all()
+        assert (drawn[n] == flowtex.render(field, motion="speed", time=time, **look)).all()
 
 
 def test_a_period_leaves_its_last_time_out() -> None:

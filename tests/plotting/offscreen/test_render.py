@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from flows import swinging
 
 import flowtex
 from flowtex import FlowField, TraceSlices, examples
@@ -140,3 +141,14 @@ def test_the_first_view_traces_what_it_needs_and_another_one_the_rest(traced: li
     # What was seen before makes no difference.
     assert np.array_equal(first, flowtex.render(field, size=(320, 240), samples=9))
     assert len(traced) == 2 and len(kept.store.at(0, lags).lags) == lags
+
+
+def test_a_picture_of_one_moment_is_that_of_a_steady_flow() -> None:
+    field = swinging()
+    look = {"size": (160, 120), "lines": "streamlines", "clim": (0, 1.5), "fade": 0.0}
+    shot = flowtex.render(field, time=0.4, **look).astype(int)
+    del look["lines"]
+    alone = flowtex.render(field.at_step(1), **look).astype(int)
+    assert np.abs(shot - alone).mean() < 0.5
+    moving = flowtex.render(field, time=0.4, lines="streamlines", motion="speed", **look)
+    assert np.abs(moving - alone).mean() > 5
