@@ -116,8 +116,10 @@ def test_where_the_flow_does_not_turn_no_view_is_near() -> None:
     points, triangles = random_plane(np.random.default_rng(4), 400)
     scattered_wind = FlowField.from_triangles(points, triangles, 1 + points[:, :2])
     assert not is_near(Scene(scattered_wind).textures, Settings(), ViewState())
-    for field in (swinging(), lines()):
-        assert not is_near(Scene(field).textures, Settings(), ViewState())
+    assert not is_near(Scene(lines()).textures, Settings(), ViewState())
+    for settings in (Settings(lines="pathlines"), Settings(lines="streamlines")):
+        textures = Scene(swinging(), settings).textures
+        assert is_near(textures, settings, ViewState()) == (settings.lines == "streamlines")
 
 
 def test_in_perspective_the_nearest_point_counts() -> None:

@@ -51,6 +51,8 @@ FOLDER = Path(__file__).resolve().parents[2] / "client" / "tests"
 
 #: Parts of the header that the client's uniforms come from.
 NEEDED = ("variant", "geometry", "slices", "paper", "constants", "settings")
+#: What only Python knows of a view.
+PYTHONS = ("lags", "levels", "still")
 
 
 @cache
@@ -107,7 +109,7 @@ def uniforms_of(name: str) -> dict[str, Any]:
         "header": {key: header[key] for key in NEEDED},
         # A browser traces the lags that it draws with, with all mip levels, and has no number of
         # either.
-        "view": plain({k: value for k, value in vars(view).items() if k not in ("lags", "levels")}),
+        "view": plain({k: value for k, value in vars(view).items() if k not in PYTHONS}),
         "noise": noise,
         "moving": values.pop("moving"),
         "near": values.pop("near"),
