@@ -552,7 +552,7 @@ def noise_of(seed: int) -> list[dict[str, Any]]:
     rng = np.random.default_rng(seed)
     scene = Scene(gyre(9, 5), Settings(seed=seed))
     focus = np.array([0.7, 0.2, 0.0])
-    view = ViewState(focus, np.zeros(3), np.array([0.0, 0.0, 1.0, 0.0]), 0.0, 0.0, 0.0, 1.0)
+    view = ViewState(focus)
     values = uniforms(scene.textures, scene.settings, view)
     names = [name for name in values if name.startswith("u_noise")]
     told = {name: plain(values[name]) for name in [*names, "u_seed"]}

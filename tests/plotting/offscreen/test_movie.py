@@ -202,7 +202,7 @@ def test_a_field_that_varies_is_shown_from_first_to_last(opengl: object) -> None
     field = shear(steps=4, turn=1.5)
     moments = frame_times(field, Settings(), fps=2, seconds=3)
     assert moments.times == pytest.approx(np.linspace(0, 3, 6)) and not moments.closed
-    look = {"size": SIZE, "samples": 5}
+    look: dict[str, Any] = {"size": SIZE, "samples": 5}
     drawn = list(frames(field, fps=2, seconds=3, **look))
     assert len(drawn) == 6
     for n, time in ((0, 0.0), (5, 3.0)):
