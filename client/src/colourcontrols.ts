@@ -1,6 +1,6 @@
 // Controls of the appearance: what the surface is coloured by, the map, its range, and lines of the Earth.
 
-import { rampOf, mapOf, type ColourChoice } from "./colours.ts";
+import { choiceOf, rampOf, mapOf, type ColourChoice } from "./colours.ts";
 import { dom, numberText } from "./dom.ts";
 import type { Lifetime } from "./lifetime.ts";
 import {
@@ -54,7 +54,8 @@ export class ColourControls {
     const { scalars, swatches, ends, auto } = this;
     const { lifetime } = viewer;
     lifetime.listen(scalars, "change", () => {
-      viewer.chooseColours({ scalars: scalars.value === PLAIN ? false : scalars.value, clim: null });
+      const name = scalars.value === PLAIN ? false : scalars.value;
+      if (viewer.header) viewer.chooseColours(choiceOf(viewer.header, name));
     });
     for (const end of ends) lifetime.listen(end, "change", () => this.takeRange());
     lifetime.listen(auto, "click", () => viewer.chooseColours({ clim: null }));

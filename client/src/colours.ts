@@ -34,6 +34,13 @@ export function mapOf(header: Header, maps: Data, name: string): Uint8Array {
   return table;
 }
 
+/** The choice of other scalars: a map by default is then that of these. */
+export function choiceOf({ scalars }: Header, name: string | false): ColourChoice {
+  const [before, after] = [scalars.name, name].map((each) => scalars.choices.find((one) => one.name === each));
+  const cmap = after?.cmap !== before?.cmap && scalars.cmap === before?.cmap ? after?.cmap : undefined;
+  return { scalars: name, clim: null, ...(cmap && { cmap }) };
+}
+
 /** Other colours, where no host makes them: what of the header changes, and the map. */
 export function recoloured(
   header: Header,

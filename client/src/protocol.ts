@@ -326,7 +326,18 @@ export interface Header {
     /** Number of the scalar among those of the field, and what can be chosen in its place. */
     number: number;
     /** What colours can show: the ends of its colours by default, and of its values. */
-    choices: { name: string; label: string; unit: string; low: number; high: number; least: number; most: number; steps: number }[];
+    choices: {
+      name: string;
+      label: string;
+      unit: string;
+      /** The map by default, which older stores do not name. */
+      cmap?: string;
+      low: number;
+      high: number;
+      least: number;
+      most: number;
+      steps: number;
+    }[];
     /** Whether the map is logarithmic, and whether its range is automatic. */
     log: boolean;
     auto: boolean;

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { mapOf, meanColour, rampOf, recoloured } from "../src/colours.ts";
+import { choiceOf, mapOf, meanColour, rampOf, recoloured } from "../src/colours.ts";
 import { shareOf, type Header, type Settings, type Shading } from "../src/protocol.ts";
 
 interface Case {
@@ -31,6 +31,18 @@ const header = {
     ...{ maps: ["viridis", "coolwarm"], diverging: ["coolwarm"], log: false, bar: true, steps: 1 },
   },
 } as unknown as Header;
+
+test("a map by default follows the scalars, and one that was chosen does not", () => {
+  const [speed, pressure] = header.scalars.choices;
+  const choices = [{ ...speed, cmap: "viridis" }, { ...pressure, cmap: "coolwarm" }];
+  const named = (cmap: string, name: string) =>
+    ({ ...header, scalars: { ...header.scalars, choices, cmap, name } }) as Header;
+  assert.equal(choiceOf(named("viridis", "speed"), "p").cmap, "coolwarm");
+  assert.equal(choiceOf(named("coolwarm", "p"), "speed").cmap, "viridis");
+  assert.equal(choiceOf(named("magma", "speed"), "p").cmap, undefined);
+  assert.equal(choiceOf(named("viridis", "speed"), false).cmap, undefined);
+  assert.equal(choiceOf(header, "p").cmap, undefined);
+});
 
 test("what is chosen is what the surface is coloured by", () => {
   const changed = (choice: Parameters<typeof recoloured>[1]) => {

@@ -11,7 +11,8 @@ from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Bytes, Floats
 from flowtex.errors import FieldError
 
-DEFAULT_CMAP = "viridis"
+#: Colour maps by default: of most values, and of those around zero.
+DEFAULT_CMAP, SIGNED_CMAP = "viridis", "RdBu_r"
 #: Entries of a colour map.
 ENTRIES = 256
 #: Colour maps to choose from: even steps of lightness first, those that diverge after them.

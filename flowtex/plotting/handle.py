@@ -16,7 +16,8 @@ from flowtex.plotting.scalar_bar import SCALAR_BAR, arrange_with
 from flowtex.plotting.structure_overlay import StructureOverlay
 from flowtex.rendering.constants import AMBIENT_LIGHT, DIFFUSE_LIGHT
 from flowtex.rendering.vtk import FlowSurface, surface_mesh, use_flow_mapper
-from flowtex.scene.options import NO_VALUE_COLOR, Appearance, AppearanceAttributes, FieldOptions
+from flowtex.scene.attributes import AppearanceAttributes
+from flowtex.scene.options import NO_VALUE_COLOR, Appearance, FieldOptions
 from flowtex.scene.scene import Change, Scene, share_field
 
 #: A lit surface: dark sides stay bright enough to read the texture there.

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from flowtex._util.arguments import is_number, near_names
-from flowtex._util.colours import DEFAULT_CMAP, colour_table, rgb
+from flowtex._util.colours import DEFAULT_CMAP, SIGNED_CMAP, colour_table, rgb
 from flowtex._util.notices import notify
 from flowtex._util.written import (
     NUMBER,
@@ -37,6 +37,7 @@ from flowtex.errors import FieldError, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.datasets import is_dataset
 from flowtex.field.datasets.pairs import two_names
+from flowtex.field.derived import SIGNED
 from flowtex.field.uncertainty import with_uncertainty
 from flowtex.rendering.camera import Camera
 from flowtex.settings import TABLE, Settings, SettingsError, setting
@@ -240,6 +241,11 @@ class FieldOptions:
             raise FieldError(msg)
 
 
+def default_cmap(scalars: Any) -> str:
+    """Return the colour map of scalars for which none was chosen."""
+    return SIGNED_CMAP if scalars in SIGNED else DEFAULT_CMAP
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays are not compared
 class Appearance:
     """How the surface looks under the texture."""
@@ -253,8 +259,12 @@ class Appearance:
     cmap: Any | None = _option(
         None,
         "Colour map: a name, a matplotlib map, a PyVista lookup table, or an array (N, 3 or 4), "
-        "uint8 or from 0 to 1; viridis by default.",
-        Form("Colour map, a matplotlib name; viridis by default."),
+        "uint8 or from 0 to 1. By default it is RdBu_r for vorticity, divergence and okubo_weiss, "
+        "and viridis for other values.",
+        Form(
+            "Colour map, a matplotlib name; by default RdBu_r for vorticity, divergence and "
+            "okubo_weiss, otherwise viridis."
+        ),
     )
     clim: tuple[float, float] | str | None = _option(
         None,
@@ -314,7 +324,7 @@ class Appearance:
         elif self.scalars is not False and not isinstance(self.scalars, str):
             faults.append(f"scalars is {self.scalars!r}; expected the name of an array, or False")
         if self.cmap is None:
-            object.__setattr__(self, "cmap", DEFAULT_CMAP)
+            object.__setattr__(self, "cmap", default_cmap(self.scalars))
         if not (is_number(self.opacity) and 0 <= self.opacity <= 1):
             faults.append(f"opacity is {self.opacity!r}; expected a number from 0 to 1")
         if self.clim is not None and not (isinstance(self.clim, str) and self.clim == ROBUST):
@@ -332,7 +342,7 @@ class Appearance:
         if self.land is False:
             object.__setattr__(self, "land", None)
         checks = (
-            (colour_table, self.cmap, DEFAULT_CMAP),
+            (colour_table, self.cmap, default_cmap(self.scalars)),
             (rgb, self.color, PLAIN_COLOR),
             (rgb, LAND_COLOR if self.land is None else self.land, LAND_COLOR),
         )
@@ -343,6 +353,12 @@ class Appearance:
                 except ValueError as error:
                     faults.append(str(error))
         raise_faults(faults)
+
+    def changed(self, **changes: Any) -> Appearance:
+        """Return another appearance; a colour map by default follows the scalars."""
+        if isinstance(self.cmap, str) and self.cmap == default_cmap(self.scalars):
+            changes = {"cmap": None, **changes}
+        return replace(self, **changes)
 
     @property
     def scalar_name(self) -> str | None:
@@ -514,68 +530,6 @@ def option_form(kind: type, name: str) -> Form:
     """Return how the values of a field of an option class are written."""
     form: Form = kind.__dataclass_fields__[name].metadata["form"]  # type: ignore[attr-defined]
     return form
-
-
-#: What of the appearance is an attribute; the image is changed by a method.
-LIVE = tuple(name for name in Appearance.__dataclass_fields__ if name != "image")
-
-
-def _attribute(name: str) -> Any:
-    def get(self: AppearanceAttributes) -> Any:
-        return getattr(self.scene.appearance, name)
-
-    def change(self: AppearanceAttributes, value: Any) -> None:
-        self.scene.appearance = replace(self.scene.appearance, **{name: value})
-
-    return property(get, change, doc=option_text(Appearance, name))
-
-
-class AppearanceAttributes:
-    """The field, settings and appearance of a scene as attributes of what shows it.
-
-    Each of the appearance is to be set at any time; ``{appearance}`` in the docstring of a class
-    becomes their names.
-
-    Once it is made, other attributes cannot be set, so that a slip of the pen is not a silent one.
-    """
-
-    scene: Any
-    _is_made = False
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        cls.__doc__ = (cls.__doc__ or "").replace("{appearance}", ", ".join(LIVE))
-
-    if TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any: ...
-
-    @property
-    def field(self) -> FlowField:
-        """The flow."""
-        field: FlowField = self.scene.field
-        return field
-
-    @property
-    def settings(self) -> Settings:
-        """Every setting, live."""
-        settings: Settings = self.scene.settings
-        return settings
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        """Set an attribute that there is; the error for another one names those that are near."""
-        is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
-        if self._is_made and not is_known:
-            own = [n for n in dir(type(self)) if not n.startswith("_")]
-            of_settings = f"it is a setting: use settings.{name}"
-            hint = of_settings if name in TABLE else near_names(name, own)
-            msg = f"{type(self).__name__} has no attribute {name!r}; {hint}"
-            raise AttributeError(msg)
-        super().__setattr__(name, value)
-
-
-for _name in LIVE:
-    setattr(AppearanceAttributes, _name, _attribute(_name))
 
 
 def _described(text: str, options: list[Any]) -> str:

@@ -488,7 +488,7 @@ def _look_beside(first: Scene, own: dict[str, Any], field: FlowField) -> Appeara
         own = {**own, "scalars": SPEED}
     if "scalars" in own:
         own = {"clim": None, **own}
-    return replace(first.appearance, **own)
+    return first.appearance.changed(**own)
 
 
 def follow(

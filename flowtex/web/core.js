@@ -43,27 +43,29 @@ zeros(9),frame);return transformMat3(result(),v(a),columns)}function fromFrame(f
 a),frame)}function clamp(x,low,high){return Math.min(Math.max(x,low),high)}var OWN="own cmap",SRGB={knee:.04045,slope:12.92,offset:.055,scale:1.055,power:2.4};function coloursOf(header){let{scalars,
 colour,background,lighting,opacity,earth}=header;return{scalars,colour,background,lighting,opacity,earth}}function mapOf(header,maps,name){
 let[first,count2]=[header.scalars.maps.indexOf(name)*3*256,256],table=new Uint8Array(4*count2).fill(255);for(let n=0;n<count2;n+=
-1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function recoloured(header,choice,parts){let scalars={
-...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===choice.
-scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,unit:unit2,
-steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.high]=
-choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{low,high}=scalars.
-choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,high);[scalars.
-low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.earth?.coastlines,graticule=header.earth?.graticule}=choice,
-earth=header.earth&&{...header.earth,coastlines,graticule},{opacity=header.opacity}=choice,colours={scalars,earth,opacity},
-maps=parts.get("maps");if(!choice.cmap||!maps)return{colours,part:null};let part={name:"cmap",data:mapOf(header,maps.data,
-choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.knee?c/SRGB.slope:
-((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/SRGB.slope?c*SRGB.
-slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k]);function meanColour(colour,settings,shading){
-let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),
-Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(
-cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(
-value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/
-base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.
-fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function rampOf(map,header,settings,stops){return`\
-linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*Math.round(n/(stops-1)*255),colour=[...map.slice(
-first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(colour,settings,header.constants.shading)).map(
-Math.round).join(" ")})`}).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
+1)for(let k=0;k<3;k+=1)table[4*n+k]=maps[first+3*n+k];return table}function choiceOf({scalars},name){let[before,after]=[
+scalars.name,name].map(each=>scalars.choices.find(one=>one.name===each)),cmap=after?.cmap!==before?.cmap&&scalars.cmap===
+before?.cmap?after?.cmap:void 0;return{scalars:name,clim:null,...cmap&&{cmap}}}function recoloured(header,choice,parts){
+let scalars={...header.scalars};choice.scalars===!1&&(scalars.name=null);let number=scalars.choices.findIndex(({name})=>name===
+choice.scalars);if(number>=0){let{name,label,unit:unit2,steps}=scalars.choices[number];Object.assign(scalars,{name,label,
+unit:unit2,steps,number,auto:!0})}if(choice.cmap&&(scalars.cmap=choice.cmap),Array.isArray(choice.clim)&&([scalars.low,scalars.
+high]=choice.clim),choice.clim!==void 0&&(scalars.auto=!choice.clim),scalars.auto&&scalars.choices[scalars.number]){let{
+low,high}=scalars.choices[scalars.number],widest=low<0&&high>0&&scalars.diverging.includes(scalars.cmap),end=Math.max(-low,
+high);[scalars.low,scalars.high]=widest?[-end,end]:[low,high]}let{coastlines=header.earth?.coastlines,graticule=header.earth?.
+graticule}=choice,earth=header.earth&&{...header.earth,coastlines,graticule},{opacity=header.opacity}=choice,colours={scalars,
+earth,opacity},maps=parts.get("maps");if(!choice.cmap||!maps)return{colours,part:null};let part={name:"cmap",data:mapOf(
+header,maps.data,choice.cmap),shape:[256,4],digest:`${OWN} ${choice.cmap}`};return{colours,part}}var toLinear=c=>c<SRGB.
+knee?c/SRGB.slope:((c+SRGB.offset)/SRGB.scale)**SRGB.power;function fromLinear(x){let c=clamp(x,0,1);return c<SRGB.knee/
+SRGB.slope?c*SRGB.slope:SRGB.scale*c**(1/SRGB.power)-SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+
+v2[2]*m[6+k]);function meanColour(colour,settings,shading){let{values}=shading,[[dark,light],[range,slope]]=[shading.base,
+shading.tone],[strength,contrast]=[Number(settings.strength),Number(settings.contrast)],cones=times(colour.map(c=>toLinear(
+c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(cones,shading.toLab),base=lightness+strength*(dark+(light-
+dark)*lightness-lightness),mean=[0,0,0];return values.forEach(value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(
+base+range*strength*tone,0,1),room=shown<base?shown/base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],
+shading.fromLab);times(roots.map(x=>x**3),shading.fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),
+mean}function rampOf(map,header,settings,stops){return`linear-gradient(90deg, ${Array.from({length:stops},(_,n)=>{let first=4*
+Math.round(n/(stops-1)*255),colour=[...map.slice(first,first+3)];return`rgb(${(header.paper?.picture??!1?colour:meanColour(
+colour,settings,header.constants.shading)).map(Math.round).join(" ")})`}).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,tangent=degrees=>Math.tan(degrees*Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
 this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
 state;return parallel?half:this.distance*tangent(angle)}get distance(){return length2(subtract2(this.state.focal_point,this.
@@ -579,33 +581,33 @@ alue"].map(name=>dom("input",{type:"number",step:"any","aria-label":name}));auto
 ["auto"]);robust=dom("button",{type:"button",class:"link"},["robust"]);log=dom("input",{type:"checkbox",role:"switch"});opacity=dom(
 "input",{type:"range",min:"0",max:"1",step:"0.05"});logRow=labelled("Log scale",this.log);opacityRow=labelled("Opacity",
 this.opacity);mapRow;rangeRow;lines=dom("div",{class:"colours"});constructor(viewer){this.viewer=viewer;let{scalars,swatches,
-ends:ends2,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{viewer.chooseColours({scalars:scalars.value===
-PLAIN?!1:scalars.value,clim:null})});for(let end of ends2)lifetime.listen(end,"change",()=>this.takeRange());lifetime.listen(
-auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(this.robust,"click",()=>viewer.chooseColours({clim:"\
-robust"})),lifetime.listen(this.log,"change",()=>viewer.chooseColours({log_scale:this.log.checked})),lifetime.listen(this.
-opacity,"input",()=>viewer.chooseColours({opacity:this.opacity.valueAsNumber})),this.robust.title="Ignore the lowest and\
- the highest values.",lifetime.listen(swatches,"click",event=>{let name=event.target.dataset.cmap;name&&viewer.chooseColours(
-{cmap:name})});let row2=(name,...fields)=>dom("div",{class:"row"},[dom("span",{class:"name"},[name]),...fields]);this.rangeRow=
-row2("Range",dom("span",{class:"between"},[...ends2,auto,this.robust])),this.mapRow=row2("Colour map",swatches),this.mapRow.
-classList.add("ranged"),this.opacityRow.classList.add("ranged"),this.element.append(row2("Colour by",scalars),this.mapRow,
-this.rangeRow,this.logRow,this.opacityRow)}get rows(){return[this.element,this.lines]}updateLines(){let{header,parts,lifetime}=this.
-viewer,names=EARTH_LINES.filter(name=>header?.earth&&parts.has(name));this.lines.hidden=!names.length,this.lines.children.
-length!==names.length&&this.lines.replaceChildren(...names.map(name=>{let input=dom("input",{type:"checkbox",role:"switc\
-h"});lifetime.listen(input,"change",()=>this.viewer.chooseColours({[name]:input.checked}));let label=dom("span",{class:"\
-name"},[LINE_NAMES[name]]);return dom("label",{class:"row","data-lines":name},[label,input])})),names.forEach((name,n)=>{
-let input=this.lines.children[n].querySelector("input");input&&(input.checked=header?.earth?.[name]??!1)})}update(){let{
-header,parts}=this.viewer;this.updateLines();let maps=parts.get("maps");if(this.element.hidden=!header?.scalars.choices.
-length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,auto,cmap}=header.scalars,options=[...choices,
-{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(...options.map(each=>dom("option",{value:each.name},[each.label]))),
-this.scalars.value=name??PLAIN;let isHosted=this.viewer.options.onColours!==void 0;this.mapRow.hidden=this.rangeRow.hidden=
-name===null,this.logRow.hidden=this.mapRow.hidden||!isHosted,this.robust.hidden=!isHosted,this.log.checked=header.scalars.
-log,this.opacity.value=String(header.opacity),legendLimits(header.scalars).forEach((value,n)=>{this.ends[n].value=String(
-Number(value.toPrecision(4)))}),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.viewer;this.swatches.
-replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("button",{...{type:"button",
-title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=rampOf(mapOf(header,
-maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);this.rangeRow.
-title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is not below ${numberText(
-high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
+ends:ends2,auto}=this,{lifetime}=viewer;lifetime.listen(scalars,"change",()=>{let name=scalars.value===PLAIN?!1:scalars.
+value;viewer.header&&viewer.chooseColours(choiceOf(viewer.header,name))});for(let end of ends2)lifetime.listen(end,"chan\
+ge",()=>this.takeRange());lifetime.listen(auto,"click",()=>viewer.chooseColours({clim:null})),lifetime.listen(this.robust,
+"click",()=>viewer.chooseColours({clim:"robust"})),lifetime.listen(this.log,"change",()=>viewer.chooseColours({log_scale:this.
+log.checked})),lifetime.listen(this.opacity,"input",()=>viewer.chooseColours({opacity:this.opacity.valueAsNumber})),this.
+robust.title="Ignore the lowest and the highest values.",lifetime.listen(swatches,"click",event=>{let name=event.target.
+dataset.cmap;name&&viewer.chooseColours({cmap:name})});let row2=(name,...fields)=>dom("div",{class:"row"},[dom("span",{class:"\
+name"},[name]),...fields]);this.rangeRow=row2("Range",dom("span",{class:"between"},[...ends2,auto,this.robust])),this.mapRow=
+row2("Colour map",swatches),this.mapRow.classList.add("ranged"),this.opacityRow.classList.add("ranged"),this.element.append(
+row2("Colour by",scalars),this.mapRow,this.rangeRow,this.logRow,this.opacityRow)}get rows(){return[this.element,this.lines]}updateLines(){
+let{header,parts,lifetime}=this.viewer,names=EARTH_LINES.filter(name=>header?.earth&&parts.has(name));this.lines.hidden=
+!names.length,this.lines.children.length!==names.length&&this.lines.replaceChildren(...names.map(name=>{let input=dom("i\
+nput",{type:"checkbox",role:"switch"});lifetime.listen(input,"change",()=>this.viewer.chooseColours({[name]:input.checked}));
+let label=dom("span",{class:"name"},[LINE_NAMES[name]]);return dom("label",{class:"row","data-lines":name},[label,input])})),
+names.forEach((name,n)=>{let input=this.lines.children[n].querySelector("input");input&&(input.checked=header?.earth?.[name]??
+!1)})}update(){let{header,parts}=this.viewer;this.updateLines();let maps=parts.get("maps");if(this.element.hidden=!header?.
+scalars.choices.length||!maps,!header||!maps||this.element.hidden)return;let{choices,name,auto,cmap}=header.scalars,options=[
+...choices,{name:PLAIN,label:PLAIN}];this.scalars.replaceChildren(...options.map(each=>dom("option",{value:each.name},[each.
+label]))),this.scalars.value=name??PLAIN;let isHosted=this.viewer.options.onColours!==void 0;this.mapRow.hidden=this.rangeRow.
+hidden=name===null,this.logRow.hidden=this.mapRow.hidden||!isHosted,this.robust.hidden=!isHosted,this.log.checked=header.
+scalars.log,this.opacity.value=String(header.opacity),legendLimits(header.scalars).forEach((value,n)=>{this.ends[n].value=
+String(Number(value.toPrecision(4)))}),this.auto.setAttribute("aria-pressed",String(auto));let{settings}=this.viewer;this.
+swatches.replaceChildren(...header.scalars.maps.map(each=>{let pressed=String(each===cmap),swatch=dom("button",{...{type:"\
+button",title:each,"aria-label":each,"data-cmap":each},"aria-pressed":pressed});return swatch.style.background=rampOf(mapOf(
+header,maps.data,each),header,settings,STOPS),swatch}))}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);
+this.rangeRow.title="",low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is \
+not below ${numberText(high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,paper,variant}){return slices.steps===1&&!paper&&!isSignFree({variant})}
 var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({paper})=>!paper,fixed_grain:({
 paper})=>!paper,two_sided:({slices})=>slices.sides===2,seed:({paper},rebuild)=>!paper||rebuild&&!paper.picture,resolution:({
 paper},rebuild)=>!paper||rebuild,tiles:({paper,settings},rebuild)=>!!paper?.picture&&(settings.noise==="image"||rebuild),

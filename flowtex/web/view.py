@@ -15,7 +15,7 @@ from flowtex.field.derived import steps_of
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.rendering.webgl.marks import MARK_PARTS, Marks
-from flowtex.scene.options import Options
+from flowtex.scene.options import Options, default_cmap
 from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import TABLE
 from flowtex.textures.tiles import Pyramid
@@ -157,6 +157,7 @@ def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
                 "name": name,
                 "label": scene.label_of(name),
                 "unit": scene.field.unit_of(name),
+                "cmap": default_cmap(name),
                 "low": low,
                 "high": high,
                 "least": least,

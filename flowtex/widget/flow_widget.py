@@ -20,9 +20,9 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
 from flowtex.rendering.camera import Camera, can_share_camera
+from flowtex.scene.attributes import AppearanceAttributes
 from flowtex.scene.options import (
     Appearance,
-    AppearanceAttributes,
     FieldOptions,
     ViewOptions,
     accepts_options,

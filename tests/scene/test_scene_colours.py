@@ -12,6 +12,7 @@ from triangle_meshes import sphere
 
 import flowtex
 from flowtex import FieldError
+from flowtex.scene.options import Appearance
 from flowtex.scene.scene import Scene
 
 
@@ -113,3 +114,15 @@ def test_the_range_of_a_large_surface_is_of_the_speed_along_it() -> None:
         assert scene.pyramid is not None
         low, high = scene.scalar_limits
         assert low < 0.15 and high == pytest.approx(1, abs=1e-3)
+
+
+def test_signed_values_have_a_diverging_map_until_another_is_chosen() -> None:
+    field = flowtex.examples.double_gyre_field(shape=(11, 21))
+    scene = Scene(field, appearance=Appearance(scalars="vorticity"))
+    low, high = scene.scalar_limits
+    assert scene.appearance.cmap == "RdBu_r" and low == -high
+    looks = [scene.appearance.changed(scalars=name) for name in ("speed", "divergence", False)]
+    assert [look.cmap for look in looks] == ["viridis", "RdBu_r", "viridis"]
+    chosen = Appearance(scalars="vorticity", cmap="magma")
+    assert chosen.changed(scalars="speed").cmap == "magma"
+    assert Appearance(scalars="vorticity", cmap="viridis").cmap == "viridis"

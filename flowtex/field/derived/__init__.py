@@ -21,6 +21,8 @@ DERIVED: dict[str, Callable[[Floats], Floats]] = {
     "shear": lambda a: np.hypot(a[0, 0] - a[1, 1], a[0, 1] + a[1, 0]),
     "okubo_weiss": lambda a: (a[0, 0] - a[1, 1]) ** 2 + 4 * a[0, 1] * a[1, 0],
 }
+#: Those of both signs, around zero.
+SIGNED = frozenset(("vorticity", "divergence", "okubo_weiss"))
 #: Those for which particles are followed over a horizon, from a field; the tracer adds them.
 FOLLOWED: dict[str, Callable[[Any, float], Steps]] = {}
 #: Words for them, where there are other ones than their names.

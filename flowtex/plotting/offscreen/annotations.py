@@ -322,14 +322,22 @@ def _number_text(value: float, digits: int) -> str:
 
 
 def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[float, str]]:
-    """Return round values in a range and their shares of it; its ends if fewer than two are."""
+    """Return three or more round values in a range, if there are, and their shares of it.
+
+    They are the ends of the range if fewer than two are in it.
+    """
     from matplotlib.ticker import LogLocator, MaxNLocator
 
     where = np.log10 if log_scale else np.asarray
-    locator = LogLocator(numticks=4) if log_scale else MaxNLocator(3, steps=[1, 2, 5, 10])
-    values = np.asarray(locator.tick_values(low, high))
     slack = 0.0 if log_scale else BEYOND * (high - low)
-    values = values[(values >= low - slack) & (values <= high + slack)]
+    values = np.empty(0)
+    for most in (3, 4, 5):
+        evenly = MaxNLocator(most, steps=[1, 2, 2.5, 5, 10])
+        locator = LogLocator(numticks=4) if log_scale else evenly
+        values = np.asarray(locator.tick_values(low, high))
+        values = values[(values >= low - slack) & (values <= high + slack)]
+        if len(values) >= 3:
+            break
     values = values[:: 1 + len(values) // 5] if len(values) > 1 else np.unique([low, high])
     texts: list[str] = []
     for digits in DIGITS:
