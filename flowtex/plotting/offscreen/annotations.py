@@ -55,6 +55,8 @@ BEYOND = 0.004
 #: A unit of time with more letters than this is left out where room is scarce, which it is where
 #: the time would have more than this share of the picture's width.
 UNIT_LENGTH, TIME_WIDTH = 8, 0.4
+#: Widest legend with all of its values, as a share of the width of the picture.
+LEGEND_WIDTH = 0.6
 #: Decimals of a time, and times, beyond which it is written with an exponent.
 MOST_DECIMALS, LONGEST_TIME = 6, 1e9
 METRES_PER_KM = 1000
@@ -196,8 +198,10 @@ class _Writer:
             return
         table, title = scene.legend_colours[:, :3], _printable(scene.title_of(name))
         marks = _value_marks(*scene.legend_limits, log_scale=appearance.log_scale)
-        for some in (marks, marks[::2]):
-            yield self._legend(title, table, some, scene.beyond)
+        image = self._legend(title, table, marks, scene.beyond)
+        if image.width <= LEGEND_WIDTH * self._size[0]:
+            yield image
+        yield self._legend(title, table, marks[::2], scene.beyond)
 
     def structure(self, scene: Scene) -> Iterator[Image.Image]:
         """Yield what is marked of the structure: critical points with dots, and lines."""
@@ -338,7 +342,7 @@ def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[floa
         values = values[(values >= low - slack) & (values <= high + slack)]
         if len(values) >= 3:
             break
-    values = values[:: 1 + len(values) // 5] if len(values) > 1 else np.unique([low, high])
+    values = values[:: 1 + len(values) // 6] if len(values) > 1 else np.unique([low, high])
     texts: list[str] = []
     for digits in DIGITS:
         texts = [_number_text(value, digits) for value in values]
