@@ -186,7 +186,9 @@ def digests(place: str | Path, some: Iterable[str] | None = None) -> dict[str, s
     async def read() -> None:
         keys = [key async for key in store.list()] if some is None else some
         for key in keys:
-            data = (await store.get(key, kind)).to_bytes()
+            buffer = await store.get(key, kind)
+            assert buffer is not None
+            data = buffer.to_bytes()
             name, of_array, _ = key.partition("/c/")
             parts = _chunks(data, arrays[name]) if of_array else [data]
             # A chunk is packed by gzip, with the time in bytes 4 to 7, and followed by a check sum.

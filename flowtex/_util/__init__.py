@@ -1,4 +1,4 @@
-"""What knows nothing of flows; and the version, as every room can read it here."""
+"""Tools that know nothing of flows, and the version of the package."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from flowtex.errors import FieldError
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value is one real number and not NaN; strings and booleans are not numbers."""
+    """Return whether a value is one real number, not NaN, a string or a boolean."""
     try:
         return not isinstance(value, (bool, str, bytes)) and float(value) == float(value)
     except (TypeError, ValueError, OverflowError):  # a whole number may have any size
@@ -32,7 +32,7 @@ def checked_number(
     expected: str,
     error: type[FieldError] = FieldError,
 ) -> float:
-    """Return a number from ``low`` to ``high``; an error, such as this, has what was expected."""
+    """Return a number from ``low`` to ``high``; otherwise ``error`` names what was expected."""
     if not (is_number(value) and low <= value <= high):
         msg = f"{name} is {value!r}; expected {expected}"
         raise error(msg)
@@ -42,7 +42,7 @@ def checked_number(
 def checked_count(
     name: str, value: Any, low: int = 1, high: float = math.inf, *, expected: str
 ) -> int:
-    """Return a whole number from ``low`` to ``high``; a FieldError has what was expected."""
+    """Return a whole number from ``low`` to ``high``; a FieldError names what was expected."""
     number = checked_number(name, value, low, high, expected=expected)
     if not number.is_integer():
         msg = f"{name} is {value!r}; expected {expected}"
@@ -51,7 +51,7 @@ def checked_count(
 
 
 def checked_array(name: str, value: Any, *, expected: str) -> Floats:
-    """Return real numbers of any shape; a FieldError has what was expected."""
+    """Return real numbers of any shape; a FieldError names what was expected."""
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError) as error:
@@ -78,7 +78,7 @@ def checked_path(name: str, path: Any) -> Path:
 
 
 def checked_target(path: Any) -> Path:
-    """Return the path of a file that is to be written, into a folder that exists."""
+    """Return the path of a file to write, whose folder must exist."""
     target = checked_path("path", path)
     if not target.parent.is_dir():
         folder = str(target.parent)
@@ -88,7 +88,7 @@ def checked_target(path: Any) -> Path:
 
 
 def check_field(field: Any, kind: type) -> None:
-    """Refuse what is not a field, which is of a class."""
+    """Raise a FieldError if ``field`` is not a field, an instance of ``kind``."""
     if not isinstance(field, kind):
         msg = f"field is {field!r}; expected a FlowField, such as FlowField.from_pyvista(mesh)"
         raise FieldError(msg)
@@ -96,18 +96,18 @@ def check_field(field: Any, kind: type) -> None:
 
 def closest(name: str, names: Sequence[str]) -> list[str]:
     """Return up to two names that begin with a text, such as "proj", or else resemble it."""
-    begun = [known for known in names if len(name) > 2 and known.startswith(name)]
+    begun = [candidate for candidate in names if len(name) > 2 and candidate.startswith(name)]
     return begun[:2] or difflib.get_close_matches(name, names, n=2)
 
 
 def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> str:
-    """Say which of the known names are near one that does not exist, or list them.
+    """Return a hint: which known names resemble one that does not exist, or a list of them.
 
     Of many names only the ``usual`` ones are listed.
     """
-    names, some = tuple(known), ", ".join(usual)
+    names, examples = tuple(known), ", ".join(usual)
     if close := closest(name, names):
         return f"did you mean {' or '.join(map(repr, close))}?"
-    if some:
-        return f"expected one of {len(names)} names, such as {some}"
+    if examples:
+        return f"expected one of {len(names)} names, such as {examples}"
     return f"expected one of: {', '.join(names)}" if names else "expected none: there are no names"

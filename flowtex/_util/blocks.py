@@ -14,8 +14,8 @@ BLOCK_NODES = 16384
 
 def row_blocks(rows: int, columns: int) -> Iterator[slice]:
     """Yield slices of rows of a grid, of some thousand nodes each."""
-    some = max(BLOCK_NODES // columns, 1)
-    return (slice(first, min(first + some, rows)) for first in range(0, rows, some))
+    height = max(BLOCK_NODES // columns, 1)
+    return (slice(first, min(first + height, rows)) for first in range(0, rows, height))
 
 
 def even_runs(numbers: Indices) -> Iterator[slice]:
@@ -27,8 +27,8 @@ def even_runs(numbers: Indices) -> Iterator[slice]:
     while first < len(numbers):
         steps = np.diff(numbers[first:])
         step = int(steps[0]) if len(steps) else 1
-        other = np.flatnonzero(steps != step)
-        count = int(other[0]) if len(other) else len(steps)
+        changes = np.flatnonzero(steps != step)
+        count = int(changes[0]) if len(changes) else len(steps)
         if step < 1 and count < 2:
             step, count = 1, 0
         stop = int(numbers[first + count]) + step
@@ -37,7 +37,7 @@ def even_runs(numbers: Indices) -> Iterator[slice]:
 
 
 def bounds(points: Floats) -> Floats:
-    """Least and greatest coordinates, (2, C), of points (..., C)."""
+    """Return the least and greatest coordinates, (2, C), of points (..., C)."""
     ends = [points.min(axis=0), points.max(axis=0)]
     # One axis after the other: long rows are many times as fast as rows of C numbers.
     while ends[0].ndim > 1:

@@ -60,8 +60,8 @@ def colour_table(cmap: Any | None) -> Bytes:
     """Return a colour map as (256, 4).
 
     It may be a name, a map of matplotlib's or a table as PyVista takes them, or an array
-    (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a FieldError; of a name that there
-    is not, it has the near ones.
+    (N, 3 or 4), uint8 or from 0 to 1. Anything else raises a FieldError, which suggests similar
+    names.
     """
     if isinstance(cmap, np.ndarray):
         return _resampled(cmap)
@@ -69,7 +69,7 @@ def colour_table(cmap: Any | None) -> Bytes:
     if isinstance(values, np.ndarray):  # a LookupTable of PyVista's
         return _resampled(np.asarray(values))
     name = cmap or DEFAULT_CMAP
-    if isinstance(name, str) and name in CMAPS:  # which each tile asks for
+    if isinstance(name, str) and name in CMAPS:  # each tile needs it
         return _cached_table(name).copy()
     return _named_table(name)
 
@@ -77,10 +77,10 @@ def colour_table(cmap: Any | None) -> Bytes:
 def _named_table(name: Any) -> Bytes:
     from matplotlib import colormaps
 
-    known = colormaps[name] if isinstance(name, str) and name in colormaps else name
-    if callable(known):
+    colours = colormaps[name] if isinstance(name, str) and name in colormaps else name
+    if callable(colours):
         # Rounded down, as PyVista does, so that all renderers have the same colours.
-        return np.asarray(np.asarray(known(np.linspace(0, 1, ENTRIES))) * 255, dtype=np.uint8)
+        return np.asarray(np.asarray(colours(np.linspace(0, 1, ENTRIES))) * 255, dtype=np.uint8)
     try:
         import pyvista as pv
 
@@ -95,13 +95,13 @@ _cached_table = cache(_named_table)
 
 
 def is_diverging(cmap: Any) -> bool:
-    """Whether a colour map, or the one of a name, has a middle."""
+    """Return whether a colour map, or the one of a name, has a middle."""
     name = str(getattr(cmap, "name", cmap))
     return name.rpartition(".")[2].removesuffix("_r") in DIVERGING
 
 
 def colour_shares(values: AnyArray, low: float, high: float, *, log_scale: bool = False) -> Floats:
-    """Places of values on the colour map, from 0 to 1; NaN stays."""
+    """Return places of values on the colour map, from 0 to 1; NaN stays."""
     numbers = np.asarray(values, dtype=float)
     if log_scale:
         numbers = np.log(np.maximum(numbers, low))

@@ -1,4 +1,4 @@
-"""How much memory this process may still take, in a container as well, and what it gives back."""
+"""The memory that this process may still take, also in a container, and its release."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ UNKNOWN_BYTES = 4_000_000_000
 def available_bytes(root: Path = Path("/")) -> int:
     """Return the bytes that this process can still take before memory runs out.
 
-    It is the least of the free physical memory, what the limits of the control groups (versions 1
-    and 2) leave, and what ``RLIMIT_AS`` leaves. ``root`` is the folder in which ``proc`` and
+    It is the least of the free physical memory and of the rests that the limits of the control
+    groups (versions 1 and 2) and ``RLIMIT_AS`` leave. ``root`` is the folder in which ``proc`` and
     ``sys`` lie.
     """
-    known = [*_physical(root), *_groups(root), *_address_space(root)]
-    return max(min(known, default=UNKNOWN_BYTES), 0)
+    limits = [*_physical(root), *_groups(root), *_address_space(root)]
+    return max(min(limits, default=UNKNOWN_BYTES), 0)
 
 
 def give_back() -> None:
-    """Return to the system what has been freed.
+    """Return freed memory to the system.
 
-    glibc keeps it, in its own heap for each of many threads, of which another thread makes no use.
+    glibc keeps it in a heap for each thread, which other threads do not use.
     """
     with suppress(OSError, AttributeError):  # of another C library
         ctypes.CDLL("libc.so.6").malloc_trim(0)
@@ -38,12 +38,12 @@ def _physical(root: Path) -> Iterator[int]:
         yield free * 1024
         return
     with suppress(AttributeError, ValueError, OSError):
-        # What is free now is not known on macOS, and neither is known on Windows.
+        # macOS does not report the free memory, and Windows not even the physical one.
         yield os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
 def _groups(root: Path) -> Iterator[int]:
-    """Yield what the limits of this process's control groups, and of those above them, leave."""
+    """Yield the rests that the limits of this process's control groups and their parents leave."""
     for line in _text(root / "proc/self/cgroup").splitlines():
         _, controllers, path = line.split(":", 2)
         if not controllers:
@@ -77,7 +77,7 @@ def _address_space(root: Path) -> Iterator[int]:
 
 
 def _table(path: Path) -> dict[str, int]:
-    """Return the numbers of a file of lines with a name and a number."""
+    """Return the numbers by name in a file with a name and a number on each line."""
     rows = [line.split() for line in _text(path).splitlines()]
     return {row[0]: int(row[1]) for row in rows if len(row) > 1 and row[1].isdecimal()}
 

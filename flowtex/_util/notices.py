@@ -14,7 +14,7 @@ class Notice(UserWarning):
 
 
 def notify(text: str, kind: type[Warning] = Notice) -> None:
-    """Warn at the line that called the package, however deep it has come since."""
+    """Warn at the line that called the package, however deep the call stack is."""
     level, frame = 2, sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
         level, frame = level + 1, frame.f_back

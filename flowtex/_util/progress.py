@@ -43,7 +43,7 @@ def stoppable(cancelled: Callable[[], bool]) -> Iterator[None]:
 
 
 def check() -> None:
-    """Raise :class:`Stopped` where the work was cancelled, as :func:`stoppable` says."""
+    """Raise :class:`Stopped` if the surrounding :func:`stoppable` work was cancelled."""
     cancelled = _cancelled.get()
     if cancelled is not None and cancelled():
         raise Stopped
@@ -51,7 +51,7 @@ def check() -> None:
 
 @contextmanager
 def waiting(text: str) -> Iterator[Callable[[], None]]:
-    """Say in a terminal what goes on inside, until it ends, has a bar, or the result is called."""
+    """Show a text in a terminal until the block ends, a bar appears, or the result is called."""
     from rich.text import Text
 
     status = terminal(stderr=True).status(Text(text))

@@ -78,11 +78,11 @@ class TemporaryFolder:
         _folders.add(self)
 
     def new_folder(self) -> Path:
-        """Make a folder in it, under its own name."""
+        """Make a folder in it, under a new name."""
         return Path(tempfile.mkdtemp(dir=self.path))
 
     def close(self) -> None:
-        """Remove it with all that is in it."""
+        """Remove the folder and its content."""
         self._end()
 
 

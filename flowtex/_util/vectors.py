@@ -1,4 +1,4 @@
-"""Products of vectors along the last axis, of which NumPy's sums over few components are slow."""
+"""Products of vectors along the last axis; NumPy's sums over few components are slow."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from flowtex._util.array_types import Floats
 
 
 def dot(one: Floats, other: Floats) -> Floats:
-    """Inner products of vectors (..., C), of shape (...)."""
+    """Return inner products of vectors (..., C), of shape (...)."""
     product = one * other
     return np.asarray(product @ np.ones(product.shape[-1], product.dtype))
 
 
 def norm(vectors: Floats) -> Floats:
-    """Lengths of vectors (..., C), of shape (...)."""
+    """Return lengths of vectors (..., C), of shape (...)."""
     return np.sqrt(dot(vectors, vectors))

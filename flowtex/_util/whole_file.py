@@ -58,7 +58,7 @@ class WholeFile:
         """Make and lock the new file, under a name that is not taken."""
         while True:
             self.part = target.with_name(f"{stem}{secrets.token_hex(4)}.part{target.suffix}")
-            # Before there is a file: a signal may come between any two lines.
+            # Before the file exists: a signal may come between any two lines.
             opened: list[io.FileIO] = []
             self._end = weakref.finalize(self, _remove, self.part, opened, os.getpid())
             try:
@@ -107,7 +107,7 @@ def whole_file(path: str | Path) -> Iterator[IO[bytes]]:
 
 
 def _old_file(target: Path) -> os.stat_result | None:
-    """Return what is known of the file that is replaced; refuse one that must not be."""
+    """Return the status of the file that is replaced; refuse one that must not be."""
     try:
         old = target.stat()
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""Values as people write them, in a shell or in a link: how each is read and written."""
+"""Reading and writing of values as text, in a shell or in a link."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class UnreadableError(FieldError):
 class Form:
     """How the values of an argument are written."""
 
-    #: What a shell says that the argument is for, where Python says something else.
+    #: Help of a shell for the argument, where it differs from that of Python.
     words: str = ""
     #: Returns the value of a text, or of all texts; an UnreadableError says what was expected.
     read: Callable[[Any], Any] = str
@@ -45,28 +45,28 @@ def finite_number(text: str) -> float:
 
 
 def numbers(*counts: int, expected: str) -> Callable[[str], tuple[float, ...]]:
-    """Return what reads one of several counts of numbers with commas between them."""
+    """Return a function that reads numbers with commas between them, in one of these counts."""
 
     def read(text: str) -> tuple[float, ...]:
         words = re.split(r"[,\s]+", text.strip())
         values = [number_or_text(word) for word in words]
-        found = tuple(v for v in values if isinstance(v, float) and math.isfinite(v))
-        if len(found) < len(words) or len(words) not in counts:
+        finite = tuple(v for v in values if isinstance(v, float) and math.isfinite(v))
+        if len(finite) < len(words) or len(words) not in counts:
             raise UnreadableError(expected)
-        return found
+        return finite
 
     return read
 
 
 def or_none(value: Any = None) -> Callable[[str], Any]:
-    """Return what reads any text, and ``none`` as some value."""
+    """Return a function that reads any text, and ``none`` as ``value``."""
     return lambda text: value if text == "none" else text
 
 
 def named_texts(
     read: Callable[[str], Any], expected: str
 ) -> Callable[[Sequence[str]], dict[str, Any]]:
-    """Return what reads texts such as ``name=value``, each value by ``read``."""
+    """Return a function that reads texts such as ``name=value``, each value by ``read``."""
 
     def read_all(texts: Sequence[str]) -> dict[str, Any]:
         pairs = [text.partition("=") for text in texts]

@@ -61,7 +61,7 @@ class Joukowski:
         return np.asarray(circle + 1.0 / circle)
 
     def grid(self, rows: int, columns: int, extent: float) -> Complex:
-        """Nodes (rows, columns) in the plane of the circle, outwards and around.
+        """Return nodes (rows, columns) in the plane of the circle, outwards and around.
 
         They begin at the trailing edge and go clockwise, along the lower side first; the last
         column repeats the first. The outer ring is ``extent`` chords from the airfoil, roughly.
@@ -74,12 +74,12 @@ class Joukowski:
         return self.center + self.radius * np.exp(rings[:, None] + 1j * angles)
 
     def place(self, nodes: Complex) -> Floats:
-        """Positions (..., 2) in the airfoil's plane: nose at x = 0, trailing edge at (1, 0)."""
+        """Return positions (..., 2) in the airfoil's plane, from x = 0 to the edge at (1, 0)."""
         z = (nodes + 1.0 / nodes - 2.0) / self.chord + 1.0
         return np.stack([z.real, z.imag], axis=-1)
 
     def velocity(self, nodes: Complex) -> Floats:
-        """Velocity (..., 2) in the airfoil's plane at nodes in that of the circle."""
+        """Return the velocity (..., 2) in the airfoil's plane at nodes in that of the circle."""
         turn = np.exp(1j * np.radians(self.incidence))
         s = nodes - self.center
         swirl = 1j * self.circulation / (2.0 * np.pi)

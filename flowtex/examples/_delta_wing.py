@@ -29,7 +29,7 @@ SWIRL, INCIDENCE = 2.0, 12.0
 
 
 def arrays(shape: tuple[int, int]) -> tuple[Floats, Floats]:
-    """Nodes (J, I, 3) and velocity (J, I, 3); j across and i along the body."""
+    """Return nodes (J, I, 3) and velocity (J, I, 3); j across and i along the body."""
     rows, columns = shape
     across, along = np.linspace(-1.0, 1.0, rows), np.linspace(0.0, 1.0, columns)
     s = np.sign(across) * _crowded(np.abs(across))
@@ -44,7 +44,7 @@ def _crowded(x: Floats) -> Floats:
 
 
 def _half_span(t: Floats) -> Floats:
-    """Half span at a distance from the nose."""
+    """Return the half span at a distance from the nose."""
     blunt = np.minimum(t / BLUNT, 1.0)
     body = NOSE + (BODY - NOSE) * np.sqrt(blunt * (2.0 - blunt))
     wing = np.maximum(t - WINGS, 0.0) / (1.0 - WINGS)
@@ -52,7 +52,7 @@ def _half_span(t: Floats) -> Floats:
 
 
 def _place(s: Floats, t: Floats) -> Floats:
-    """Points of the surface, (..., 3)."""
+    """Return points of the surface, (..., 3)."""
     half = _half_span(t)
     y = s * half
     rise = np.clip(t / RISE, 0.0, 1.0)
@@ -64,7 +64,7 @@ def _place(s: Floats, t: Floats) -> Floats:
 
 
 def _velocity(s: Floats, t: Floats) -> Floats:
-    """Flow along the surface, (..., 3)."""
+    """Return the flow along the surface, (..., 3)."""
     step = 1e-5
     # At the nose itself the surface stands upright: the slope is taken a little behind it.
     t = np.maximum(t, 2 * step)

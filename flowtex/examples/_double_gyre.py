@@ -55,23 +55,23 @@ def double_gyre_velocity(
     >>> double_gyre_velocity([0.5, 0.25]).round(3)
     array([-0.222,  0.   ])
     """
-    where = np.asarray(points, dtype=np.float64)
-    if where.ndim == 0 or where.shape[-1] not in (2, 3):
+    positions = np.asarray(points, dtype=np.float64)
+    if positions.ndim == 0 or positions.shape[-1] not in (2, 3):
         message = (
-            f"points has shape {where.shape}, expected (..., 2) or (..., 3); stack x and y with "
-            "np.stack([x, y], axis=-1)"
+            f"points has shape {positions.shape}, expected (..., 2) or (..., 3); stack x and y "
+            "with np.stack([x, y], axis=-1)"
         )
         raise FieldError(message)
-    f, slope, _ = _border(where[..., 0], time, epsilon, period)
-    y = np.pi * where[..., 1]
-    velocity = np.zeros_like(where)
+    f, slope, _ = _border(positions[..., 0], time, epsilon, period)
+    y = np.pi * positions[..., 1]
+    velocity = np.zeros_like(positions)
     velocity[..., 0] = -np.pi * amplitude * np.sin(np.pi * f) * np.cos(y)
     velocity[..., 1] = np.pi * amplitude * np.cos(np.pi * f) * np.sin(y) * slope
     return velocity
 
 
 def vorticity(points: Floats, time: float, epsilon: float = EPSILON) -> Floats:
-    """Exact vorticity (...,) at points (..., 2), with the usual amplitude and period."""
+    """Return exact vorticity (...,) at points (..., 2), with the usual amplitude and period."""
     f, slope, bend = _border(points[..., 0], time, epsilon, PERIOD)
     sine, cosine = np.sin(np.pi * f), np.cos(np.pi * f)
     across = np.pi * AMPLITUDE * np.sin(np.pi * points[..., 1])
@@ -79,7 +79,7 @@ def vorticity(points: Floats, time: float, epsilon: float = EPSILON) -> Floats:
 
 
 def nodes(shape: tuple[int, int]) -> Floats:
-    """Evenly spaced nodes (J, I, 2) of [0, 2] x [0, 1] for a shape (J, I)."""
+    """Return evenly spaced nodes (J, I, 2) of [0, 2] x [0, 1] for a shape (J, I)."""
     rows, columns = shape
     x, y = np.meshgrid(np.linspace(0.0, 2.0, columns), np.linspace(0.0, 1.0, rows))
     return np.stack([x, y], axis=-1)

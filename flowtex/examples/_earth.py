@@ -98,7 +98,7 @@ def ocean() -> xr.Dataset:
     times = np.datetime64("2024-03-01", "ns") + np.arange(DAYS) * np.timedelta64(1, "D")
     return _dataset(
         xarray,
-        {name: (np.where(land, np.nan, values), *words) for name, (values, *words) in data.items()},
+        {name: (np.where(land, np.nan, values), *names) for name, (values, *names) in data.items()},
         {
             "time": ("time", times, {"standard_name": "time", "axis": "T"}),
             "latitude": ("latitude", lat, LATITUDE),
@@ -151,18 +151,22 @@ def _dataset(
     xarray: Any, data: dict[str, Any], coordinates: dict[str, Any], title: str
 ) -> xr.Dataset:
     """Put arrays, each with standard name and unit, on coordinates."""
-    dims = [name for name, (own, *_) in coordinates.items() if own]
+    dims = [name for name, (axes, *_) in coordinates.items() if axes]
     variables = {
-        key: (dims, values, {"standard_name": word, "long_name": _words(word), "units": unit})
-        for key, (values, word, unit) in data.items()
+        key: (
+            dims,
+            values,
+            {
+                "standard_name": standard_name,
+                "long_name": standard_name.replace("_", " "),
+                "units": unit,
+            },
+        )
+        for key, (values, standard_name, unit) in data.items()
     }
     attributes = {"Conventions": "CF-1.8", "title": title, "source": SOURCE}
     dataset: xr.Dataset = xarray.Dataset(variables, coordinates, attributes)
     return dataset
-
-
-def _words(standard_name: str) -> str:
-    return standard_name.replace("_", " ")
 
 
 @cache
@@ -172,8 +176,8 @@ def _sea() -> tuple[Floats, Floats, Bools, Floats]:
     places = np.stack(np.meshgrid(lon, lat), axis=-1)
     land = _land(lon, lat)
     cell = np.array([lat[1] - lat[0], (lon[1] - lon[0]) * np.cos(np.radians(lat.mean()))])
-    far = scipy.ndimage.distance_transform_edt(~land, sampling=cell * DEGREE)
-    sea = 1 - np.exp(-((far / SHELF) ** 2))
+    distances = scipy.ndimage.distance_transform_edt(~land, sampling=cell * DEGREE)
+    sea = 1 - np.exp(-((distances / SHELF) ** 2))
     # The sea is as high along all of the coast, so no current goes through it.
     heights = [(_height(places, day * DAY) + HEIGHT) * sea - HEIGHT for day in range(DAYS)]
     return lon, lat, land, np.stack(heights)
@@ -186,22 +190,22 @@ def _land(lon: Floats, lat: Floats) -> Bools:
     first = np.delete(np.arange(len(x)), lines.starts[1:] - 1)
     land = []
     for parallel in lat:
-        cross = first[(y[first] > parallel) != (y[first + 1] > parallel)]
-        part = (parallel - y[cross]) / (y[cross + 1] - y[cross])
-        at = np.sort(x[cross] + part * (x[cross + 1] - x[cross]))
-        land.append(np.searchsorted(at, lon) % 2 == 1)
+        edges = first[(y[first] > parallel) != (y[first + 1] > parallel)]
+        shares = (parallel - y[edges]) / (y[edges + 1] - y[edges])
+        crossings = np.sort(x[edges] + shares * (x[edges + 1] - x[edges]))
+        land.append(np.searchsorted(crossings, lon) % 2 == 1)
     return np.array(land)
 
 
 def _height(places: Floats, seconds: float) -> Floats:
     """Return the height of the sea in metres at a grid of longitudes and latitudes, (J, I, 2)."""
     narrow = np.cos(np.radians(38.0))
-    here = places * [narrow, 1.0] * DEGREE
+    positions = places * [narrow, 1.0] * DEGREE
     path, along = _stream(seconds, narrow)
-    near = scipy.spatial.cKDTree(path).query(here)[1]
-    way = here - path[near]
+    near = scipy.spatial.cKDTree(path).query(positions)[1]
+    offsets = positions - path[near]
     # Metres to the left of the stream.
-    left = along[near, 0] * way[..., 1] - along[near, 1] * way[..., 0]
+    left = along[near, 0] * offsets[..., 1] - along[near, 1] * offsets[..., 0]
     height = -HEIGHT * np.tanh(left / WIDTH)
     random = np.random.default_rng(7)
     low, high, _ = np.array(list(OCEAN.values())).T
@@ -215,8 +219,8 @@ def _height(places: Floats, seconds: float) -> Floats:
     # Those of a high sea go a little towards the equator, and those of a low one away from it.
     x, y = lon * narrow * DEGREE - west, lat * DEGREE - np.sign(sizes) * west / 6
     # A Gaussian is the product of one along each axis.
-    across = np.exp(-(((here[0, :, 0] - x[:, None]) / radii[:, None]) ** 2) / 2)
-    along = np.exp(-(((here[:, 0, 1] - y[:, None]) / radii[:, None]) ** 2) / 2)
+    across = np.exp(-(((positions[0, :, 0] - x[:, None]) / radii[:, None]) ** 2) / 2)
+    along = np.exp(-(((positions[:, 0, 1] - y[:, None]) / radii[:, None]) ** 2) / 2)
     return np.asarray(height + (sizes[:, None] * along).T @ across)
 
 

@@ -124,7 +124,7 @@ def double_gyre_field(
 
 
 def double_gyre_at(times: Floats, points: Floats, epsilon: float) -> FlowField:
-    """Double gyre at some times (T,) and points (J, I, 2)."""
+    """Return the double gyre at times (T,) and points (J, I, 2)."""
     return FlowField.from_arrays(
         points,
         [_double_gyre.double_gyre_velocity(points, t, epsilon=epsilon) for t in times],

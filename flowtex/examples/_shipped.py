@@ -23,7 +23,7 @@ POST_GRID, POST_SOLUTION = "postxyz.bin", "postq.bin"
 
 
 def cylinder_arrays() -> tuple[Floats, Floats, Floats]:
-    """Points (65, 161, 2), velocity (31, 65, 161, 2), and times (31,)."""
+    """Return points (65, 161, 2), velocity (31, 65, 161, 2), and times (31,)."""
     file = load(CYLINDER)
     velocity = unpack(file["velocity"], float(file["step"]), axis=2)
     columns = velocity.shape[2]
@@ -34,10 +34,10 @@ def cylinder_arrays() -> tuple[Floats, Floats, Floats]:
 
 
 def polar_vorticity(points: Floats, velocity: Floats) -> Floats:
-    """Vorticity (T, J, I) of a flow on circles around the origin, whose last column is the first.
+    """Return the vorticity (T, J, I) of a flow on circles around the origin.
 
-    The nodes (J, I, 2) are evenly spaced around. Derivatives are spectral around, and by cubic
-    splines outwards.
+    The last column repeats the first one. The nodes (J, I, 2) are evenly spaced around.
+    Derivatives are spectral around, and by cubic splines outwards.
     """
     radii = np.hypot(points[:, 0, 0], points[:, 0, 1])
     open_points, open_velocity = points[:, :-1], velocity[:, :, :-1]
@@ -52,9 +52,10 @@ def polar_vorticity(points: Floats, velocity: Floats) -> Floats:
 
 
 def vortex_arrays() -> tuple[Floats, Floats, Floats, Floats]:
-    """Points (100, 100, 2), velocity (31, 100, 100, 2), vorticity (31, 100, 100), times (31,).
+    """Return points, velocity, vorticity and times (31,).
 
-    The last row and column repeat the first, one box further on.
+    Their shapes are (100, 100, 2), (31, 100, 100, 2) and (31, 100, 100). The last row and
+    column repeat the first, one box further on.
     """
     file = load(VORTEX)
     vorticity = unpack(file["vorticity"], float(file["step"]), axis=2)
@@ -62,17 +63,17 @@ def vortex_arrays() -> tuple[Floats, Floats, Floats, Floats]:
     size = vorticity.shape[-1]
     axis = np.linspace(0.0, 1.0, size + 1)
     points = np.stack(np.meshgrid(axis, axis), axis=-1)
-    joined = np.arange(size + 1) % size
+    wrapped = np.arange(size + 1) % size
     return (
         points,
-        velocity[:, joined][:, :, joined],
-        vorticity[:, joined][:, :, joined],
+        velocity[:, wrapped][:, :, wrapped],
+        vorticity[:, wrapped][:, :, wrapped],
         file["times"],
     )
 
 
 def periodic_velocity(vorticity: NDArray[np.complex128]) -> Floats:
-    """Velocity (N, N, 2) in a periodic unit box, in boxes per unit of time, from its vorticity.
+    """Return the velocity (N, N, 2) in a periodic box, in boxes per unit of time, by vorticity.
 
     The vorticity comes as Fourier coefficients from ``scipy.fft.rfft2``, (N, N // 2 + 1).
     """
@@ -110,21 +111,21 @@ def unpack(differences: NDArray[np.int16], step: float, axis: int) -> Floats:
 
 
 def find_post(folder: str | Path | None = None) -> Path:
-    """Path of the grid, with the solution beside it; PyVista fetches both where no folder is given.
+    """Return the path of the grid, beside which the solution lies; PyVista fetches both by default.
 
     Raises a FileNotFoundError when a file is missing or cannot be downloaded.
     """
     if folder is None:
         return _downloaded()
-    place = Path(folder).expanduser()
-    missing = [name for name in (POST_GRID, POST_SOLUTION) if not (place / name).is_file()]
+    directory = Path(folder).expanduser()
+    missing = [name for name in (POST_GRID, POST_SOLUTION) if not (directory / name).is_file()]
     if missing:
         message = (
-            f"{place} has no {' and no '.join(missing)}; give the folder that contains "
+            f"{directory} has no {' and no '.join(missing)}; give the folder that contains "
             f"{POST_GRID} and {POST_SOLUTION}, or none to download them with PyVista"
         )
         raise FileNotFoundError(message)
-    return place / POST_GRID
+    return directory / POST_GRID
 
 
 def _downloaded() -> Path:

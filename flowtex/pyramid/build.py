@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -58,9 +58,13 @@ from flowtex.pyramid.workers import PART_BYTES, TILE_BYTES, Cluster, Threads
 from flowtex.textures.tiles import TileKey
 from flowtex.textures.tiles.pyramid import level_lines, level_shape
 
-#: So many failures one after the other end a build: the store is full, or write-protected.
+if TYPE_CHECKING:
+    from zarr import Group
+    from zarr.abc.store import Store
+
+#: Failures in a row that end a build: the store may be full or write-protected.
 MOST_FAILURES = 20
-#: What a field is known again by, and how it is drawn.
+#: Entries that identify a field and how it is drawn.
 IDENTITY = (
     *("format", "times", "nodes", "parameter", "lines", "depth", "tile_cells", "components"),
     *("axes", "height", "has_position", "periodic", "projection", "scalars", "uncertainty"),
@@ -178,29 +182,31 @@ def build(
     place = place_text(store)
     with plain_faults():
         check_room(place, listed(store_at(place, read_only=False).list_dir))
-    given = source_of(source, **options)
-    about = about_source(given, parameter, given.chosen_lines(lines))
-    wrong = [name for name in about["scalars"] if not is_scalar_name(name)]
-    if wrong:
-        msg = f"scalar {wrong[0]!r} cannot be stored; expected a name without '/': rename it"
+    data = source_of(source, **options)
+    about = about_source(data, parameter, data.chosen_lines(lines))
+    invalid = [name for name in about["scalars"] if not is_scalar_name(name)]
+    if invalid:
+        msg = f"scalar {invalid[0]!r} cannot be stored; expected a name without '/': rename it"
         raise FieldError(msg)
-    known, threads = about["source"], Threads(memory)
+    identity, threads = about["source"], Threads(memory)
     workers = threads if scheduler is None else Cluster(scheduler)
     with plain_faults(), closing(workers), Lease(place) as lease:
-        group, arrays, about, new = _prepared(place, about, given, fresh=fresh)
-        run, depth = _Run(group, arrays, about, lease, known, progress), about["depth"]
+        group, arrays, about, new = _prepared(place, about, data, fresh=fresh)
+        run, depth = _Run(group, arrays, about, lease, identity, progress), about["depth"]
         if not new:
             # Corrupt and incomplete objects are removed.
-            begun = sorted({unit for name in run.arrays for unit in _begun(run, name)}, key=repr)
-            run.work(workers, mend, begun, "Checking existing objects", TILE_BYTES, new=False)
-        _write_finest(run, given, workers if given.travels else threads)
+            units = sorted(
+                {unit for name in run.arrays for unit in _existing_units(run, name)}, key=repr
+            )
+            run.work(workers, mend, units, "Checking existing objects", TILE_BYTES, new=False)
+        _write_finest(run, data, workers if data.travels else threads)
         for level in range(1, depth + 1):
-            parts = _missing_parts(run, level, level_shape(given.shape, level))
+            parts = _missing_parts(run, level, level_shape(data.shape, level))
             run.work(workers, make_part, parts, f"Level {level} of {depth}", PART_BYTES)
-        run.tell(levels_done=True)
-        tiles = [task for level in range(depth, -1, -1) for task in _tiles(run, level)]
+        run.update(levels_done=True)
+        tiles = [task for level in range(depth, -1, -1) for task in _missing_tiles(run, level)]
         run.work(workers, make_tile, tiles, "Tiles", TILE_BYTES)
-        run.tell(complete=True)
+        run.update(complete=True)
     return Built(place, depth, run.made, run.kept)
 
 
@@ -236,15 +242,15 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
     >>> flowtex.pyramid.verify("gyre.zarr", progress=False)
     []
     """
-    levels, found = Levels(store), []
+    levels, faults = Levels(store), []
     about = levels.about
 
-    def look(unit: Part | TileTask) -> None:
+    def inspect(unit: Part | TileTask) -> None:
         for _, check in checks_of(levels, unit):
             try:
                 check()
             except DamageError as error:
-                found.append(str(error))
+                faults.append(str(error))
 
     units: list[tuple[Part | TileTask]] = []
     for level in range(about["depth"] + 1):
@@ -253,41 +259,41 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
         rows, columns = tiles_of(level, levels.shape(level), about)
         keys = (TileKey(level, row, column) for row in range(rows) for column in range(columns))
         units += [(TileTask(key, tuple(range(len(about["times"])))),) for key in keys]
-    with closing(Threads().run(look, units, TILE_BYTES)) as results:
+    with closing(Threads().run(inspect, units, TILE_BYTES)) as results:
         for error in track(results, len(units), "Verifying", show=progress):
             if error is not None:
                 raise error
-    return sorted(found)
+    return sorted(faults)
 
 
 def _prepared(
     place: str, about: dict[str, Any], source: Source, *, fresh: bool
-) -> tuple[Any, dict[str, Sequence[str]], dict[str, Any], bool]:
+) -> tuple[Group, dict[str, Sequence[str]], dict[str, Any], bool]:
     """Return the group of a store, its arrays, its description, and whether it is new."""
     zarr = import_extra("zarr", "store")
     store = store_at(place, read_only=False)
     if fresh:
         _remove(store)
-    there = zarr.open_group(store, mode="r").attrs["flowtex"] if is_store(place) else None
-    if there is None:
+    stored = zarr.open_group(store, mode="r").attrs["flowtex"] if is_store(place) else None
+    if stored is None:
         about = {**about, "ranges": source.ranges()}
     else:
-        there = check_about(there, place)
-        known = {"uncertainty": "", **there}  # earlier versions wrote none
-        other = [name for name in IDENTITY if known.get(name) != about[name]]
-        if other:
+        stored = check_about(stored, place)
+        entries = {"uncertainty": "", **stored}  # earlier versions wrote none
+        differing = [name for name in IDENTITY if entries.get(name) != about[name]]
+        if differing:
             msg = (
-                f"{place} contains the pyramid of another field ({', '.join(other)} differ); "
+                f"{place} contains the pyramid of another field ({', '.join(differing)} differ); "
                 "build with fresh=True to replace it, or choose another place"
             )
             raise PyramidError(msg)
-        about = {**there, "complete": False}
+        about = {**stored, "complete": False}
     arrays = _describe(store, about)
-    return zarr.open_group(store, mode="r+"), arrays, about, there is None
+    return zarr.open_group(store, mode="r+"), arrays, about, stored is None
 
 
 def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
-    """Write what follows from ``about``, and return the axes of the arrays by name."""
+    """Write the metadata that follow from ``about``; return the axes of the arrays by name."""
     zarr = import_extra("zarr", "store")
     group = described(about)
     if not about["ranges"]:
@@ -295,7 +301,7 @@ def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
 
     async def copy() -> None:
         kind = zarr.core.buffer.default_buffer_prototype()
-        # That of the group comes first: by it others know that the place is taken.
+        # The metadata of the group come first: they show that the place is taken.
         for name in sorted([name async for name in group.store.list()], key=lambda n: n.count("/")):
             await store.set(name, await group.store.get(name, kind))
 
@@ -304,8 +310,8 @@ def _describe(store: Any, about: dict[str, Any]) -> dict[str, Sequence[str]]:
     return {array.path: array.metadata.dimension_names for array in arrays}
 
 
-def _remove(store: Any) -> None:
-    """Remove a pyramid, what was made of a level before that; others know it to the end."""
+def _remove(store: Store) -> None:
+    """Remove a pyramid, coarse levels first; the metadata that identify it are the last to go."""
     levels = sorted(filter(str.isdecimal, listed(store.list_dir)), key=int, reverse=True)
     for name in (*levels, SAMPLES):
         sync(store.delete_dir(name))
@@ -313,7 +319,7 @@ def _remove(store: Any) -> None:
 
 
 class _Run:
-    """One call of :func:`build`, and what it has made."""
+    """One call of :func:`build`: its store, and numbers of shards."""
 
     def __init__(
         self,
@@ -329,42 +335,42 @@ class _Run:
         self.name = uuid.uuid4().hex
         self.made = self.kept = 0
 
-    def tell(self, **words: Any) -> None:
-        """Add to the description of the pyramid; what workers have opened does not know it."""
+    def update(self, **entries: Any) -> None:
+        """Add to the description of the pyramid; under the new name, workers open it again."""
         self.lease.check()
-        self.about = {**self.about, **words}
+        self.about = {**self.about, **entries}
         self.group.attrs["flowtex"] = sealed(self.about)
         self.name = uuid.uuid4().hex
 
-    def there(self, name: str) -> set[tuple[int, ...]]:
+    def shards(self, name: str) -> set[tuple[int, ...]]:
         """Return the numbers of the shards of an array that are in the store."""
         array = self.group[name]
         prefix = f"{array.path}/c/"
         # A file that is being written is not a shard yet.
         keys = listed(array.store.list_prefix, prefix)
         numbers = (key.removeprefix(prefix).split("/") for key in keys)
-        return {tuple(map(int, some)) for some in numbers if all(map(str.isdecimal, some))}
+        return {tuple(map(int, parts)) for parts in numbers if all(map(str.isdecimal, parts))}
 
     def work(
         self,
         workers: Threads,
         function: Callable[..., None],
-        tasks: Sequence[Any],
+        tasks: Sequence[Part | TileTask],
         text: str,
         need: int,
-        *given: Any,
+        *arguments: Any,
         new: bool = True,
     ) -> None:
         """Run tasks, and raise when some have failed though they were tried again.
 
-        Each needs this many bytes. Shards that are not ``new`` were counted when they were made.
+        Each needs ``need`` bytes. Shards that are not ``new`` were counted when they were made.
         """
         if new:
             self.made += sum(len(t.steps) if isinstance(t, TileTask) else 1 for t in tasks)
         named = [(self.place, self.name, task) for task in tasks]
         first, failed, in_a_row = None, 0, 0
-        # An error holds what it came through: the workers would end whenever that is collected.
-        with closing(workers.run(function, named, need, *given)) as results:
+        # An error holds its frames: the workers would end whenever these are collected.
+        with closing(workers.run(function, named, need, *arguments)) as results:
             for error in track(results, len(tasks), text, show=self.progress):
                 self.lease.check()
                 if isinstance(error, ChangedError):
@@ -376,37 +382,39 @@ class _Run:
                 if in_a_row == MOST_FAILURES:
                     break
         if first is not None:
-            what = f"{failed} of {len(tasks)}" if in_a_row < MOST_FAILURES else f"{failed} in a row"
+            count = (
+                f"{failed} of {len(tasks)}" if in_a_row < MOST_FAILURES else f"{failed} in a row"
+            )
             msg = (
-                f"{what} shards could not be built in {self.place}; the first error is "
+                f"{count} shards could not be built in {self.place}; the first error is "
                 f"{type(first).__name__}: {first}. Build again to build the missing ones"
             )
             raise PyramidError(msg) from first
 
 
-def _begun(run: _Run, name: str) -> Iterator[Part | TileTask]:
-    """Give the parts, or the tiles at a step, of which an array has an object."""
+def _existing_units(run: _Run, name: str) -> Iterator[Part | TileTask]:
+    """Yield the parts, or the tiles at a step, of which an array has an object."""
     axes, (top, _, kind) = run.arrays[name], name.partition("/")
     if kind in (FLOW, VALUES):
-        for step, row, column, *_ in run.there(name):
+        for step, row, column, *_ in run.shards(name):
             yield TileTask(TileKey(int(top), row, column), (step,))
     elif {"j", "i"} <= {*axes}:
-        for numbers in run.there(name):
+        for numbers in run.shards(name):
             step, row, column = (numbers if axes[0] == "time" else (0, *numbers))[:3]
             yield Part(int(top), step, row, column)
 
 
 def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
-    """Write level 0; nodes of the first step come first, for they tell which are valid."""
-    there, parts = _parts_there(run, 0), _missing_parts(run, 0, source.shape)
+    """Write level 0; the first step comes first, as it determines the valid nodes."""
+    existing, parts = _existing_parts(run, 0), _missing_parts(run, 0, source.shape)
     if parts and run.about.get("levels_done"):
-        run.tell(levels_done=False)
-    begin, later = [p for p in parts if p.step == 0], [p for p in parts if p.step > 0]
-    run.work(workers, make_finest, begin, "Level 0", PART_BYTES, source)
+        run.update(levels_done=False)
+    at_start, later = [p for p in parts if p.step == 0], [p for p in parts if p.step > 0]
+    run.work(workers, make_finest, at_start, "Level 0", PART_BYTES, source)
     if not run.source or run.source != run.about["source"]:
         text = "Comparing with the source"
-        run.work(workers, compare_finest, there, text, PART_BYTES, source, new=False)
-        run.tell(source=run.source)
+        run.work(workers, compare_finest, existing, text, PART_BYTES, source, new=False)
+        run.update(source=run.source)
     run.work(workers, make_finest, later, "Level 0", PART_BYTES, source)
     if run.about["axes"]:
         first = np.array([0])
@@ -415,7 +423,7 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
             run.group[f"{level}/x"][:] = source.points(first, columns)[0, :, 0]
             run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
     if source.identity() != run.source:
-        run.tell(source="")
+        run.update(source="")
         msg = f"the source of {run.place} changed while it was read; build again"
         raise ChangedError(msg)
     levels = Levels(run.place)
@@ -427,7 +435,7 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
                 "variables"
             )
             raise FieldError(msg)
-        run.tell(ranges=ranges)
+        run.update(ranges=ranges)
     fingerprint = digest(levels.whole(f"0/{DIGESTS}"), words=run.about["times"]).hex()
     if run.about["fingerprint"] not in ("", fingerprint):
         msg = (
@@ -435,30 +443,30 @@ def _write_finest(run: _Run, source: Source, workers: Threads) -> None:
             "to replace it"
         )
         raise ChangedError(msg)
-    run.tell(fingerprint=fingerprint)
+    run.update(fingerprint=fingerprint)
 
 
-def _parts_there(run: _Run, level: int) -> list[Part]:
-    return sorted(Part(level, *numbers[:3]) for numbers in run.there(f"{level}/velocity"))
+def _existing_parts(run: _Run, level: int) -> list[Part]:
+    return sorted(Part(level, *numbers[:3]) for numbers in run.shards(f"{level}/velocity"))
 
 
 def _missing_parts(run: _Run, level: int, shape: tuple[int, int]) -> list[Part]:
-    there = {*_parts_there(run, level)}
+    existing = {*_existing_parts(run, level)}
     parts = parts_of(level, shape, len(run.about["times"]))
-    missing = [part for part in parts if part not in there]
+    missing = [part for part in parts if part not in existing]
     run.kept += len(parts) - len(missing)
     return missing
 
 
-def _tiles(run: _Run, level: int) -> Iterator[TileTask]:
-    """Give the tiles of a level that are missing, a few steps at a time."""
-    there = run.there(f"{level}/{FLOW}")
+def _missing_tiles(run: _Run, level: int) -> Iterator[TileTask]:
+    """Yield the missing tiles of a level, a few steps at a time."""
+    existing = run.shards(f"{level}/{FLOW}")
     steps, rows, columns, _ = run.group[f"{level}/{FLOW}"].shape
     for row in range(rows):
         for column in range(columns):
             for first in range(0, steps, MOST_HELD):
-                every = range(first, min(first + MOST_HELD, steps))
-                missing = [t for t in every if (t, row, column, 0) not in there]
-                run.kept += len(every) - len(missing)
+                group = range(first, min(first + MOST_HELD, steps))
+                missing = [t for t in group if (t, row, column, 0) not in existing]
+                run.kept += len(group) - len(missing)
                 if missing:
                     yield TileTask(TileKey(level, row, column), tuple(missing))

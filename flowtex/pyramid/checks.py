@@ -1,7 +1,7 @@
 """Checks of the description in a store, before it is used.
 
-A seal, a hash of the whole description, reveals accidental damage. What was written wrong has
-one too, so types and sizes are looked at as well: they decide how much memory is taken.
+A seal, a hash of the whole description, reveals accidental damage. A wrong description may have a
+valid seal, so types and sizes are checked as well: they decide how much memory is taken.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -26,23 +26,25 @@ MOST_NODES, MOST_STEPS, MOST_LEVELS, MOST_LETTERS, MOST_SCALARS = 10**7, 10**6, 
 MOST_ROOT_NODES = 1_000_000
 
 Check = Callable[[Any], bool]
+#: The description of a field and its pyramid, as the store has it; ``_ABOUT`` lists its entries.
+About: TypeAlias = Mapping[str, Any]
 
 
-def sealed(about: Mapping[str, Any]) -> dict[str, Any]:
+def sealed(about: About) -> dict[str, Any]:
     """Return the description of a pyramid with its seal; a dictionary without one is rejected."""
     return {**about, "seal": _seal(about)}
 
 
-def _seal(about: Mapping[str, Any]) -> str:
+def _seal(about: About) -> str:
     text = json.dumps({k: v for k, v in about.items() if k != "seal"}, sort_keys=True)
     return digest(words=(text,)).hex()
 
 
-def _flag(value: Any) -> bool:
+def _flag(value: object) -> bool:
     return isinstance(value, bool)
 
 
-def _text(value: Any) -> bool:
+def _text(value: object) -> bool:
     return isinstance(value, str) and len(value) <= MOST_LETTERS
 
 
@@ -54,7 +56,7 @@ def _number(value: Any) -> bool:
     return type(value) in (int, float) and math.isfinite(value)
 
 
-def _either(*values: Any) -> Check:
+def _either(*values: object) -> Check:
     return lambda value: value in values and type(value) is not bool
 
 
@@ -71,7 +73,7 @@ def _by_name(check: Check) -> Check:
     return lambda v: (
         isinstance(v, dict)
         and len(v) <= MOST_SCALARS
-        and all(_text(name) and check(one) for name, one in v.items())
+        and all(_text(name) and check(value) for name, value in v.items())
     )
 
 
@@ -91,7 +93,7 @@ def _projection(value: Any) -> bool:
 
 
 def is_scalar_name(name: str) -> bool:
-    """Whether a name leads nowhere but to its own array."""
+    """Return whether a name is a valid path of an array in its group."""
     return bool(name) and "/" not in name and name not in (".", "..", "zarr.json")
 
 
@@ -123,12 +125,12 @@ _ABOUT: dict[str, Check] = {
 
 
 def check_about(about: Any, place: str) -> dict[str, Any]:
-    """Return the description of a pyramid, if it is as it was written."""
-    told = about.get("format") if isinstance(about, dict) else None
-    if told != FORMAT:
+    """Return the description of a pyramid; a PyramidError says that it is not as it was written."""
+    version = about.get("format") if isinstance(about, dict) else None
+    if version != FORMAT:
         msg = (
-            f"{place} has format {str(told)[:40]!r}; expected {FORMAT!r}. Build it again, or use "
-            "the version of flowtex that wrote it"
+            f"{place} has format {str(version)[:40]!r}; expected {FORMAT!r}. Build it again, or "
+            "use the version of flowtex that wrote it"
         )
         raise PyramidError(msg)
     wrong = [name for name, check in _ABOUT.items() if not check(about.get(name))]
@@ -137,18 +139,18 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
     if not wrong and about.get("uncertainty") and about["uncertainty"] not in about["scalars"]:
         wrong = ["uncertainty"]
     if wrong or about.get("seal") != _seal(about):
-        what = f" ({', '.join(wrong)})" if wrong else ""
-        msg = f"the metadata of {place} are damaged{what}; build it again"
+        names = f" ({', '.join(wrong)})" if wrong else ""
+        msg = f"the metadata of {place} are damaged{names}; build it again"
         raise DamageError(msg)
     result: dict[str, Any] = about
     return result
 
 
-def part_digest(nodes: Nodes, about: Mapping[str, Any], step: int) -> bytes:
-    """Return a hash of a part of a level, of its values as they are written."""
+def part_digest(nodes: Nodes, about: About, step: int) -> bytes:
+    """Return a hash of the values of a part of a level, as they are written."""
     scalars = {k: v for k, v in sorted(nodes.scalars.items()) if step < about["scalars"][k]}
     values = [nodes.velocity[..., : about["components"]], *scalars.values()]
-    arrays: list[AnyArray] = [np.asarray(some, np.float32) for some in values]
+    arrays: list[AnyArray] = [np.asarray(array, np.float32) for array in values]
     if step == 0:
         arrays += [nodes.points, nodes.valid]
         if nodes.has_position is not None:

@@ -1,14 +1,14 @@
 """The data of a tile for browsers: files of its surface, of its flow, and of its values.
 
-The flow is the velocity, from which the client traces, where it can. Where it cannot, along
-pathlines, it is slices, with a halo that does for the first, middle and last step.
+The flow is the velocity where the client can trace it. Where it cannot, along pathlines, the flow
+is slices, with a halo that is wide enough for the first, middle and last step.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -33,15 +33,19 @@ from flowtex.textures import TextureSet
 from flowtex.textures.tiles import TileKey, widened
 from flowtex.trace import SliceStore
 
-#: What of the slices is the same in all tiles, and told by the page.
+if TYPE_CHECKING:
+    from zarr import Array
+    from zarr.core.metadata import ArrayV3Metadata
+
+#: Entries of the slices that are the same in all tiles, and in the header of the page.
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
 #: Error of a value as a share of the range that most of them have.
 VALUE_SHARE = 2.0**-17
 
 
 def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Sequence[int]) -> None:
-    """Write the data of a tile for browsers at some times; at the first its surface too."""
-    of = pyramid.about["fingerprint"]
+    """Write the data of a tile for browsers at some steps; with step 0 also its surface."""
+    fingerprint = pyramid.about["fingerprint"]
     textures = _textures(pyramid, key)
     data, at = None, key[1:]
     if textures is not None:
@@ -49,19 +53,19 @@ def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Seque
         # A page of a store may have some of its steps, which pathlines lead through.
         data = ClientData(textures, colours, traces=textures.store.streamlines)
     if 0 in steps and key.level < pyramid.depth:  # a page has the surface of the root
-        _write(array(f"{key.level}/{SURFACE}"), at, of, _surface(pyramid, key, data))
+        _write(array(f"{key.level}/{SURFACE}"), at, fingerprint, _surface(pyramid, key, data))
     prefix = f"tile/{key.level}/{key.row}/{key.column}"
     for step in steps:
         parts: Parts = {}
         if data is not None:
             for number, values in _values(pyramid, data, step).items():
                 file = {f"{prefix}/scalars/{step}/{number}": values}
-                _write(array(f"{key.level}/{VALUES}"), (step, *at, number), of, file)
-            named = data.step(step).items()
-            parts = {f"{prefix}/{k}": v for k, v in named if not k.startswith("scalars/")}
+                _write(array(f"{key.level}/{VALUES}"), (step, *at, number), fingerprint, file)
+            parts_at_step = data.step(step).items()
+            parts = {f"{prefix}/{k}": v for k, v in parts_at_step if not k.startswith("scalars/")}
             data.textures.forget()
-        # The last one: by it a tile is known to be whole.
-        _write(array(f"{key.level}/{FLOW}"), (step, *at), of, parts)
+        # The last file: its presence shows that a tile is complete.
+        _write(array(f"{key.level}/{FLOW}"), (step, *at), fingerprint, parts)
 
 
 def _textures(pyramid: StoredPyramid, key: TileKey) -> TextureSet | None:
@@ -75,10 +79,12 @@ def _textures(pyramid: StoredPyramid, key: TileKey) -> TextureSet | None:
     return pyramid.tile(key, typical_steps(len(pyramid.root.times)))
 
 
-def _write(array: Any, at: Sequence[int], of: str, parts: Parts) -> None:
+def _write(
+    array: Array[ArrayV3Metadata], at: tuple[int, ...], fingerprint: str, parts: Parts
+) -> None:
     """Write a file of parts, as whole chunks."""
-    told = np.frombuffer(of.encode(), np.uint8)
-    file = np.frombuffer(parts_file({"of": told, **parts}, planes=True), np.uint8)
+    owner = np.frombuffer(fingerprint.encode(), np.uint8)
+    file = np.frombuffer(parts_file({"of": owner, **parts}, planes=True), np.uint8)
     size = -(-len(file) // FILE_CHUNK) * FILE_CHUNK
     if size > FILE_BYTES:
         msg = (
@@ -86,7 +92,8 @@ def _write(array: Any, at: Sequence[int], of: str, parts: Parts) -> None:
             "most. Build with lines='streamlines', or with fewer nodes"
         )
         raise PyramidError(msg)
-    array[(*at, slice(0, size))] = np.pad(file, (0, size - len(file)))
+    index: tuple[int | slice, ...] = (*at, slice(0, size))
+    array[index] = np.pad(file, (0, size - len(file)))
 
 
 def _surface(pyramid: StoredPyramid, key: TileKey, data: ClientData | None) -> Parts:
@@ -94,21 +101,21 @@ def _surface(pyramid: StoredPyramid, key: TileKey, data: ClientData | None) -> P
     parts = tile_parts(key, data)
     if data is not None:
         header = data.tile_header
-        told = {
+        shared = {
             "geometry": header["geometry"],
             "slices": {k: v for k, v in header["slices"].items() if k not in OF_ALL_TILES},
         }
-        parts[next(iter(parts))] = np.frombuffer(json.dumps(told).encode(), np.uint8)
+        parts[next(iter(parts))] = np.frombuffer(json.dumps(shared).encode(), np.uint8)
     return parts
 
 
 def _values(pyramid: StoredPyramid, data: ClientData, step: int) -> dict[int, Floats32]:
-    """Return the values that a tile is coloured by, rounded to what no colour shows, at a time."""
+    """Return the values that colour a tile at a step, rounded by less than colours show."""
     result: dict[int, Floats32] = {}
     rows, columns = data.textures.grid.drawn
     for number, name in enumerate(value_names(pyramid.about)):
         steps = steps_of(data.field, name)
-        # The flow tells the speed.
+        # The speed follows from the flow.
         is_derived = data.traced and name not in data.field.scalars
         if is_derived or step >= len(steps):
             continue
@@ -122,7 +129,7 @@ def _values(pyramid: StoredPyramid, data: ClientData, step: int) -> dict[int, Fl
 
 
 def _colours(pyramid: StoredPyramid, field: FlowField) -> Colours:
-    """Return colours by the speed, with all that a person may choose in its place."""
+    """Return colours by the speed, and all scalars as further choices."""
     ranges = _ranges(pyramid)
     choices = tuple({"name": k, "low": low, "high": high} for k, (low, high) in ranges.items())
     first, *others = (steps_of(field, name) for name in ranges)

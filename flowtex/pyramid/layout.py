@@ -32,7 +32,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache, partial
-from typing import Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -42,11 +42,16 @@ from flowtex._util.extras import import_extra
 from flowtex.field import FlowField
 from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth import Projection
-from flowtex.pyramid.checks import sealed
+from flowtex.pyramid.checks import About, sealed
 from flowtex.pyramid.places import FORMAT
 from flowtex.pyramid.source import Source
 from flowtex.textures.tiles import BLOCK_CELLS, TILE_BLOCKS
 from flowtex.textures.tiles.pyramid import level_shape, root_level
+
+if TYPE_CHECKING:
+    from zarr import Array, Group
+    from zarr.abc.store import Store
+    from zarr.core.metadata import ArrayV3Metadata
 
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.
@@ -55,7 +60,7 @@ SHARD_CHUNKS = (2, 4)
 FILE_BYTES, FILE_CHUNK = 1 << 28, 1 << 20
 #: Time steps of a series up to which a reader holds all of them.
 MOST_HELD = 8
-#: How hard is tried to pack; more takes longer and gains little.
+#: Levels of compression; higher ones take longer and gain little.
 GZIP_LEVEL, ZSTD_LEVEL = 4, 3
 #: Bits of velocities: their error is 2^-12 of themselves at most, that of half precision.
 VELOCITY_BITS = 11
@@ -83,8 +88,8 @@ class Part(NamedTuple):
     def lines(self, shape: tuple[int, int]) -> tuple[slice, slice]:
         """Return the rows and columns of a level with this many nodes."""
         first, second = (
-            slice(at * many * TILE_CELLS, min((at + 1) * many * TILE_CELLS, n))
-            for at, many, n in zip((self.row, self.column), SHARD_CHUNKS, shape, strict=True)
+            slice(at * chunks * TILE_CELLS, min((at + 1) * chunks * TILE_CELLS, n))
+            for at, chunks, n in zip((self.row, self.column), SHARD_CHUNKS, shape, strict=True)
         )
         return first, second
 
@@ -98,12 +103,12 @@ def parts_of(level: int, shape: tuple[int, int], steps: int) -> list[Part]:
 def parts_along(shape: tuple[int, int]) -> tuple[int, int]:
     """Return how many parts a level with this many nodes (J, I) has along both axes."""
     rows, columns = (
-        -(-n // (many * TILE_CELLS)) for n, many in zip(shape, SHARD_CHUNKS, strict=True)
+        -(-n // (chunks * TILE_CELLS)) for n, chunks in zip(shape, SHARD_CHUNKS, strict=True)
     )
     return rows, columns
 
 
-def tiles_of(level: int, shape: tuple[int, int], about: Mapping[str, Any]) -> tuple[int, int]:
+def tiles_of(level: int, shape: tuple[int, int], about: About) -> tuple[int, int]:
     """Return how many tiles a level with this many nodes (J, I) has along both axes."""
     if level == about["depth"]:
         return 1, 1
@@ -111,8 +116,8 @@ def tiles_of(level: int, shape: tuple[int, int], about: Mapping[str, Any]) -> tu
     return rows, columns
 
 
-def value_names(about: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return what the surface can be coloured by: the speed, and the scalars of the field."""
+def value_names(about: About) -> tuple[str, ...]:
+    """Return the names of values that can colour the surface: the speed, and the scalars."""
     return tuple(dict.fromkeys(("speed", *about["scalars"])))
 
 
@@ -132,7 +137,7 @@ def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
         "projection": field.projection and field.projection.written,
         "nodes": list(source.shape),
         "periodic": list(field.periodic),
-        "periods": [some.tolist() for some in source.periods],
+        "periods": [period.tolist() for period in source.periods],
         "depth": depth,
         "tile_cells": TILE_CELLS,
         "parameter": parameter,
@@ -151,7 +156,7 @@ def about_source(source: Source, parameter: str, lines: str) -> dict[str, Any]:
     }
 
 
-def attributes_of(about: Mapping[str, Any]) -> dict[str, Any]:
+def attributes_of(about: About) -> dict[str, Any]:
     """Return the attributes of the group: the field, and its levels as others read them."""
     layout: list[dict[str, Any]] = [{"asset": "0", "transform": {"scale": [1.0, 1.0]}}]
     for level in range(1, about["depth"] + 1):
@@ -164,56 +169,58 @@ def attributes_of(about: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def described(about: Mapping[str, Any], levels: Iterable[int] | None = None) -> Any:
+def described(about: About, levels: Iterable[int] | None = None) -> Group:
     """Return a group in memory with the arrays of levels, by default all, as they are written."""
     zarr = import_extra("zarr", "store")
-    group = zarr.group(zarr.storage.MemoryStore(), attributes=attributes_of(about), zarr_format=3)
+    group: Group = zarr.group(
+        zarr.storage.MemoryStore(), attributes=attributes_of(about), zarr_format=3
+    )
     for level in range(about["depth"] + 1) if levels is None else levels:
         _create_level(group, level, about)
     return group
 
 
-def _create_level(group: Any, level: int, about: Mapping[str, Any]) -> None:
+def _create_level(group: Group, level: int, about: About) -> None:
     shape = level_shape((about["nodes"][0], about["nodes"][1]), level)
-    here, steps = group.require_group(str(level)), len(about["times"])
+    subgroup, steps = group.require_group(str(level)), len(about["times"])
     nodes = {
-        axis: (count, TILE_CELLS, many * TILE_CELLS)
-        for axis, count, many in zip("ji", shape, SHARD_CHUNKS, strict=True)
+        axis: (count, TILE_CELLS, chunks * TILE_CELLS)
+        for axis, count, chunks in zip("ji", shape, SHARD_CHUNKS, strict=True)
     }
     vectors = {**nodes, "component": (about["components"],) * 3}
     nodal = partial(create_array, nodal=True)
-    nodal(here, "velocity", "float32", {"time": (steps, 1, 1), **vectors})
-    nodal(here, "valid", "bool", nodes)
+    nodal(subgroup, "velocity", "float32", {"time": (steps, 1, 1), **vectors})
+    nodal(subgroup, "valid", "bool", nodes)
     if about["has_position"]:
-        nodal(here, "has_position", "bool", nodes)
+        nodal(subgroup, "has_position", "bool", nodes)
     if about["axes"]:
         for name, axis, count in (("x", "i", shape[1]), ("y", "j", shape[0])):
-            create_array(here, name, "float64", {axis: (count, count)})
+            create_array(subgroup, name, "float64", {axis: (count, count)})
     else:
-        nodal(here, "points", "float64", vectors)
+        nodal(subgroup, "points", "float64", vectors)
     parts = zip(("time", "part_row", "part_column"), (steps, *parts_along(shape)), strict=True)
     digests = {**{axis: (n, 1) for axis, n in parts}, "digest_byte": (DIGEST_BYTES, DIGEST_BYTES)}
-    create_array(here, DIGESTS, "uint8", digests)
+    create_array(subgroup, DIGESTS, "uint8", digests)
     for name, count in about["scalars"].items():
         series = {"time": (count, 1, 1), **nodes}
-        nodal(here.require_group("scalars"), name, "float32", series)
+        nodal(subgroup.require_group("scalars"), name, "float32", series)
     tiles = dict(zip(("row", "column"), tiles_of(level, shape, about), strict=True))
-    at_times = {"time": steps, **tiles}
-    files = {FLOW: at_times, VALUES: {**at_times, "scalar": len(value_names(about))}}
+    by_time = {"time": steps, **tiles}
+    files = {FLOW: by_time, VALUES: {**by_time, "scalar": len(value_names(about))}}
     if level < about["depth"]:  # a page holds that of the root
         files[SURFACE] = tiles
     for name, axes in files.items():
         one_each = {axis: (n, 1, 1) for axis, n in axes.items()}
         byte = (FILE_BYTES, FILE_CHUNK, FILE_BYTES)
-        create_array(here, name, "uint8", {**one_each, "byte": byte})
+        create_array(subgroup, name, "uint8", {**one_each, "byte": byte})
 
 
 def create_array(
-    where: Any, name: str, kind: str, axes: Mapping[str, tuple[int, ...]], *, nodal: bool = False
+    group: Group, name: str, dtype: str, axes: Mapping[str, tuple[int, ...]], *, nodal: bool = False
 ) -> None:
-    """Describe an array by the size of each axis, those of a chunk and, if it has such, a shard.
+    """Create an array by axes: the size, that of a chunk and, if the array has shards, of a shard.
 
-    Of ``nodal`` ones bits of equal significance lie side by side.
+    In ``nodal`` arrays bits of equal significance lie side by side.
     """
     codecs = import_extra("zarr.codecs", "store")
     packer = codecs.GzipCodec(level=GZIP_LEVEL)
@@ -222,12 +229,12 @@ def create_array(
     shape, chunks, *shards = zip(*axes.values(), strict=True)
     last = len(axes) - 1
     by_component = nodal and "component" in axes
-    where.create_array(
+    group.create_array(
         name,
         shape=shape,
         chunks=chunks,
         shards=shards[0] if shards else None,
-        dtype=kind,
+        dtype=dtype,
         filters=[codecs.TransposeCodec(order=(last, *range(last)))] if by_component else [],
         compressors=[packer, codecs.Crc32cCodec()],
         fill_value=0,
@@ -242,28 +249,31 @@ def rounded(velocity: Floats) -> Floats32:
     return np.asarray(np.ldexp(whole, exponent - VELOCITY_BITS), np.float32)
 
 
-#: Gives the array of a name.
-Arrays: TypeAlias = Callable[[str], Any]
+#: A function that returns the array of a name.
+Arrays: TypeAlias = "Callable[[str], Array[ArrayV3Metadata]]"
 
 
-def to_write(store: Any) -> Arrays:
-    """Return what opens arrays of a store to write values into, zeros as well.
+def to_write(store: Store) -> Arrays:
+    """Return a function that opens arrays of a store for writing, zeros included.
 
-    What is there has an object, by which it is known that nothing is missing; of itself Zarr leaves
-    chunks of zeros out, which land is.
+    By default Zarr leaves out chunks of zeros, such as land; here every chunk has an object, so
+    that a missing one is recognised.
     """
     zarr = import_extra("zarr", "store")
 
-    def opened(name: str) -> Any:
+    def opened(name: str) -> Array[ArrayV3Metadata]:
         array = zarr.open_array(store, path=name, mode="r+")
         config = {"write_empty_chunks": True}
-        return zarr.Array(zarr.AsyncArray(array.metadata, array.store_path, config))
+        writable: Array[ArrayV3Metadata] = zarr.Array(
+            zarr.AsyncArray(array.metadata, array.store_path, config)
+        )
+        return writable
 
     return cache(opened)
 
 
-def empty_field(about: Mapping[str, Any]) -> FlowField:
-    """Return a field that has all but its nodes."""
+def empty_field(about: About) -> FlowField:
+    """Return a field without nodes, with all that describes it."""
     return FlowField(
         points=np.zeros((1, 1, 3)),
         velocity=np.zeros((1, 1, 1, 3)),

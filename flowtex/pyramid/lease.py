@@ -1,7 +1,7 @@
 """The lease of a store: the process that builds it holds one, so no other builds it.
 
-It is an object of the store with the name of its holder and the time at which that was last there.
-A holder renews it; one that is not renewed, or whose process has ended, is stale and taken over.
+It is an object of the store with the name of its holder and the time of its last renewal. A lease
+that is not renewed, or whose process has ended, is stale and taken over.
 """
 
 from __future__ import annotations
@@ -33,22 +33,22 @@ class Lease:
     def __init__(self, place: str, clock: Callable[[], float] = time.time) -> None:
         self.place, self._clock = place, clock
         self._store = store_at(place, read_only=False)
-        self._own = {"id": uuid.uuid4().hex, "host": platform.node(), "process": os.getpid()}
+        self._identity = {"id": uuid.uuid4().hex, "host": platform.node(), "process": os.getpid()}
         self._renewed, self._holder = -math.inf, ""
         self._end = threading.Event()
         self._thread = threading.Thread(target=self._keep, name="flowtex-lease", daemon=True)
 
     def __enter__(self) -> Lease:
         """Take the lease."""
-        there = self._read()
-        if there and not self._is_stale(there):
-            self._refuse(there)
-        if there:
+        content = self._read()
+        if content and not self._is_stale(content):
+            self._refuse(content)
+        if content:
             sync(self._store.delete(LEASE))
         self._write(create=True)
-        there = self._read()
-        if there.get("id") != self._own["id"]:
-            self._refuse(there)
+        content = self._read()
+        if content.get("id") != self._identity["id"]:
+            self._refuse(content)
         self._thread.start()
         return self
 
@@ -57,8 +57,8 @@ class Lease:
         self._end.set()
         self._thread.join()
         if not self._holder:
-            with suppress(Exception):  # of the work inside there may be an error already
-                if self._read().get("id") == self._own["id"]:
+            with suppress(Exception):  # an error of the work inside is more important
+                if self._read().get("id") == self._identity["id"]:
                     sync(self._store.delete(LEASE))
 
     def check(self) -> None:
@@ -71,9 +71,9 @@ class Lease:
 
     def renew(self) -> None:
         """Show that the holder is still running."""
-        there = self._read()
-        if there.get("id") != self._own["id"]:
-            self._holder = _words(there)
+        content = self._read()
+        if content.get("id") != self._identity["id"]:
+            self._holder = _process_text(content)
         else:
             self._write(create=False)
 
@@ -82,18 +82,18 @@ class Lease:
             with suppress(Exception):  # of the network: check() tries again
                 self.renew()
 
-    def _is_stale(self, there: dict[str, Any]) -> bool:
-        if self._clock() - there["at"] > STALE_S:
+    def _is_stale(self, content: dict[str, Any]) -> bool:
+        if self._clock() - content["at"] > STALE_S:
             return True
-        here = there.get("host") == self._own["host"]
-        return here and not _is_running(there.get("process"))
+        is_local = content.get("host") == self._identity["host"]
+        return is_local and not _is_running(content.get("process"))
 
-    def _refuse(self, there: dict[str, Any]) -> None:
-        age = max(self._clock() - there.get("at", 0.0), 0.0)
+    def _refuse(self, content: dict[str, Any]) -> None:
+        age = max(self._clock() - content.get("at", 0.0), 0.0)
         msg = (
-            f"{self.place} is being built by {_words(there)}, last active {age:.0f} s ago; wait "
-            f"until it ends. If it is no longer running, build again {STALE_S:.0f} s after its "
-            "last activity"
+            f"{self.place} is being built by {_process_text(content)}, last active {age:.0f} s "
+            f"ago; wait until it ends. If it is no longer running, build again {STALE_S:.0f} s "
+            "after its last activity"
         )
         raise PyramidError(msg)
 
@@ -101,36 +101,36 @@ class Lease:
         """Return the content of the lease; empty without one."""
         from zarr.core.buffer import default_buffer_prototype
 
-        found = sync(self._store.get(LEASE, default_buffer_prototype()))
-        if found is None:
+        data = sync(self._store.get(LEASE, default_buffer_prototype()))
+        if data is None:
             return {}
         with suppress(ValueError, KeyError, TypeError):
-            told: dict[str, Any] = json.loads(found.to_bytes())
-            if isinstance(told["at"], (int, float)):
-                return told
+            content: dict[str, Any] = json.loads(data.to_bytes())
+            if isinstance(content["at"], (int, float)):
+                return content
         return {"at": -math.inf}  # it was cut off, so it is not held
 
     def _write(self, *, create: bool) -> None:
         from zarr.core.buffer import default_buffer_prototype
 
         now = self._clock()
-        text = json.dumps({**self._own, "at": now}).encode()
+        text = json.dumps({**self._identity, "at": now}).encode()
         data = default_buffer_prototype().buffer.from_bytes(text)
         try:
             set_ = self._store.set_if_not_exists if create else self._store.set
             sync(set_(LEASE, data))
         except (OSError, NotImplementedError):
-            # Not all storage has links, or writes on a condition; what is read then decides.
+            # Not all storage has links or conditional writes; then the content decides.
             sync(self._store.set(LEASE, data))
         self._renewed = now
 
 
-def _words(there: dict[str, Any]) -> str:
-    return f"process {there.get('process', '?')} on {there.get('host', 'another machine')}"
+def _process_text(content: dict[str, Any]) -> str:
+    return f"process {content.get('process', '?')} on {content.get('host', 'another machine')}"
 
 
-def _is_running(process: Any) -> bool:
-    """Whether a process of this machine runs, or that is not known."""
+def _is_running(process: object) -> bool:
+    """Return whether a process of this machine runs, or that is unknown."""
     if sys.platform == "win32" or type(process) is not int:
         return True
     try:

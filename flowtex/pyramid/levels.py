@@ -1,4 +1,4 @@
-"""What is read from a store: nodes of its levels, and whether files of tiles are whole."""
+"""Reading of a store: nodes of its levels, and checks of the files of tiles."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 import threading
 from collections.abc import Callable, Coroutine
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -36,11 +36,17 @@ from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.textures.tiles import TileKey
 from flowtex.textures.tiles.pyramid import level_shape
 
-#: What of an array's metadata decides on the meaning of its bytes.
+if TYPE_CHECKING:
+    from zarr import AsyncArray
+    from zarr.core.metadata import ArrayV3Metadata
+
+T = TypeVar("T")
+
+#: Metadata of an array that determine the meaning of its bytes.
 FORMAT_NAMES = ("shape", "data_type", "chunk_grid", "chunk_key_encoding", "fill_value", "codecs")
-#: How often is looked whether what is read is still wanted.
+#: Seconds between checks whether the surrounding work was cancelled.
 LOOK_INTERVAL_S = 0.1
-#: Characters of an error of others that are repeated.
+#: Most characters of an error of another library that a message repeats.
 MOST_LETTERS = 300
 
 #: Blocks that are read one after the other; more of them are read as single lines.
@@ -51,11 +57,11 @@ NUMBER_BYTES, NODE_BYTES, KEPT_BYTES = 8, 24, 64_000_000
 
 
 class _Piece(NamedTuple):
-    """A piece of an array: what an index takes, and of that some rows and columns."""
+    """A piece of an array: an index, and rows and columns within its result."""
 
     array: str
-    selection: Any
-    #: What an error calls it.
+    selection: tuple[int | slice, ...]
+    #: Its name in errors.
     name: str
     lines: tuple[Indices, Indices] | None = None
 
@@ -76,18 +82,18 @@ class Levels:
             raise
         except Exception as error:
             msg = (
-                f"{self.place} contains no readable pyramid ({_words(error)}); build one with "
+                f"{self.place} contains no readable pyramid ({_error_text(error)}); build one with "
                 "flowtex.pyramid.build"
             )
             raise PyramidError(msg) from None
         #: The description of the field and its pyramid.
         self.about = check_about(about, self.place)
-        self._arrays: dict[str, Any] = {}
+        self._arrays: dict[str, AsyncArray[ArrayV3Metadata]] = {}
         self._expected: dict[str, dict[str, dict[str, Any]]] = {}
         self._lock = threading.Lock()
 
     def _format(self, name: str) -> dict[str, Any]:
-        """Return what an array has to be like: as one that is made for the same pyramid."""
+        """Return the format that an array must have: that of one made for the same pyramid."""
         top = name.partition("/")[0]
         with self._lock:
             if top not in self._expected:
@@ -107,11 +113,11 @@ class Levels:
 
     @property
     def template(self) -> FlowField:
-        """A field that has all but its nodes."""
+        """A field without nodes, with all that describes it."""
         return empty_field(self.about)
 
     def whole(self, name: str, at: tuple[int, ...] = ()) -> AnyArray:
-        """Return an array, or what it has at some numbers of its first axes."""
+        """Return an array, or its part at some indices of the first axes."""
         (values,) = self._read(_Piece(name, at, name))
         return values
 
@@ -121,7 +127,7 @@ class Levels:
         return valid.astype(bool)
 
     def check_part(self, part: Part) -> None:
-        """Raise a DamageError where some of a part is missing, or is not what was written."""
+        """Raise a DamageError where a part is incomplete, or differs from the written one."""
         level, step, *at = part
         rows, columns = (np.arange(s.start, s.stop) for s in part.lines(self.shape(level)))
         scalars = [name for name, count in self.about["scalars"].items() if step < count]
@@ -132,34 +138,36 @@ class Levels:
         if step == 0:
             pieces += [self._nodal(level, name, rows, columns) for name in ground]
         words = f"of level {level} at step {step}, part {tuple(at)},"
-        told, velocity, *rest = self._read(
+        stored_digest, velocity, *rest = self._read(
             *(piece._replace(name=f"{piece.name} {words}") for piece in pieces)
         )
-        known = dict(zip(ground, rest[len(scalars) :], strict=step == 0))
+        arrays = dict(zip(ground, rest[len(scalars) :], strict=step == 0))
         nodes = Nodes(
-            self._points([known[k] for k in self._places()], rows, columns) if known else velocity,
-            known.get("valid", velocity).astype(bool),
+            self._points([arrays[k] for k in self._places()], rows, columns)
+            if arrays
+            else velocity,
+            arrays.get("valid", velocity).astype(bool),
             velocity,
             dict(zip(scalars, rest[: len(scalars)], strict=True)),
-            known["has_position"].astype(bool) if "has_position" in known else None,
+            arrays["has_position"].astype(bool) if "has_position" in arrays else None,
         )
-        if part_digest(nodes, self.about, step) != told.tobytes():
+        if part_digest(nodes, self.about, step) != stored_digest.tobytes():
             msg = f"velocity {words} of {self.place} differs from what was written"
             raise DamageError(msg)
 
     def check_tile(self, key: TileKey, step: int) -> None:
-        """Raise a DamageError where some of a tile is missing or corrupt."""
-        where, (level, *at) = f"of tile {tuple(key)} at step {step}", key
-        parts = self._check_file(FLOW, level, (step, *at), f"{FLOW} {where}")
+        """Raise a DamageError where a part of a tile is missing or corrupt."""
+        label, (level, *at) = f"of tile {tuple(key)} at step {step}", key
+        parts = self._check_file(FLOW, level, (step, *at), f"{FLOW} {label}")
         if parts:  # something is drawn
-            # A flow that browsers trace tells its speed.
+            # Browsers compute the speed of a flow that they trace.
             is_traced = any("/flow/" in part for part in parts)
             counts = dict.fromkeys([] if is_traced else ["speed"], step + 1) | self.about["scalars"]
             for number, scalar in enumerate(value_names(self.about)):
                 if step < counts.get(scalar, 0):
-                    self._check_file(VALUES, level, (step, *at, number), f"{scalar} {where}")
+                    self._check_file(VALUES, level, (step, *at, number), f"{scalar} {label}")
         if step == 0 and level < self.about["depth"]:
-            self._check_file(SURFACE, level, tuple(at), f"{SURFACE} {where}")
+            self._check_file(SURFACE, level, tuple(at), f"{SURFACE} {label}")
 
     def _check_file(self, kind: str, level: int, at: tuple[int, ...], name: str) -> list[str]:
         """Return the names of the parts of a file; a DamageError says what is wrong."""
@@ -168,13 +176,15 @@ class Levels:
         try:
             infos, start = file_infos(file.tobytes())
             size = start + sum(info["bytes"] for info in infos)
-            of = file[start : start + infos[0]["bytes"]].tobytes().decode()
+            fingerprint = file[start : start + infos[0]["bytes"]].tobytes().decode()
             names = [info["name"] for info in infos[1:]]
         except (ValueError, LookupError, TypeError) as error:
             raise self._error(name, error) from None
         tile = [level, *at[1:3]] if kind != SURFACE else [level, *at]
         prefix = "tile/" + "/".join(map(str, tile)) + "/"
-        if of != self.about["fingerprint"] or not all(one.startswith(prefix) for one in names):
+        if fingerprint != self.about["fingerprint"] or not all(
+            name.startswith(prefix) for name in names
+        ):
             msg = f"{name} of {self.place} belongs to another tile; build it again"
             raise DamageError(msg)
         for first in range(FILE_CHUNK, size, FILE_CHUNK):
@@ -190,7 +200,7 @@ class Levels:
     def nodes(
         self, level: int, rows: Indices, columns: Indices, *, velocities: bool = True
     ) -> Nodes:
-        """Return what some lines of a level have, with or without velocities."""
+        """Return the data at some lines of a level, with or without velocities."""
         about = self.about
         names = [*self._places(), "valid", *["has_position"] * about["has_position"]]
         series = {f"scalars/{name}": count for name, count in about["scalars"].items()}
@@ -202,12 +212,12 @@ class Levels:
             for name, count in series.items()
             if count > 1 and (about["late"] or count * nbytes > KEPT_BYTES)
         }
-        parts = [self._nodal(level, name, rows, columns) for name in names]
+        pieces = [self._nodal(level, name, rows, columns) for name in names]
         for name, count in series.items():
             if name not in late:
-                parts += [self._nodal(level, name, rows, columns, step) for step in range(count)]
-        values = iter(self._read(*parts))
-        known = {name: next(values) for name in names}
+                pieces += [self._nodal(level, name, rows, columns, step) for step in range(count)]
+        values = iter(self._read(*pieces))
+        arrays = {name: next(values) for name in names}
         steps: dict[str, Any] = {}
         for name, count in series.items():
             if name in late:
@@ -219,17 +229,17 @@ class Levels:
         if velocities and "velocity" not in late:
             velocity = _in_space(velocity)
         return Nodes(
-            self._points([known[name] for name in self._places()], rows, columns),
-            known["valid"].astype(bool),
+            self._points([arrays[name] for name in self._places()], rows, columns),
+            arrays["valid"].astype(bool),
             velocity,
             {name.removeprefix("scalars/"): values for name, values in steps.items()},
-            known["has_position"].astype(bool) if about["has_position"] else None,
+            arrays["has_position"].astype(bool) if about["has_position"] else None,
         )
 
     def _later(
         self, level: int, name: str, rows: Indices, columns: Indices
     ) -> Callable[[int], AnyArray]:
-        """Return what reads a step of an array when it is requested."""
+        """Return a function that reads a step of an array on request."""
 
         def read(step: int) -> AnyArray:
             (values,) = self._read(self._nodal(level, name, rows, columns, step))
@@ -255,47 +265,47 @@ class Levels:
     def _nodal(
         self, level: int, name: str, rows: Indices, columns: Indices, step: int | None = None
     ) -> _Piece:
-        """Return which part of an array over the nodes some rows and columns are."""
-        before = () if step is None else (step,)
+        """Return the piece of an array over the nodes at some rows and columns."""
+        leading = () if step is None else (step,)
         whole = f"{level}/{name}"
         if name in ("x", "y"):
-            return _Piece(whole, slice(None), whole)
-        return _Piece(whole, before, whole, (rows, columns))
+            return _Piece(whole, (slice(None),), whole)
+        return _Piece(whole, leading, whole, (rows, columns))
 
-    def _read(self, *parts: _Piece) -> list[AnyArray]:
+    def _read(self, *pieces: _Piece) -> list[AnyArray]:
         """Read parts of arrays, all at once."""
-        formats = [self._format(part.array) for part in parts]
-        need, free = sum(map(_size, parts, formats)), available_bytes()
+        formats = [self._format(piece.array) for piece in pieces]
+        need, free = sum(map(_size, pieces, formats)), available_bytes()
         if need > free:
             msg = (
-                f"{parts[0].name} of {self.place} takes {need:,} bytes, but only {free:,} bytes "
+                f"{pieces[0].name} of {self.place} takes {need:,} bytes, but only {free:,} bytes "
                 "of memory are available"
             )
             raise PyramidError(msg)
 
         async def together() -> list[AnyArray]:
-            return await asyncio.gather(*map(self._values, parts, formats))
+            return await asyncio.gather(*map(self._values, pieces, formats))
 
         values: list[AnyArray] = _wait(together())
         return values
 
-    async def _values(self, part: _Piece, expected: dict[str, Any]) -> AnyArray:
+    async def _values(self, piece: _Piece, expected: dict[str, Any]) -> AnyArray:
         try:
-            array = await self._opened(part.array, expected)
-            if part.lines is None:
-                return np.asarray(await array.getitem(part.selection))
-            values = await _lines(array, part.selection, *part.lines)
-            # Fields are float64, as all is that is computed of them.
+            array = await self._opened(piece.array, expected)
+            if piece.lines is None:
+                return np.asarray(await array.getitem(piece.selection))
+            values = await _lines(array, piece.selection, *piece.lines)
+            # Fields are float64, as all values computed from them.
             return values.astype(float) if values.dtype == np.float32 else values
         except PyramidError:
             raise
         except Exception as error:
-            raise self._error(part.name, error) from None
+            raise self._error(piece.name, error) from None
 
-    async def _opened(self, name: str, expected: dict[str, Any]) -> Any:
-        """Return an array of Zarr's, to be awaited.
+    async def _opened(self, name: str, expected: dict[str, Any]) -> AsyncArray[ArrayV3Metadata]:
+        """Return an asynchronous array of Zarr's.
 
-        It has to be what is written here: shape, type and packing decide what its bytes mean.
+        Its format must be the one written here: it decides the meaning of the bytes.
         """
         if name not in self._arrays:
             open_array = import_extra("zarr.api.asynchronous", "store").open_array
@@ -316,63 +326,68 @@ class Levels:
             isinstance(error, ReadFault) and not error.missing
         )
         kind = PyramidError if unread else DamageError
-        return kind(f"{name} of {self.place} cannot be read: {_words(error)}")
+        return kind(f"{name} of {self.place} cannot be read: {_error_text(error)}")
 
 
-def _size(part: _Piece, expected: dict[str, Any]) -> int:
+def _size(piece: _Piece, expected: dict[str, Any]) -> int:
     """Return the bytes that a piece of an array takes in memory."""
-    shape, chosen = expected["shape"], part.selection
-    if part.lines is not None:
-        shape = (*map(len, part.lines), *shape[len(chosen) + 2 :])
-    elif isinstance(chosen, tuple):
-        pairs = zip(chosen, shape, strict=False)
-        spans = (len(range(n)[some]) for some, n in pairs if isinstance(some, slice))
-        shape = (*spans, *shape[len(chosen) :])
+    shape, selection = expected["shape"], piece.selection
+    if piece.lines is not None:
+        shape = (*map(len, piece.lines), *shape[len(selection) + 2 :])
+    else:
+        pairs = zip(selection, shape, strict=False)
+        spans = (len(range(n)[index]) for index, n in pairs if isinstance(index, slice))
+        shape = (*spans, *shape[len(selection) :])
     return int(math.prod(shape)) * NUMBER_BYTES
 
 
-async def _lines(array: Any, before: tuple[int, ...], rows: Indices, columns: Indices) -> AnyArray:
-    """Read some rows and columns of an array over the nodes, as few blocks where they are that."""
+async def _lines(
+    array: AsyncArray[ArrayV3Metadata],
+    leading: tuple[int | slice, ...],
+    rows: Indices,
+    columns: Indices,
+) -> AnyArray:
+    """Read some rows and columns of an array over the nodes, as blocks where these are few."""
     runs = [list(even_runs(lines)) for lines in (rows, columns)]
     if len(runs[0]) * len(runs[1]) > MOST_RUNS:
-        return np.asarray(await array.oindex.getitem((*before, rows, columns)))
-    blocks = [array.getitem((*before, j, i)) for j in runs[0] for i in runs[1]]
+        return np.asarray(await array.oindex.getitem((*leading, rows, columns)))
+    blocks = [array.getitem((*leading, j, i)) for j in runs[0] for i in runs[1]]
     read = iter(map(np.asarray, await asyncio.gather(*blocks)))
     bands = [[next(read) for _ in runs[1]] for _ in runs[0]]
     return np.concatenate([np.concatenate(band, axis=1) for band in bands])
 
 
 def _in_space(values: Floats, height: float = 0.0) -> Floats:
-    """Give vectors or points (..., 2) their third component."""
+    """Return vectors or points (..., 2) with a third component."""
     if values.shape[-1] == 3:
         return values
     third = np.full((*values.shape[:-1], 1), height)
     return np.concatenate([values, third], axis=-1)
 
 
-def _words(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     text = str(error)
     if "checksum" in text:
         return "checksum mismatch: the object is corrupt"
-    known = isinstance(error, (ReadFault, PyramidError))
-    return text if known else f"{type(error).__name__}: {text}"[:MOST_LETTERS]
+    is_plain = isinstance(error, (ReadFault, PyramidError))
+    return text if is_plain else f"{type(error).__name__}: {text}"[:MOST_LETTERS]
 
 
 def _format_of(array: Any) -> dict[str, Any]:
-    told = array.metadata.to_dict()
-    return {name: told[name] for name in FORMAT_NAMES}
+    metadata = array.metadata.to_dict()
+    return {name: metadata[name] for name in FORMAT_NAMES}
 
 
-def _wait(reading: Coroutine[Any, Any, Any]) -> Any:
-    """Return what is read; it is dropped if the surrounding work was cancelled."""
+def _wait(reading: Coroutine[Any, Any, T]) -> T:
+    """Return the result of reading, which ends if the surrounding work is cancelled."""
 
-    async def watched() -> Any:
+    async def watched() -> T:
         task = asyncio.ensure_future(reading)
         try:
             while not task.done():
                 await asyncio.wait([task], timeout=LOOK_INTERVAL_S)
                 if not task.done():
-                    check()  # the caller's: what is started for it has its context
+                    check()  # the coroutine has the context of the caller
             return task.result()
         finally:
             task.cancel()

@@ -1,4 +1,4 @@
-"""The objects of a store as they are read: what does not come is an error in plain words.
+"""The objects of a store as they are read; a missing one is an error in plain words.
 
 Zarr takes an object that is missing for one of zeros. That would draw land, or still water, where
 data are lost, so here it is an error. Parts of shards that many tiles need, those of arrays over
@@ -18,21 +18,25 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from zarr import AsyncArray
+from zarr.abc.codec import Codec
+from zarr.abc.store import ByteRequest, Store
 from zarr.codecs import BloscCodec, GzipCodec, ShardingCodec
-from zarr.core.buffer import default_buffer_prototype
+from zarr.core.array_spec import ArraySpec
+from zarr.core.buffer import Buffer, BufferPrototype, default_buffer_prototype
+from zarr.core.metadata import ArrayV3Metadata
 from zarr.storage import WrapperStore
 
 from flowtex._util.cache import ByteCache
 from flowtex.pyramid.places import MOST_REPEATS, ReadFault, fault_words, is_refused
 
-#: Objects, or parts of them, that are on their way at once from one store.
+#: Most objects, or parts of them, that are read at once from one store.
 MOST_READS = 16
-#: Memory of what is kept of them, packed as it came.
+#: Memory of the objects that are kept, as they were compressed.
 CACHE_BYTES = 200_000_000
 #: Files for a browser are read once, to check them.
 _FILES = re.compile(r"^\d+/(flow|values|surface)/c/")
 _CHUNK = re.compile(r"/c(/\d+)+$")
-#: What arrays of a velocity are called for the most part.
+#: Usual names of arrays of a velocity.
 KNOWN_NAMES = (
     *("u", "v", "U", "V", "u10", "v10", "uo", "vo", "ua", "va", "ugos", "vgos"),
     *("water_u", "water_v", "uwnd", "vwnd"),
@@ -45,26 +49,30 @@ _GZIP_WINDOW = 31
 
 @dataclass(frozen=True)
 class _Piece:
-    buffer: Any
+    buffer: Buffer | None
 
     @property
     def nbytes(self) -> int:
         return len(self.buffer) if self.buffer is not None else 0
 
 
-class Objects(WrapperStore[Any]):
+class Objects(WrapperStore[Store]):
     """A store of Zarr's to read a pyramid from; errors are each a :class:`ReadFault`."""
 
-    #: Whether chunks may be left out that have nothing but the fill value.
+    #: Whether chunks of the fill value may be missing.
     sparse = False
 
-    def __init__(self, store: Any) -> None:
+    def __init__(self, store: Store) -> None:
         super().__init__(store)
-        self._kept: ByteCache[Any, _Piece] = ByteCache(CACHE_BYTES)
-        self._gates: weakref.WeakValueDictionary[Any, asyncio.Lock] = weakref.WeakValueDictionary()
+        self._kept: ByteCache[tuple[str, str], _Piece] = ByteCache(CACHE_BYTES)
+        self._gates: weakref.WeakValueDictionary[tuple[str, str], asyncio.Lock] = (
+            weakref.WeakValueDictionary()
+        )
         self._reads = asyncio.Semaphore(MOST_READS)
 
-    async def get(self, key: str, prototype: Any, byte_range: Any = None) -> Any:
+    async def get(
+        self, key: str, prototype: BufferPrototype, byte_range: ByteRequest | None = None
+    ) -> Buffer | None:
         """Return an object or a part of it, ``None`` for a missing one that is not a chunk."""
         if _FILES.match(key):
             return await self._read(key, prototype, byte_range)
@@ -77,14 +85,16 @@ class Objects(WrapperStore[Any]):
                 self._kept.put(name, piece)
             return piece.buffer
 
-    async def _read(self, key: str, prototype: Any, byte_range: Any) -> Any:
+    async def _read(
+        self, key: str, prototype: BufferPrototype, byte_range: ByteRequest | None
+    ) -> Buffer | None:
         async with self._reads:
             for trial in range(MOST_REPEATS + 1):
                 try:
                     result = await self._store.get(key, prototype, byte_range)
                     break
                 except Exception as error:
-                    # An answer that was begun is not requested again by obstore.
+                    # obstore does not repeat a request whose answer was cut off.
                     if "Interrupted" in str(error) and trial < MOST_REPEATS:
                         continue
                     if is_refused(error) and key != "zarr.json" and not _CHUNK.search(key):
@@ -102,16 +112,16 @@ class OthersObjects(Objects):
 
     sparse = True
 
-    def __init__(self, store: Any, names: tuple[str, ...] = ()) -> None:
+    def __init__(self, store: Store, names: tuple[str, ...] = ()) -> None:
         super().__init__(store)
         self._names = names
 
-    def __reduce__(self) -> Any:
-        """Give what another process makes it of."""
+    def __reduce__(self) -> tuple[type[OthersObjects], tuple[Store, tuple[str, ...]]]:
+        """Return the class and arguments with which another process makes it."""
         return OthersObjects, (self._store, self._names)
 
     async def list_dir(self, prefix: str) -> AsyncIterator[str]:
-        """Give what is in a group: its levels, or the velocity with what lies along its axes."""
+        """Yield the members of a group: levels, or the velocity and coordinates of its axes."""
         try:
             listed = [name async for name in self._store.list_dir(prefix)]
         except Exception:
@@ -121,13 +131,15 @@ class OthersObjects(Objects):
 
     async def _found(self, group: str) -> list[str]:
         levels = level_names((await self._metadata(group)).get("attributes", {}))
-        some = await self._present(group, levels or (*self._names, *KNOWN_NAMES))
-        beside = {str(name) for one in some.values() for name in one.get("dimension_names") or ()}
-        return list(some | await self._present(group, beside - {*some}))
+        arrays = await self._present(group, levels or (*self._names, *KNOWN_NAMES))
+        axes = {
+            str(name) for array in arrays.values() for name in array.get("dimension_names") or ()
+        }
+        return list(arrays | await self._present(group, axes - {*arrays}))
 
     async def _present(self, group: str, names: Iterable[str]) -> dict[str, dict[str, Any]]:
         found = await asyncio.gather(*(self._metadata(f"{group}/{name}") for name in names))
-        return {name: one for name, one in zip(names, found, strict=True) if one}
+        return {name: metadata for name, metadata in zip(names, found, strict=True) if metadata}
 
     async def _metadata(self, path: str) -> dict[str, Any]:
         """Return the metadata of a group or an array; empty if it has none."""
@@ -139,19 +151,21 @@ class OthersObjects(Objects):
 
 def level_names(attributes: Mapping[str, Any]) -> list[str]:
     """Return the paths of levels, from the metadata of ndpyramid or of zarr-conventions."""
-    told = attributes.get("multiscales")
-    if isinstance(told, list):  # of the former there is one in a list
-        told = told[0] if told else {}
-    if not isinstance(told, dict):
+    multiscales = attributes.get("multiscales")
+    if isinstance(multiscales, list):  # of the former there is one in a list
+        multiscales = multiscales[0] if multiscales else {}
+    if not isinstance(multiscales, dict):
         return []
-    levels = [*told.get("layout", []), *told.get("datasets", [])]
-    return [str(one.get("asset", one.get("path"))) for one in levels if isinstance(one, dict)]
+    levels = [*multiscales.get("layout", []), *multiscales.get("datasets", [])]
+    return [
+        str(level.get("asset", level.get("path"))) for level in levels if isinstance(level, dict)
+    ]
 
 
 class _BoundedGzip(GzipCodec):
     """gzip that unpacks as many bytes as a chunk has, and no more."""
 
-    def _decode_sync(self, chunk_bytes: Any, chunk_spec: Any) -> Any:
+    def _decode_sync(self, chunk_bytes: Buffer, chunk_spec: ArraySpec) -> Buffer:
         size = math.prod(chunk_spec.shape) * chunk_spec.dtype.to_native_dtype().itemsize
         unpacking = zlib.decompressobj(_GZIP_WINDOW)
         data = unpacking.decompress(chunk_bytes.to_bytes(), size + 1)
@@ -160,14 +174,14 @@ class _BoundedGzip(GzipCodec):
             raise ValueError(msg)
         return chunk_spec.prototype.buffer.from_bytes(data)
 
-    async def _decode_single(self, chunk_bytes: Any, chunk_spec: Any) -> Any:
+    async def _decode_single(self, chunk_bytes: Buffer, chunk_spec: ArraySpec) -> Buffer:
         return await asyncio.to_thread(self._decode_sync, chunk_bytes, chunk_spec)
 
 
 class _BoundedBlosc(BloscCodec):
     """Blosc for chunks whose header declares as many bytes as they decompress to."""
 
-    async def _decode_single(self, chunk_bytes: Any, chunk_spec: Any) -> Any:
+    async def _decode_single(self, chunk_bytes: Buffer, chunk_spec: ArraySpec) -> Buffer:
         size = math.prod(chunk_spec.shape) * chunk_spec.dtype.to_native_dtype().itemsize
         # Blosc writes the size into bytes 4 to 8 of a chunk, and unpacks to no more.
         if int.from_bytes(chunk_bytes.to_bytes()[4:8], "little") != size:
@@ -176,15 +190,15 @@ class _BoundedBlosc(BloscCodec):
         return await super()._decode_single(chunk_bytes, chunk_spec)
 
 
-def bounded(array: Any) -> Any:
+def bounded(array: AsyncArray[ArrayV3Metadata]) -> AsyncArray[ArrayV3Metadata]:
     """Return an array of Zarr's whose chunks take no more memory than the array declares."""
 
-    def of(codec: Any) -> Any:
+    def limited(codec: Codec) -> Codec:
         if isinstance(codec, ShardingCodec):
-            return replace(codec, codecs=tuple(map(of, codec.codecs)))
+            return replace(codec, codecs=tuple(map(limited, codec.codecs)))
         if isinstance(codec, BloscCodec):
             return _BoundedBlosc(**{name: getattr(codec, name) for name in BLOSC_NAMES})
         return _BoundedGzip(level=codec.level) if isinstance(codec, GzipCodec) else codec
 
-    metadata = replace(array.metadata, codecs=tuple(map(of, array.metadata.codecs)))
+    metadata = replace(array.metadata, codecs=tuple(map(limited, array.metadata.codecs)))
     return AsyncArray(metadata, array.store_path, array.config)

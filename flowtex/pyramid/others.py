@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,10 +21,13 @@ from flowtex._util.notices import Notice, notify
 from flowtex.field import FlowField
 from flowtex.field.datasets.read import read_datasets
 from flowtex.field.datasets.regions import Regions
-from flowtex.field.steps import LazySteps, Nodes
+from flowtex.field.steps import LazySteps, Nodes, Steps
 from flowtex.pyramid.places import PyramidError, ReadFault, fault_words
 from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, source_of
 from flowtex.textures.tiles.pyramid import ROOT_NODES, level_lines, root_level
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: Nodes of a level may be so many times as far apart as those that are drawn.
 WIDER = 1.5
@@ -39,20 +42,22 @@ def levels_of_others(
 ) -> OtherLevels | FlowField:
     """Open a store of others; one that is small, or on curved lines, is a whole field."""
     datasets = datasets_at(place, options)
-    named = {"name": Path(place).stem, **options}
-    finest = source_of(datasets[0], uncertainty, **named)
+    arguments = {"name": Path(place).stem, **options}
+    finest = source_of(datasets[0], uncertainty, **arguments)
     if not isinstance(finest, RegionSource):
         return finest.field
     if math.prod(finest.shape) <= WHOLE_NODES:
-        return FlowField.from_xarray(datasets[0], uncertainty=uncertainty, **named)
+        return FlowField.from_xarray(datasets[0], uncertainty=uncertainty, **arguments)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", Notice)  # what the finest one has told
-        others: list[Any] = [read_datasets(one, regions=True, **named) for one in datasets[1:]]
-    return OtherLevels(place, [finest, *map(RegionSource, others)])
+        warnings.simplefilter("ignore", Notice)  # those of the finest level were issued
+        coarser: list[Any] = [
+            read_datasets(level, regions=True, **arguments) for level in datasets[1:]
+        ]
+    return OtherLevels(place, [finest, *map(RegionSource, coarser)])
 
 
 class OtherLevels:
-    """The levels of a store of others, the finest first, read as those of ours are."""
+    """The levels of a store of other programs, the finest first, read as those of flowtex."""
 
     def __init__(self, place: str, sources: list[RegionSource]) -> None:
         self.place = place
@@ -67,11 +72,11 @@ class OtherLevels:
             "parameter": "arclength",
             "lines": "streamlines",
         }
-        for words in self._slow():
+        for words in self._slow_properties():
             notify(words)
 
-    def _slow(self) -> list[str]:
-        """Return what takes long in a store, with what helps."""
+    def _slow_properties(self) -> list[str]:
+        """Return sentences about properties of a store that make it slow, with the remedy."""
         build = f"`flowtex pyramid {self.place} -o flow.zarr` builds a faster store"
         component, shape = self._regions[0].components[0], self._regions[-1].lines.shape
         chunks = component.encoding.get("chunks") or component.shape
@@ -96,7 +101,7 @@ class OtherLevels:
         return self._regions[0].lines.points(*fine), np.isfinite(u)
 
     def nodes(self, level: int, rows: Indices, columns: Indices) -> Nodes:
-        """Return what some lines of a level have."""
+        """Return the data at some lines of a level."""
         points, valid = self.positions(level, rows, columns)
         finest, count = self._regions[0], len(self.template.times)
         fine = self._lines(level, rows, columns)
@@ -121,16 +126,16 @@ class OtherLevels:
     def _lines(self, level: int, rows: Indices, columns: Indices) -> tuple[Indices, Indices]:
         """Return the numbers of lines of a level in the finest one."""
         first, second = (
-            level_lines(n, level)[some]
-            for n, some in zip(self.about["nodes"], (rows, columns), strict=True)
+            level_lines(n, level)[chosen]
+            for n, chosen in zip(self.about["nodes"], (rows, columns), strict=True)
         )
         return first, second
 
     def _nearest(self, level: int) -> int:
-        """Return the coarsest level of theirs that has nodes enough for a level."""
+        """Return the number of their coarsest level that has enough nodes for a level."""
         finest = math.prod(self._regions[0].lines.shape)
-        wide = [math.sqrt(finest / math.prod(one.lines.shape)) for one in self._regions]
-        return max(n for n, one in enumerate(wide) if one <= WIDER * 2**level)
+        spacings = [math.sqrt(finest / math.prod(level.lines.shape)) for level in self._regions]
+        return max(n for n, spacing in enumerate(spacings) if spacing <= WIDER * 2**level)
 
     def _components(
         self, step: int, level: int, rows: Indices, columns: Indices
@@ -142,17 +147,21 @@ class OtherLevels:
         wet = np.isfinite(u) & np.isfinite(v)
         if mask:
             wet &= mask[0] > 0
-        return tuple(np.where(wet, one * regions.factor, np.nan) for one in (u, v))  # type: ignore[return-value]
+        return tuple(np.where(wet, part * regions.factor, np.nan) for part in (u, v))  # type: ignore[return-value]
 
     def _values(
-        self, regions: Regions, variables: list[Any], step: int, fine: tuple[Indices, Indices]
+        self,
+        regions: Regions,
+        variables: list[xr.Variable],
+        step: int,
+        fine: tuple[Indices, Indices],
     ) -> list[Floats]:
         """Interpolate variables of a level of theirs at lines of the finest one."""
-        lines, own = self._regions[0].lines, regions.lines
+        lines, theirs = self._regions[0].lines, regions.lines
         turn = 360.0 if lines.projection is not None else None
         (below, down), (beside, across) = (
-            _between(lines.b[fine[0]], own.b, None),
-            _between(lines.a[fine[1]], own.a, turn),
+            _between(lines.b[fine[0]], theirs.b, None),
+            _between(lines.a[fine[1]], theirs.a, turn),
         )
         rows, columns = np.unique(below), np.unique(beside)
         at = np.searchsorted(rows, below), np.searchsorted(columns, beside)
@@ -168,24 +177,24 @@ class OtherLevels:
         return result
 
 
-def _steps(count: int, read: Callable[[int], AnyArray]) -> Any:
-    """Return steps, of which those of a series are read late."""
+def _steps(count: int, read: Callable[[int], AnyArray]) -> Steps:
+    """Return the steps; those of a series are read on request."""
     return read(0)[None] if count == 1 else LazySteps(count, read, kept=KEPT_BYTES)
 
 
-def _between(wanted: Floats, line: Floats, turn: float | None) -> tuple[Indices, Floats]:
+def _between(places: Floats, line: Floats, turn: float | None) -> tuple[Indices, Floats]:
     """Return the numbers in a line of the two nodes around each place, (2, N).
 
-    The share of the second one comes with them. Where places lie farther apart than nodes, the
-    nearest one is used for both: what is read then is evenly spaced.
+    The shares of the second ones, (N,), come with them. Where places lie farther apart than nodes,
+    the nearest node is used for both: the nodes that are read are then evenly spaced.
     """
     if turn is not None:
         line = np.unwrap(line, period=turn)
         middle = (line[0] + line[-1]) / 2
-        wanted = middle + (wanted - middle + turn / 2) % turn - turn / 2
+        places = middle + (places - middle + turn / 2) % turn - turn / 2
     numbers = np.arange(len(line), dtype=float)
-    way = 1 if line[-1] > line[0] else -1
-    at = np.interp(wanted, line[::way], numbers[::way])
+    direction = 1 if line[-1] > line[0] else -1
+    at = np.interp(places, line[::direction], numbers[::direction])
     if len(at) > 1 and np.median(np.abs(np.diff(at))) > WIDER:
         near = np.rint(at).astype(np.intp)
         return np.stack([near, near]), np.zeros(len(at))
@@ -197,15 +206,17 @@ def _between(wanted: Floats, line: Floats, turn: float | None) -> tuple[Indices,
 def _interpolated(
     values: Floats, at: tuple[Indices, Indices], shares: tuple[Floats, Floats]
 ) -> Floats:
-    """Interpolate (J, I) between lines; NaN has no weight, and is where half of it is missing."""
+    """Interpolate (J, I) between lines; NaN has no weight, and results where half is missing."""
     known = np.isfinite(values)
     total, weight = (np.zeros((at[0].shape[1], at[1].shape[1])) for _ in range(2))
     for a in (0, 1):
         for b in (0, 1):
-            own = (shares[0] if a else 1 - shares[0])[:, None] * (shares[1] if b else 1 - shares[1])
+            share = (shares[0] if a else 1 - shares[0])[:, None] * (
+                shares[1] if b else 1 - shares[1]
+            )
             nodes = np.ix_(at[0][a], at[1][b])
-            own = own * known[nodes]
-            total += own * np.where(known[nodes], values[nodes], 0.0)
-            weight += own
+            share = share * known[nodes]
+            total += share * np.where(known[nodes], values[nodes], 0.0)
+            weight += share
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(weight > 0.5 - 1e-9, total / weight, np.nan)

@@ -12,14 +12,20 @@ from collections.abc import AsyncIterator, Callable, Coroutine, Iterable, Iterat
 from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 from urllib.parse import urlsplit
 
 from flowtex._util.arguments import checked_path
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
-#: Written into every store; a reader refuses what it does not know.
+if TYPE_CHECKING:
+    from obstore.store import ObjectStore
+    from zarr.abc.store import Store
+
+T = TypeVar("T")
+
+#: Format of every store; a reader refuses any other.
 FORMAT = "flowtex-pyramid-6"
 #: The object of a store that names its builder.
 LEASE = "building.json"
@@ -35,7 +41,7 @@ _SCHEMES = ("s3", "s3a", "gs", *_AZURE, *_WEB)
 SILENCE_S, CONNECT_S, MOST_REPEATS, FIRST_PAUSE_S = 10.0, 5.0, 2, 0.2
 #: Names of other data that a message lists.
 MOST_NAMES = 5
-#: Seconds that one object may take on its way.
+#: Longest transfer of one object in seconds.
 LONGEST_S = 300.0
 
 _CREDENTIALS = (
@@ -57,7 +63,7 @@ class PyramidError(FieldError):
 
 
 class DamageError(PyramidError):
-    """Some of a store is missing or corrupt, and is made again by a build."""
+    """A part of a store is missing or corrupt; a build makes it again."""
 
 
 class ChangedError(PyramidError):
@@ -104,14 +110,16 @@ def place_text(place: str | Path) -> str:
 
 
 def is_remote(place: str | Path) -> bool:
-    """Whether a place is a URL."""
+    """Return whether a place is a URL."""
     return bool(_URL.match(str(place)))
 
 
-def objects_at(place: str | Path, *, patient: bool = False) -> Any:
-    """Return the store of obstore's at a place; a patient one asks a tired server for minutes."""
+def objects_at(place: str | Path, *, patient: bool = False) -> ObjectStore:
+    """Return the store of obstore's at a place; a patient one repeats requests for minutes."""
     text = place_text(place)
-    objects = import_extra("obstore.store", "store")
+    import_extra("obstore.store", "store")
+    from obstore import store as objects
+
     if not is_remote(text):
         return objects.LocalStore(text)
     options: dict[str, Any] = {
@@ -129,7 +137,7 @@ def objects_at(place: str | Path, *, patient: bool = False) -> Any:
             "backoff": {"init_backoff": timedelta(seconds=FIRST_PAUSE_S)},
         }
     try:
-        # Others would take the addresses of some clouds for private buckets.
+        # from_url would take the addresses of some clouds for private buckets.
         if text.lower().startswith(_WEB):
             return objects.HTTPStore.from_url(text, **options)
         return objects.from_url(text, **options)
@@ -138,14 +146,16 @@ def objects_at(place: str | Path, *, patient: bool = False) -> Any:
         raise PyramidError(msg) from None
 
 
-def store_at(place: str | Path, *, read_only: bool = True) -> Any:
+def store_at(place: str | Path, *, read_only: bool = True) -> Store:
     """Return the store of Zarr's at a place.
 
     A file of a local folder is written beside its place and renamed, an object is put in one piece:
     both are whole or absent.
     """
     text = place_text(place)
-    storage = import_extra("zarr.storage", "store")
+    import_extra("zarr.storage", "store")
+    from zarr import storage
+
     if not is_remote(text):
         return storage.LocalStore(text, read_only=read_only)
     if read_only:
@@ -156,22 +166,22 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Any:
     return storage.ObjectStore(objects_at(text, patient=True))
 
 
-def sync(doing: Coroutine[Any, Any, Any]) -> Any:
-    """Return what a method of a store of Zarr's gives."""
-    return import_extra("zarr.core.sync", "store").sync(doing)
+def sync(coroutine: Coroutine[Any, Any, T]) -> T:
+    """Run a coroutine of a store of Zarr's, and return its result."""
+    result: T = import_extra("zarr.core.sync", "store").sync(coroutine)
+    return result
 
 
 def listed(names: Callable[[str], AsyncIterator[str]], prefix: str = "") -> list[str]:
-    """Return the names that a method of a store of Zarr's gives one after the other."""
+    """Return the names that an asynchronous method of a store of Zarr's yields."""
 
     async def gathered() -> list[str]:
         return [name async for name in names(prefix)]
 
-    result: list[str] = sync(gathered())
-    return result
+    return sync(gathered())
 
 
-def is_store(place: Any) -> bool:
+def is_store(place: object) -> bool:
     """Return whether a folder or URL contains a pyramid; a local one is checked without Zarr.
 
     Raises
@@ -191,8 +201,8 @@ def is_store(place: Any) -> bool:
     text = place_text(place)
     try:
         is_url = is_remote(text)
-        told = _remote_document(text) if is_url else (Path(text) / DOCUMENT).read_bytes()
-        return "flowtex" in json.loads(told)["attributes"]
+        document = _remote_document(text) if is_url else (Path(text) / DOCUMENT).read_bytes()
+        return "flowtex" in json.loads(document)["attributes"]
     except (OSError, ValueError, KeyError, TypeError) as error:
         if isinstance(error, PyramidError):
             raise
@@ -205,7 +215,7 @@ def _remote_document(text: str) -> bytes:
     try:
         return bytes(obstore.get(objects_at(text), DOCUMENT).bytes())
     except Exception as error:
-        # What OPeNDAP and other services answer to a name that they do not know.
+        # OPeNDAP and other services answer so to an unknown name.
         if isinstance(error, FileNotFoundError) or "status code: 400" in str(error):
             return b""
         msg = f"{text}/{DOCUMENT} {fault_words(error)}"
@@ -219,22 +229,22 @@ def check_room(place: str, names: Iterable[str]) -> None:
         raise PyramidError(msg)
     others = sorted({*names} - {LEASE})
     if others and not is_store(place):
-        some = ", ".join(others[:MOST_NAMES]) + (", …" if len(others) > MOST_NAMES else "")
+        examples = ", ".join(others[:MOST_NAMES]) + (", …" if len(others) > MOST_NAMES else "")
         msg = (
-            f"{place} contains other data ({some}); expected a new folder, an empty one, or a "
+            f"{place} contains other data ({examples}); expected a new folder, an empty one, or a "
             "flowtex store"
         )
         raise PyramidError(msg)
 
 
 def is_refused(error: Exception) -> bool:
-    """Whether a store has refused what was requested, as private ones do for what is missing."""
+    """Return whether a store refused a request, as private ones do for missing objects."""
     refused = type(error).__name__ in ("PermissionDeniedError", "UnauthenticatedError")
     return refused or re.search(r"status code: 40[13]", str(error)) is not None
 
 
 def fault_words(error: Exception) -> str:
-    """Describe the result of a request, without the server's text: that may hold secrets."""
+    """Describe a failed request, without the server's text, which may contain secrets."""
     text, kind = str(error), type(error).__name__
     status = re.search(r"status code: (\d{3})", text)
     if is_refused(error):
@@ -270,7 +280,7 @@ def fault_words(error: Exception) -> str:
 
 @contextmanager
 def plain_faults() -> Iterator[None]:
-    """Say in plain words what object storage refuses; its own may repeat credentials."""
+    """Raise errors of object storage in plain words; the originals may repeat credentials."""
     try:
         yield
     except Exception as error:

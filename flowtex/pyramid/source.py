@@ -1,4 +1,4 @@
-"""What a pyramid is built from: a field, or a dataset of which each task reads a region."""
+"""Sources of a pyramid: a field, or a dataset of which each task reads a region."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.cache import digest
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
@@ -41,6 +41,12 @@ from flowtex.pyramid.places import (
 from flowtex.textures.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
 
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Rows or columns, by numbers or as a slice.
+Selection: TypeAlias = Indices | slice
+
 #: Nodes up to which a dataset is opened as a whole.
 WHOLE_NODES = 2_000_000
 #: Metadata of groups and arrays, of Zarr's formats 3 and 2.
@@ -50,7 +56,7 @@ GROUPS, ARRAYS = ("zarr.json", ".zattrs"), ("*/zarr.json", "*/.zarray")
 class Source:
     """Nodes that a pyramid is built from.
 
-    ``field`` has what the field is called, its times and its map; only some sources have its nodes
+    ``field`` has the names, the times and the map of the field; only some sources have its nodes
     there. ``shape`` is the number of nodes (J, I), ``scalars`` the number of time steps of each
     scalar.
     """
@@ -68,16 +74,16 @@ class Source:
     #: Nodes whose position is known, (J, I); ``None`` for all.
     has_position: Bools | None = None
 
-    def points(self, rows: Any, columns: Any) -> Floats:
+    def points(self, rows: Selection, columns: Selection) -> Floats:
         """Return positions (J, I, 3) of some rows and columns, by slices or numbers."""
         raise NotImplementedError
 
     def nodes(self, step: int, rows: slice, columns: slice, valid: Bools | None = None) -> Nodes:
-        """Return what some nodes have at a time step; ``valid`` where it is known already."""
+        """Return the data of some nodes at a time step; ``valid`` where it is known already."""
         raise NotImplementedError
 
     def chosen_lines(self, lines: str) -> str:
-        """Return what the textures are drawn along, as :func:`flowtex.trace.chosen_lines` does."""
+        """Return the kind of lines to draw, as :func:`flowtex.trace.chosen_lines` does."""
         return chosen_lines(self.field, lines)
 
     def with_uncertainty(self, value: Any) -> Source:
@@ -85,31 +91,31 @@ class Source:
         raise NotImplementedError
 
     def identity(self) -> str:
-        """Return a hash that changes when the source may have; empty where its values tell."""
+        """Return a hash that changes when the source may have; empty where values must be read."""
         return ""
 
-    def ranges(self) -> dict[str, list[Any]]:
+    def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
         """Return ends of scalars and of the speed, whole and robust, where they are known."""
         return {}
 
     @cached_property
     def periods(self) -> tuple[Floats, Floats]:
-        """What leads from the first line of an axis to the last, (3,), for both axes."""
+        """Vectors from the first line of an axis to the last, (3,), for both axes."""
         ends, every = np.array([0, -1]), slice(None)
         down, across = self.points(ends, every), self.points(every, ends)
         return np.mean(down[1] - down[0], axis=0), np.mean(across[:, 1] - across[:, 0], axis=0)
 
 
 class FieldSource(Source):
-    """A field, which is in the memory of who builds."""
+    """A field in the memory of the process that builds."""
 
     travels = False
 
     def __init__(self, field: FlowField) -> None:
         if field.triangles is not None or field.sign_free:
-            what = "on triangles" if field.triangles is not None else "sign-free"
+            kind = "on triangles" if field.triangles is not None else "sign-free"
             msg = (
-                f"the field is {what}; expected a field on a structured surface that is not "
+                f"the field is {kind}; expected a field on a structured surface that is not "
                 "sign-free"
             )
             raise FieldError(msg)
@@ -121,31 +127,31 @@ class FieldSource(Source):
         level = on_map if self.late else not np.any(field.velocity[..., 2])
         self.flat = bool((z == z[0, 0]).all()) and level
         self.rectilinear = self.flat and bool((x == x[:1]).all() and (y == y[:, :1]).all())
-        known = field.has_position
-        self.has_position = None if known is None or known.all() else known
+        has_position = field.has_position
+        self.has_position = None if has_position is None or has_position.all() else has_position
 
-    def points(self, rows: Any, columns: Any) -> Floats:
+    def points(self, rows: Selection, columns: Selection) -> Floats:
         """Return positions of nodes."""
         return np.asarray(self.field.points[rows][:, columns])
 
     def nodes(self, step: int, rows: slice, columns: slice, valid: Bools | None = None) -> Nodes:
-        """Return what nodes have."""
+        """Return the data of some nodes."""
         del valid
         field, at = self.field, (rows, columns)
         scalars = {k: np.asarray(s[step])[at] for k, s in field.scalars.items() if step < len(s)}
         velocity = np.asarray(field.velocity[step])[at]
-        known = None if self.has_position is None else self.has_position[at]
-        return Nodes(field.points[at], field.valid[at], velocity, scalars, known)
+        has_position = None if self.has_position is None else self.has_position[at]
+        return Nodes(field.points[at], field.valid[at], velocity, scalars, has_position)
 
     def with_uncertainty(self, value: Any) -> Source:
         """Return the source of the field with this uncertainty."""
         return FieldSource(with_uncertainty(self.field, value))
 
-    def ranges(self) -> dict[str, list[Any]]:
+    def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
         """Return ends of scalars and of the speed."""
-        field, some = self.field, self.field.typical
-        values = {k: np.asarray(s)[:, field.valid] for k, s in some.scalars.items()}
-        values.setdefault("speed", drawn_speeds(some, Pyramid(field).root))
+        field, typical = self.field, self.field.typical
+        values = {k: np.asarray(s)[:, field.valid] for k, s in typical.scalars.items()}
+        values.setdefault("speed", drawn_speeds(typical, Pyramid(field).root))
         both = {
             k: [ends_of(v, robust=robust) for robust in (False, True)] for k, v in values.items()
         }
@@ -180,16 +186,16 @@ class RegionSource(Source):
             projection=lines.projection,
         )
 
-    def points(self, rows: Any, columns: Any) -> Floats:
+    def points(self, rows: Selection, columns: Selection) -> Floats:
         """Return positions of nodes."""
         return self.regions.lines.points(rows, columns)
 
     def nodes(self, step: int, rows: slice, columns: slice, valid: Bools | None = None) -> Nodes:
-        """Read what nodes have."""
+        """Read the data of some nodes."""
         return self.regions.nodes(step, rows, columns, valid)
 
     def chosen_lines(self, lines: str) -> str:
-        """Return what the textures are drawn along, of some of the nodes."""
+        """Return the kind of lines to draw, judged at some of the nodes."""
         if lines != "auto" or not self.late:
             return chosen_lines(self.field, lines)
         rows, columns = judged_lines(self.shape)
@@ -198,14 +204,14 @@ class RegionSource(Source):
         def velocity(step: int) -> Floats:
             return np.asarray(self.regions.nodes(step, rows, columns, first.valid).velocity)
 
-        some = FlowField(
+        sample = FlowField(
             points=first.points,
             velocity=LazySteps(len(self.field.times), velocity),
             times=self.field.times,
             valid=first.valid,
             periodic=(False, False),
         )
-        return chosen_lines(some, lines)
+        return chosen_lines(sample, lines)
 
     def with_uncertainty(self, value: Any) -> Source:
         """Set the uncertainty: the name of a scalar, which is read by region."""
@@ -216,51 +222,51 @@ class RegionSource(Source):
 
     def identity(self) -> str:
         """Return a hash of the paths, sizes and times of change of the files."""
-        known = [(str(path), info.st_size, info.st_mtime_ns) for path, info in self._members()]
-        return digest(words=(*known, self.choice)).hex() if known else ""
+        infos = [(str(path), info.st_size, info.st_mtime_ns) for path, info in self._members()]
+        return digest(words=(*infos, self.choice)).hex() if infos else ""
 
     def _members(self) -> Iterator[tuple[Path, os.stat_result]]:
-        """Give the files that the dataset was opened from, also those of folders."""
+        """Yield the files that the dataset was opened from, also those of folders."""
         for path in self.files:
             inside = (p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
-            for one in sorted(inside):
-                yield one.resolve(), one.stat()
+            for file in sorted(inside):
+                yield file.resolve(), file.stat()
 
 
-def source_of(given: Any, uncertainty: Any = None, **options: Any) -> Source:
+def source_of(data: Any, uncertainty: Any = None, **options: Any) -> Source:
     """Return what a pyramid is built from: a field, a mesh, a dataset, or files, with options."""
-    source = _source_of(given, uncertainty, **options)
+    source = _source_of(data, uncertainty, **options)
     return source if uncertainty is None else source.with_uncertainty(uncertainty)
 
 
-def _source_of(given: Any, uncertainty: Any, **options: Any) -> Source:
+def _source_of(data: Any, uncertainty: Any, **options: Any) -> Source:
     # An array has a value for each node; a name may be a dimension to average over.
     regions = uncertainty is None or isinstance(uncertainty, str)
     read: dict[str, Any] = {"regions": regions, "uncertainty": uncertainty}
-    if isinstance(given, (FlowField, Source)):
+    if isinstance(data, (FlowField, Source)):
         refuse(options, "the data of a field")
-        return given if isinstance(given, Source) else FieldSource(given)
-    if is_store(given):
-        msg = f"{given} is already a pyramid; give the data from which one is built"
+        return data if isinstance(data, Source) else FieldSource(data)
+    if is_store(data):
+        msg = f"{data} is already a pyramid; give the data from which one is built"
         raise FieldError(msg)
-    if is_dataset(given):
-        return _source_from(read_datasets(given, **read, **options))
-    several = given if isinstance(given, (list, tuple)) else [given]
-    if not all(isinstance(each, (str, Path)) for each in several):
-        known = (*OF_MESHES, "vectors", "times", "name")
-        others = {name: value for name, value in options.items() if name not in known}
+    if is_dataset(data):
+        return _source_from(read_datasets(data, **read, **options))
+    items = data if isinstance(data, (list, tuple)) else [data]
+    if not all(isinstance(each, (str, Path)) for each in items):
+        names = (*OF_MESHES, "vectors", "times", "name")
+        others = {name: value for name, value in options.items() if name not in names}
         refuse(others, "data of the Earth, but this is a mesh")
-        return FieldSource(FlowField.from_pyvista(given, **options))
-    one: str | Path | Sequence[str | Path] = given
-    if isinstance(one, (str, Path)) and has_parts(one):
-        place = place_text(one)
+        return FieldSource(FlowField.from_pyvista(data, **options))
+    files: str | Path | Sequence[str | Path] = data
+    if isinstance(files, (str, Path)) and has_parts(files):
+        place = place_text(files)
         finest, *_ = datasets_at(place, options)
         source = _source_from(read_datasets(finest, name=Path(place).stem, **read, **options))
-        paths = [] if is_remote(one) else [Path(place)]
+        paths = [] if is_remote(files) else [Path(place)]
     else:
-        with errors_of(one):
-            source = _source_from(read_files(one, **read, **options))
-        paths = [file_and_group(path)[0] for path in dataset_paths(one)]
+        with errors_of(files):
+            source = _source_from(read_files(files, **read, **options))
+        paths = [file_and_group(path)[0] for path in dataset_paths(files)]
     if isinstance(source, RegionSource):
         source.files, source.choice = paths, repr(sorted(options.items()))
     return source
@@ -272,15 +278,18 @@ def _source_from(arrays: FieldArrays | Regions) -> Source:
     return FieldSource(FlowField.of(arrays))
 
 
-def has_parts(place: Any) -> bool:
-    """Whether there is a store of which parts are drawn, ours or that of others; any URL is one."""
+def has_parts(place: object) -> bool:
+    """Return whether a place is a store, of flowtex or another program, that is read in parts.
+
+    Any URL is one.
+    """
     if not isinstance(place, (str, Path)) or is_store(place):
         return isinstance(place, (str, Path))
     if is_remote(place):
         return True
     folder = Path(place_text(place))
-    told = [_json(folder / name) for name in GROUPS]
-    if any("multiscales" in one.get("attributes", one) for one in told):
+    metadata = [_json(folder / name) for name in GROUPS]
+    if any("multiscales" in group.get("attributes", group) for group in metadata):
         return True
     shapes = (_json(file).get("shape", []) for name in ARRAYS for file in folder.glob(name))
     return any(len(shape) > 1 and math.prod(shape[-2:]) > WHOLE_NODES for shape in shapes)
@@ -288,24 +297,24 @@ def has_parts(place: Any) -> bool:
 
 def _json(path: Path) -> dict[str, Any]:
     try:
-        told = json.loads(path.read_bytes())
+        content = json.loads(path.read_bytes())
     except (OSError, ValueError):
         return {}
-    return told if isinstance(told, dict) else {}
+    return content if isinstance(content, dict) else {}
 
 
-def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
+def datasets_at(place: str, options: Mapping[str, Any]) -> list[xr.Dataset]:
     """Return the datasets of a store of others that have a velocity, the finest first."""
     from flowtex.pyramid.objects import OthersObjects, level_names
 
     xarray = import_extra("xarray", "xarray")
     zarr = import_extra("zarr", "store")
-    own = {str(options[name]) for name in "uv" if options.get(name)}
+    components = {str(options[name]) for name in "uv" if options.get(name)}
     if not is_remote(place):
         with errors_of(place):
             check_zarr(Path(place))
     try:
-        store = OthersObjects(store_at(place), tuple(own))
+        store = OthersObjects(store_at(place), tuple(components))
         attributes = zarr.open_group(store, mode="r").attrs
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # of metadata that lie apart
@@ -321,14 +330,18 @@ def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
         )
         raise PyramidError(msg) from None
     names = [name.strip("/") for name in level_names(attributes)]
-    known = {name.strip("/"): dataset for name, dataset in groups.items()}
-    chosen = [known[name] for name in names if name in known] or list(known.values())
-    found = [one for one in chosen if (own and own <= {*one}) or find_pairs([one])]
-    if not found:
+    by_name = {name.strip("/"): dataset for name, dataset in groups.items()}
+    chosen = [by_name[name] for name in names if name in by_name] or list(by_name.values())
+    with_velocity = [
+        dataset
+        for dataset in chosen
+        if (components and components <= {*dataset}) or find_pairs([dataset])
+    ]
+    if not with_velocity:
         msg = (
             f"{place} contains no pyramid, and no velocity; expected two variables such as u and "
             "v in each level, or their names (on the web with consolidated metadata, see "
             "zarr.consolidate_metadata)"
         )
         raise PyramidError(msg)
-    return sorted(found, key=lambda one: -max(array.size for array in one.values()))
+    return sorted(with_velocity, key=lambda dataset: -max(array.size for array in dataset.values()))

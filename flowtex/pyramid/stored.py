@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from flowtex.field import FlowField
 from flowtex.field.datasets.ensembles import spread_name
 from flowtex.field.field import WHOLE_SHAPE
 from flowtex.field.steps import Nodes
+from flowtex.pyramid.checks import About
 from flowtex.pyramid.layout import VELOCITY_BITS
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.others import OtherLevels, levels_of_others
@@ -69,8 +70,8 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
     (21, 41)
     """
     if not is_store(store):
-        found = levels_of_others(place_text(store), options, uncertainty)
-        return found if isinstance(found, FlowField) else _field_of(found)
+        others = levels_of_others(place_text(store), options, uncertainty)
+        return others if isinstance(others, FlowField) else _field_of(others)
     if options:
         msg = f"{', '.join(options)} applies to the source of a pyramid; omit it"
         raise FieldError(msg)
@@ -81,12 +82,12 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
             "flowtex.pyramid.build again to build the missing parts"
         )
         raise PyramidError(msg)
-    own = levels.template.uncertainty
-    asked = uncertainty if isinstance(uncertainty, str) else "an array"
-    if uncertainty is not None and asked not in (own, own.removeprefix(spread_name(""))):
+    stored = levels.template.uncertainty
+    requested = uncertainty if isinstance(uncertainty, str) else "an array"
+    if uncertainty is not None and requested not in (stored, stored.removeprefix(spread_name(""))):
         msg = (
-            f"uncertainty is {asked}, but {levels.place} was built with {own or 'none'}; set it "
-            "when you build the store"
+            f"uncertainty is {requested}, but {levels.place} was built with {stored or 'none'}; "
+            "set it when you build the store"
         )
         raise FieldError(msg)
     return _field_of(levels)
@@ -135,7 +136,7 @@ class StoredPyramid(Pyramid):
         }
 
     @property
-    def about(self) -> Mapping[str, Any]:
+    def about(self) -> About:
         """The description of the field and its pyramid."""
         return self._stored.about
 
@@ -146,12 +147,12 @@ class StoredPyramid(Pyramid):
 
     @cached_property
     def periods(self) -> tuple[Floats, Floats]:
-        """What leads from the first line of an axis to the last, (3,), for both axes."""
-        rows, columns = (np.array(some) for some in self._stored.about["periods"])
+        """Vectors from the first line of an axis to the last, (3,), for both axes."""
+        rows, columns = map(np.array, self._stored.about["periods"])
         return rows, columns
 
     def tile(self, key: TileKey, steps: Sequence[int]) -> TextureSet | None:
-        """Return the textures of a tile; a PyramidError says what cannot be read."""
+        """Return the textures of a tile; a PyramidError names data that cannot be read."""
         textures = super().tile(key, steps)
         if textures is not None and isinstance(self._stored, Levels):
             self._check_nodes(self._stored, key, textures, steps)
@@ -169,19 +170,19 @@ class StoredPyramid(Pyramid):
         ]
         if not all(map(len, above)):
             return
-        lines = [2 * some - a for some, a in zip(above, first, strict=True)]
-        rows, columns = (some + np.array([[-1], [0], [1]]) for some in lines)
+        lines = [2 * line - a for line, a in zip(above, first, strict=True)]
+        rows, columns = (line + np.array([[-1], [0], [1]]) for line in lines)
         at = np.ix_(*lines)
         coarse = stored.nodes(key.level + 1, *above, velocities=False)
         pairs = [(field.points[drawn][at], coarse.points), (valid[at], coarse.valid)]
         for name, values in coarse.scalars.items():
-            own = field.scalars[name]
-            pairs += [(own[t][drawn][at], values[t]) for t in steps if t < len(values)]
+            fine = field.scalars[name]
+            pairs += [(fine[t][drawn][at], values[t]) for t in steps if t < len(values)]
         for step in steps:
-            told = stored.velocity(key.level + 1, step, *above)[coarse.valid]
+            velocity = stored.velocity(key.level + 1, step, *above)[coarse.valid]
             mean = averaged(np.asarray(field.velocity[step])[drawn], valid, rows, columns)
-            pairs.append((mean[coarse.valid][:, : told.shape[-1]], told))
-        if not all(_alike(own, told) for own, told in pairs):
+            pairs.append((mean[coarse.valid][:, : velocity.shape[-1]], velocity))
+        if not all(_agree(values, reference) for values, reference in pairs):
             msg = (
                 f"the nodes of tile {tuple(key)} of {stored.place} do not match those of the "
                 "level above it; build the store again"
@@ -195,7 +196,7 @@ class StoredPyramid(Pyramid):
         return self._stored.nodes(level, rows, columns)
 
 
-def _alike(own: AnyArray, told: AnyArray) -> bool:
-    """Whether values are the same up to rounding, which is that of velocities at most."""
-    size = np.abs(np.nan_to_num(told)).max(initial=0.0)
-    return bool(np.allclose(own, told, 2.0**-VELOCITY_BITS, 1e-6 * size, equal_nan=True))
+def _agree(values: AnyArray, reference: AnyArray) -> bool:
+    """Return whether values are the same up to the rounding of stored velocities."""
+    size = np.abs(np.nan_to_num(reference)).max(initial=0.0)
+    return bool(np.allclose(values, reference, 2.0**-VELOCITY_BITS, 1e-6 * size, equal_nan=True))

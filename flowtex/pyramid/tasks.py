@@ -6,15 +6,15 @@ them. Each opens the store itself, and reads no more than what it needs.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import lru_cache, partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from flowtex._util.array_types import Indices
 from flowtex.field.steps import Nodes
-from flowtex.pyramid.checks import part_digest
+from flowtex.pyramid.checks import About, part_digest
 from flowtex.pyramid.client_parts import write_tile
 from flowtex.pyramid.layout import (
     DIGESTS,
@@ -56,8 +56,10 @@ def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
     """Raise a ChangedError where the source has other values than a part was made of."""
     levels = _levels(place, run)
     nodes = _as_written(_source_nodes(levels, source, part))
-    own = part_digest(nodes, levels.about, part.step)
-    if own != levels.whole(f"0/{DIGESTS}", part[1:]).tobytes():
+    if (
+        part_digest(nodes, levels.about, part.step)
+        != levels.whole(f"0/{DIGESTS}", part[1:]).tobytes()
+    ):
         rows, columns = (f"{s.start}-{s.stop - 1}" for s in part.lines(source.shape))
         msg = (
             f"{place} contains the pyramid of another field, or of an earlier version of this "
@@ -68,20 +70,20 @@ def compare_finest(source: Source, place: str, run: str, part: Part) -> None:
 
 
 def mend(place: str, run: str, unit: Part | TileTask) -> None:
-    """Remove a part, or a tile at its steps, of which some is missing or corrupt."""
+    """Remove a part, or a tile at its steps, that is incomplete or corrupt."""
     levels, store = _levels(place, run), store_at(place, read_only=False)
-    for one, check in checks_of(levels, unit):
+    for step_unit, check in checks_of(levels, unit):
         try:
             check()
         except DamageError:
-            for name in _objects(levels.about, one):
+            for name in _objects(levels.about, step_unit):
                 sync(store.delete(name))
 
 
 def checks_of(
     levels: Levels, unit: Part | TileTask
 ) -> Iterator[tuple[Part | TileTask, Callable[[], None]]]:
-    """Give what raises a DamageError for a part, or for each step of a tile."""
+    """Yield functions that raise a DamageError for a part, or for each step of a tile."""
     if isinstance(unit, Part):
         yield unit, partial(levels.check_part, unit)
     else:
@@ -89,8 +91,8 @@ def checks_of(
             yield TileTask(unit.key, (step,)), partial(levels.check_tile, unit.key, step)
 
 
-def _objects(about: Mapping[str, Any], unit: Part | TileTask) -> Iterator[str]:
-    """Give the objects of a part, or of a tile at a step; by the first it is known to be there."""
+def _objects(about: About, unit: Part | TileTask) -> Iterator[str]:
+    """Yield the objects of a part, or of a tile at a step; the first one shows that it exists."""
     if isinstance(unit, Part):
         level, step, row, column = unit
         series = [f"scalars/{name}" for name, count in about["scalars"].items() if step < count]
@@ -109,11 +111,11 @@ def _objects(about: Mapping[str, Any], unit: Part | TileTask) -> Iterator[str]:
 
 
 def _source_nodes(levels: Levels, source: Source, part: Part) -> Nodes:
-    """Read what a part of level 0 is made of."""
+    """Read the nodes of a part of level 0 from the source."""
     lines = part.lines(source.shape)
     valid = None
-    if part.step and source.travels:  # others have it available
-        valid = levels.valid(0, *(np.arange(some.start, some.stop) for some in lines))
+    if part.step and source.travels:  # others have it in memory
+        valid = levels.valid(0, *(np.arange(span.start, span.stop) for span in lines))
     return source.nodes(part.step, *lines, valid)
 
 
@@ -129,9 +131,9 @@ def make_part(place: str, run: str, part: Part) -> None:
     chosen = part.lines((shape[0], shape[1]))
     # As lines of the finer level: these, and those from which they are averaged.
     picks, around, needed = [], [], []
-    for count, some, closed in zip(about["nodes"], chosen, about["periodic"], strict=True):
+    for count, span, closed in zip(about["nodes"], chosen, about["periodic"], strict=True):
         fine = level_lines(count, finer)
-        lines = np.searchsorted(fine, level_lines(count, part.level)[some])
+        lines = np.searchsorted(fine, level_lines(count, part.level)[span])
         three = beside(lines, len(fine), closed=closed)
         read = np.unique(three)
         picks.append(lines)
@@ -147,23 +149,23 @@ def make_part(place: str, run: str, part: Part) -> None:
 
 
 def write_part(
-    array: Arrays, about: dict[str, Any], part: Part, lines: tuple[slice, slice], nodes: Nodes
+    array: Arrays, about: About, part: Part, lines: tuple[slice, slice], nodes: Nodes
 ) -> None:
     """Write a part of a level; velocity (J, I, C) and scalars (J, I) are those of its step."""
-    here, components = part.level, about["components"]
+    level, components = part.level, about["components"]
     for name, values in nodes.scalars.items():
         if part.step < about["scalars"][name]:
-            array(f"{here}/scalars/{name}")[(part.step, *lines)] = values
+            array(f"{level}/scalars/{name}")[(part.step, *lines)] = values
     if part.step == 0:
-        array(f"{here}/valid")[lines] = nodes.valid
+        array(f"{level}/valid")[lines] = nodes.valid
         if nodes.has_position is not None:
-            array(f"{here}/has_position")[lines] = nodes.has_position
+            array(f"{level}/has_position")[lines] = nodes.has_position
         if not about["axes"]:
-            array(f"{here}/points")[lines] = nodes.points[..., :components]
-    own = np.frombuffer(part_digest(nodes, about, part.step), np.uint8)
-    array(f"{here}/{DIGESTS}")[part.step, part.row, part.column] = own
-    # The last one: by it a part is known to be whole.
-    array(f"{here}/velocity")[(part.step, *lines)] = nodes.velocity[..., :components]
+            array(f"{level}/points")[lines] = nodes.points[..., :components]
+    digest = np.frombuffer(part_digest(nodes, about, part.step), np.uint8)
+    array(f"{level}/{DIGESTS}")[part.step, part.row, part.column] = digest
+    # The last array: its presence shows that a part is complete.
+    array(f"{level}/velocity")[(part.step, *lines)] = nodes.velocity[..., :components]
 
 
 def make_tile(place: str, run: str, task: TileTask) -> None:
@@ -172,7 +174,7 @@ def make_tile(place: str, run: str, task: TileTask) -> None:
 
 
 def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indices) -> Nodes:
-    """Return what nodes have besides the velocity, their scalars at one step."""
+    """Return nodes without velocity, their scalars at one step."""
     nodes = levels.nodes(level, rows, columns, velocities=False)
     counts = levels.about["scalars"]
     scalars = {

@@ -1,4 +1,4 @@
-"""Who does the tasks: threads of this process, or the workers of a Dask cluster."""
+"""Workers for the tasks: threads of this process, or those of a Dask cluster."""
 
 from __future__ import annotations
 
@@ -19,16 +19,15 @@ from flowtex._util.threads import pool
 from flowtex.errors import FieldError
 from flowtex.pyramid.places import PyramidError, plain_faults
 
-#: Most memory that a task takes: one that makes a part of a level, and one that traces a tile or
-#: the root, as ``benchmarks/pyramid.py`` measures. A process has its own besides, for what is
-#: imported.
+#: Most memory of a task that makes a part of a level, and of one that traces a tile or the root, as
+#: ``benchmarks/pyramid.py`` measures; and that of a process, for its imports.
 PART_BYTES, TILE_BYTES, OWN_BYTES = 500_000_000, 1_500_000_000, 500_000_000
 #: Times that a task is tried.
 MOST_TRIALS = 3
-#: Parameters of glibc's ``mallopt``, and bytes: arrays above the second have their own pages, which
-#: go back when they are freed; of others so much may stay free.
+#: Parameters of glibc's ``mallopt``, and bytes: those of the heap that may stay free, and those of
+#: an array above which it has separate pages, which are returned when it is freed.
 TRIM, MMAP = (-1, 64 << 20), (-3, 1 << 20)
-#: Size of what may be sent to the workers of a cluster; a source that is larger holds its data.
+#: Most bytes sent to the workers of a cluster; a larger source contains its data.
 MOST_SENT = 64_000_000
 
 
@@ -45,9 +44,9 @@ class Threads:
                 raise FieldError(msg) from error
             if self._memory < OWN_BYTES + TILE_BYTES:
                 notify(
-                    f"memory is {_words(self._memory)}, but a task may need {_words(TILE_BYTES)} "
-                    f"in addition to {_words(OWN_BYTES)} for all tasks; tasks run one at a time, "
-                    "and may exceed the limit",
+                    f"memory is {_size_text(self._memory)}, but a task may need "
+                    f"{_size_text(TILE_BYTES)} in addition to {_size_text(OWN_BYTES)} for all "
+                    "tasks; tasks run one at a time, and may exceed the limit",
                     UserWarning,
                 )
 
@@ -63,9 +62,9 @@ class Threads:
         function: Callable[..., None],
         tasks: Sequence[tuple[Any, ...]],
         need: int,
-        *given: Any,
+        *arguments: Any,
     ) -> Generator[Exception | None]:
-        """Yield what became of tasks as they end; arguments are ``given`` and those of a task."""
+        """Call a function with ``arguments`` and each task; yield the error of each or ``None``."""
         if not tasks:
             return
 
@@ -74,12 +73,12 @@ class Threads:
             for _ in range(MOST_TRIALS):
                 try:
                     with plain_faults():
-                        function(*given, *task)
+                        function(*arguments, *task)
                 except Exception as error:
-                    # The frames that it came through hold all that the task had in memory.
-                    for one in (error, error.__cause__, error.__context__):
-                        if one is not None:
-                            traceback.clear_frames(one.__traceback__)
+                    # The frames of the error hold all that the task had in memory.
+                    for cause in (error, error.__cause__, error.__context__):
+                        if cause is not None:
+                            traceback.clear_frames(cause.__traceback__)
                     result = error
                 else:
                     return None
@@ -98,7 +97,7 @@ class Threads:
                 threads.shutdown(wait=True, cancel_futures=True)
 
     def close(self) -> None:
-        """Nothing is kept open."""
+        """Do nothing: threads leave nothing open."""
 
 
 class Cluster(Threads):
@@ -107,8 +106,8 @@ class Cluster(Threads):
     def __init__(self, scheduler: Any) -> None:
         super().__init__()
         distributed = import_extra("distributed", "store")
-        self._own = isinstance(scheduler, str)
-        self._client = distributed.Client(scheduler) if self._own else scheduler
+        self._owns_client = isinstance(scheduler, str)
+        self._client = distributed.Client(scheduler) if self._owns_client else scheduler
         self._as_completed = distributed.as_completed
         self._check_memory()
 
@@ -117,20 +116,20 @@ class Cluster(Threads):
         function: Callable[..., None],
         tasks: Sequence[tuple[Any, ...]],
         need: int,
-        *given: Any,
+        *arguments: Any,
     ) -> Generator[Exception | None]:
-        """Yield what became of each task, in the order in which they end."""
+        """Yield the error of each task, or ``None``, in the order in which they end."""
         if not tasks:
             return
-        packed = [_packed(one) for one in given]
+        packed = [_packed(argument) for argument in arguments]
         if None in packed:
-            # It holds its data, which would go to each worker.
-            yield from super().run(function, tasks, need, *given)
+            # The source contains its data, which would go to each worker.
+            yield from super().run(function, tasks, need, *arguments)
             return
-        # Made by a task, what is given outlives the worker that has it.
+        # Results of tasks outlive the worker that has them.
         sent = [self._client.submit(_unpacked, data, pure=False) for data in packed]
         futures = self._client.map(
-            _called, tasks, function=function, given=sent, pure=False, retries=MOST_TRIALS - 1
+            _run_task, tasks, function=function, arguments=sent, pure=False, retries=MOST_TRIALS - 1
         )
         try:
             for future in self._as_completed(futures):
@@ -140,12 +139,12 @@ class Cluster(Threads):
             self._client.cancel(futures)
 
     def close(self) -> None:
-        """Leave the cluster, where it was given by its address."""
-        if self._own:
+        """Disconnect from a cluster that was connected by its address."""
+        if self._owns_client:
             self._client.close()
 
     def _check_memory(self) -> None:
-        """Say which workers have less memory than tasks may take before Dask pauses them."""
+        """Warn of workers whose memory is so small that Dask may pause them."""
         dask = import_extra("dask", "store")
         share = dask.config.get("distributed.worker.memory.pause", 0.8) or 1.0
         workers = self._client.scheduler_info(n_workers=-1)["workers"]
@@ -153,29 +152,31 @@ class Cluster(Threads):
             name: (worker["memory_limit"], (OWN_BYTES + worker["nthreads"] * TILE_BYTES) / share)
             for name, worker in workers.items()
         }
-        few = {name: (limit, need) for name, (limit, need) in needs.items() if 0 < limit < need}
-        if few:
-            name, (limit, need) = next(iter(few.items()))
+        short = {name: (limit, need) for name, (limit, need) in needs.items() if 0 < limit < need}
+        if short:
+            name, (limit, need) = next(iter(short.items()))
             notify(
-                f"{len(few)} of {len(workers)} workers have too little memory: {name} has "
-                f"{_words(limit)}, but its threads may need {_words(need)}; give it more memory, "
-                "or fewer threads",
+                f"{len(short)} of {len(workers)} workers have too little memory: {name} has "
+                f"{_size_text(limit)}, but its threads may need {_size_text(need)}; give it more "
+                "memory, or fewer threads",
                 UserWarning,
             )
 
 
-def _called(task: tuple[Any, ...], *, function: Callable[..., None], given: list[Any]) -> None:
+def _run_task(
+    task: tuple[Any, ...], *, function: Callable[..., None], arguments: list[Any]
+) -> None:
     _set_allocator()
     with plain_faults():
-        function(*given, *task)
+        function(*arguments, *task)
 
 
 @cache
 def _set_allocator() -> None:
-    """Have a worker give memory back.
+    """Let a worker return freed memory.
 
-    Without, half of it stays with the allocator, and Dask pauses the worker for good. What nannies
-    of Dask set gives everything back, for which tasks take half as long again.
+    Otherwise half of it stays with the allocator, and Dask pauses the worker for good. The setting
+    of Dask's nannies returns everything, but tasks take half as long again.
     """
     with suppress(OSError, AttributeError):  # of another C library
         libc = ctypes.CDLL("libc.so.6")
@@ -184,7 +185,7 @@ def _set_allocator() -> None:
 
 
 class _Limited(io.BytesIO):
-    """A file in memory that takes so much and no more."""
+    """A file in memory of limited size."""
 
     def write(self, data: Any) -> int:
         """Take some bytes."""
@@ -194,14 +195,14 @@ class _Limited(io.BytesIO):
 
 
 class _TooLargeError(Exception):
-    """There is more than is sent."""
+    """A value is too large to be sent."""
 
 
-def _packed(thing: Any) -> bytes | None:
-    """Return something as bytes that are sent; ``None`` where these are too many."""
+def _packed(value: object) -> bytes | None:
+    """Return a value as bytes to send; ``None`` where these are too many."""
     file = _Limited()
     try:
-        import_extra("cloudpickle", "store").Pickler(file).dump(thing)
+        import_extra("cloudpickle", "store").Pickler(file).dump(value)
     except _TooLargeError:
         return None
     except Exception as error:
@@ -219,5 +220,5 @@ def _unpacked(data: bytes) -> Any:
     return pickle.loads(data)
 
 
-def _words(size: float) -> str:
+def _size_text(size: float) -> str:
     return f"{size / 1e9:.3g} GB"

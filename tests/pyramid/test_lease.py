@@ -92,7 +92,7 @@ def test_the_lease_of_a_process_that_ended_is_taken_over(tmp_path: Path, clock: 
     ended = subprocess.Popen([sys.executable, "-c", ""])
     ended.wait()
     own = Lease(str(tmp_path), clock)
-    told = {**own._own, "id": "another", "process": ended.pid, "at": clock.now}
+    told = {**own._identity, "id": "another", "process": ended.pid, "at": clock.now}
     (tmp_path / LEASE).write_text(json.dumps(told))
     with own:
         own.check()

@@ -41,11 +41,11 @@ _lock = threading.Lock()
 
 
 class ForkServer:
-    """The process with modules loaded that is forked, as seen by who asks for children."""
+    """The process with modules loaded that is forked, as the process that uses it sees it."""
 
     def __init__(self, preload: tuple[str, ...]) -> None:
         self._control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        # Its own session: Ctrl-C in the terminal is for the process that asks.
+        # A separate session: Ctrl-C in the terminal is for the process that asks.
         self._process = subprocess.Popen(
             command(main, control=other.fileno(), preload=preload),
             pass_fds=[other.fileno()],
@@ -63,12 +63,12 @@ class ForkServer:
 
     @property
     def alive(self) -> bool:
-        """Whether it runs, as far as is known; a fork of its owner may use it as well."""
+        """Whether it runs, as far as is known; a fork of its owner may also use it."""
         owned = self._owner == os.getpid()
         return not self.lost and (not owned or self._process.poll() is None)
 
     def start(self, entry: str, memory: int, pipes: tuple[int, int, int], *, lasting: bool) -> None:
-        """Fork a child, with the pipes of its requests, its answers and its status."""
+        """Fork a child with pipes for requests, answers and its status."""
         text = json.dumps({"entry": entry, "memory": memory, "lasting": lasting}).encode()
         try:
             socket.send_fds(self._control, [text], list(pipes))
@@ -85,7 +85,7 @@ def _close(control: socket.socket, process: subprocess.Popen[bytes], owner: int)
 
 
 def fork_server(preload: tuple[str, ...]) -> ForkServer:
-    """Return the server that has loaded some modules, or loads them from now on."""
+    """Return the server that has loaded these modules, started if necessary."""
     with _lock:
         server = _servers.get(preload)
         if server is None or not server.alive:
@@ -127,13 +127,13 @@ class _Server:
         self._ending: dict[int, float] = {}
 
     def run(self, *, once: bool = False) -> None:
-        """Wait for something to do, or not at all, and do it."""
+        """Wait for a request or the end of a child, or with ``once`` not at all, and handle it."""
         poll = select.poll()
         poll.register(self._control, select.POLLIN)
         poll.register(self._wakes, select.POLLIN)
         for pid, status in self._children.items():
             if pid not in self._ending:
-                poll.register(status, 0)  # tells when the other end is closed
+                poll.register(status, 0)  # reports when the other end is closed
         soonest = min(self._ending.values(), default=math.inf) - time.monotonic()
         wait = None if soonest == math.inf else 1000 * max(soonest, 0.0)
         ready = dict(poll.poll(0 if once else wait))
@@ -143,7 +143,7 @@ class _Server:
         now = time.monotonic()
         for pid, status in self._children.items():
             if status in ready:
-                # Its other pipe is closed as well, so it removes what it has left, and ends.
+                # Its other pipe is closed too, so it removes its temporary folders, and ends.
                 self._ending[pid] = now + ENDING_S
             elif now >= self._ending.get(pid, math.inf):
                 os.kill(pid, signal.SIGKILL)

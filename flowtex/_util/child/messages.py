@@ -1,6 +1,6 @@
 """Messages between processes: a header of JSON, and the bytes of arrays.
 
-Nothing is unpickled: who parses a stranger's file may have been taken over by it.
+Nothing is unpickled: a process that parses an untrusted file may be compromised.
 """
 
 from __future__ import annotations
@@ -18,26 +18,26 @@ from flowtex._util.array_types import AnyArray
 
 #: Length of the header.
 _PREFIX = struct.Struct(">I")
-#: Bytes of a header, at most.
+#: Most bytes of a header.
 HEADER_BYTES = 16_000_000
 #: Types of arrays: numbers and truth values.
 _TYPE = re.compile(r"[<>|][biuf]\d{1,2}")
 
 
 class MessageError(ValueError):
-    """What came is not a message."""
+    """The bytes that were received are not a message."""
 
 
 def write_message(stream: IO[bytes], value: Any, arrays: Sequence[AnyArray] = ()) -> None:
     """Write a value of JSON, and arrays of numbers."""
-    whole = [np.ascontiguousarray(array) for array in arrays]
-    described = [[array.dtype.str, np.shape(array)] for array in arrays]
-    header = json.dumps({"value": value, "arrays": described}).encode()
+    contiguous = [np.ascontiguousarray(array) for array in arrays]
+    infos = [[array.dtype.str, np.shape(array)] for array in arrays]
+    header = json.dumps({"value": value, "arrays": infos}).encode()
     if len(header) > HEADER_BYTES:
         msg = f"the header of a message has {len(header):,} bytes; expected {HEADER_BYTES:,}"
         raise MessageError(msg)
     stream.write(_PREFIX.pack(len(header)) + header)
-    for array in whole:
+    for array in contiguous:
         stream.write(array.reshape(-1).view(np.uint8).data)
     stream.flush()
 
@@ -56,17 +56,17 @@ def read_message(stream: IO[bytes], most_bytes: int) -> tuple[Any, list[AnyArray
         return None
     try:
         message = json.loads(header)
-        value, described = message["value"], message["arrays"]
-        kinds = [(_type(kind), _shape(shape)) for kind, shape in described]
+        value, infos = message["value"], message["arrays"]
+        types = [(_type(kind), _shape(shape)) for kind, shape in infos]
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         msg = f"the header of a message is malformed: {error}"
         raise MessageError(msg) from error
-    size = sum(kind.itemsize * math.prod(shape) for kind, shape in kinds)
+    size = sum(kind.itemsize * math.prod(shape) for kind, shape in types)
     if size > most_bytes:
         msg = f"a message declares {size:,} bytes of arrays; expected {most_bytes:,} at most"
         raise MessageError(msg)
     arrays: list[AnyArray] = []
-    for kind, shape in kinds:
+    for kind, shape in types:
         arrays.append(np.empty(shape, kind))
         if not _fill(stream, arrays[-1].reshape(-1).view(np.uint8).data):
             return None
@@ -89,7 +89,7 @@ def _shape(sizes: Any) -> tuple[int, ...]:
 
 
 def _fill(stream: IO[bytes], view: memoryview) -> bool:
-    """Read as many bytes as there is room for; ``False`` where the stream ends before."""
+    """Fill a buffer from a stream; return ``False`` where the stream ends before."""
     filled = 0
     while filled < len(view):
         count = stream.readinto(view[filled:])  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""A child as its parent sees it: requests with a limit of time, and its end told at once."""
+"""A child as its parent sees it: requests with a time limit, and an error at once when it ends."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ if FORKS:
 #: Seconds between two checks whether an answer is still wanted, and for which the status of a
 #: child that has closed its pipe is waited for.
 CHECK_INTERVAL_S, STATUS_WAIT_S = 0.05, 5.0
-#: Share of the memory that is available when a child starts which it may take.
+#: Share of the available memory that a child may take.
 MEMORY_SHARE = 0.6
-#: How a child ended of which nobody knows more, as where what it was forked from has died.
+#: How a child ended whose status is unknown, as when the fork server has died.
 ENDED = "ended"
 #: Bytes that may wait in the pipe of answers.
 PIPE_BYTES = 1 << 20
@@ -50,13 +50,13 @@ class ChildError(Exception):
         self.kind, self.trace = kind, trace
 
 
-#: What an answer is about, and its arrays.
+#: The header of an answer, and its arrays.
 _Received = tuple[dict[str, Any], list[AnyArray]]
 
 
 @dataclass(frozen=True)
 class _Process:
-    """A child that runs: its pipes, what returns its exit status, and what ends it."""
+    """A running child: its pipes, and functions that return its exit status and end it."""
 
     requests: IO[bytes]
     answers: IO[bytes]
@@ -68,12 +68,12 @@ class Child:
     """A process that answers requests, one after another.
 
     Its methods may be called from any thread. It ends with this object, and with this process,
-    however that ends. ``entry`` is ``"module:name"`` of what makes the function that answers,
-    without arguments. That takes a value of JSON, and returns one with a list of arrays.
-    ``preload`` are modules that a child that is forked has at once, and ``memory`` bytes that it
-    may take, where the system has a limit (not on macOS and Windows); by default a share of what is
-    available. A ``lasting`` child continues when the process that it was forked from dies, and has
-    the standard error of this process.
+    however that ends. ``entry`` is the ``"module:name"`` of a function without arguments that
+    returns the handler of requests, which takes a value of JSON and returns one with a list of
+    arrays. A forked child has the modules ``preload`` at once. ``memory`` is its limit in bytes, by
+    default a share of the available memory; macOS and Windows have no such limit. A ``lasting``
+    child continues when the process that it was forked from dies, and has the standard error of
+    this process.
     """
 
     def __init__(
@@ -92,8 +92,8 @@ class Child:
         self._answers: SimpleQueue[_Received] = SimpleQueue()
         self._asking, self._writing = threading.Lock(), threading.Lock()
         self._numbers = itertools.count(1)
-        #: Numbers of requests without an answer, and of those among them that were given up; and
-        #: when the one that it is busy with has taken too long.
+        #: Numbers of requests without an answer, and of those among them that were cancelled; and
+        #: the time at which the current one has taken too long.
         self._waiting: set[int] = set()
         self._stale: set[int] = set()
         self._deadline = 0.0
@@ -108,15 +108,15 @@ class Child:
 
     @property
     def alive(self) -> bool:
-        """Whether it can be asked; what has died since the last request counts as alive."""
+        """Whether it takes requests; one that has died since the last request counts as alive."""
         return not self._death and self.close.alive
 
     def request(self, value: Any, *, timeout: float) -> tuple[Any, list[AnyArray]]:
         """Return the answer to a request: a value of JSON, and arrays.
 
         Raises a ChildError when the child is dead, dies, exceeds its memory, raises an error, or
-        does not answer in ``timeout`` seconds, after which it is ended. Where the work was
-        cancelled, it hears of it, and continues.
+        does not answer in ``timeout`` seconds, after which it is ended. When the work was
+        cancelled, the child stops this request, and continues.
         """
         while not self._asking.acquire(timeout=CHECK_INTERVAL_S):
             check()
@@ -141,21 +141,21 @@ class Child:
                 self._send({"cancel": number})
                 raise
             try:
-                about, arrays = self._answers.get(timeout=CHECK_INTERVAL_S)
+                header, arrays = self._answers.get(timeout=CHECK_INTERVAL_S)
             except Empty:
                 if time.monotonic() > self._deadline:
                     self._die(f"did not end within {timeout:.0f} s")
                 continue
-            if "death" in about:
-                self._die(about["death"])
-            if about["number"] == number:
-                return _value(about, self.memory), arrays
-            # Of an earlier request, that was given up: this one begins.
-            self._stale.discard(about["number"])
+            if "death" in header:
+                self._die(header["death"])
+            if header["number"] == number:
+                return _value(header, self.memory), arrays
+            # The answer to an earlier request that was cancelled: this one begins.
+            self._stale.discard(header["number"])
             self._deadline = time.monotonic() + timeout
 
     def _send(self, message: dict[str, Any]) -> None:
-        # The answers of a child that has died say why.
+        # The answers report why a child has died.
         with self._writing, suppress(OSError, ValueError):
             write_message(self._process.requests, message)
 
@@ -166,21 +166,21 @@ class Child:
 
 
 def prepare(preload: tuple[str, ...]) -> None:
-    """Load modules for children that will be started, in the background."""
+    """Load modules in the background for children that will be started."""
     if FORKS:
         fork_server(preload)
 
 
-def _value(about: dict[str, Any], memory: int) -> Any:
-    kind, text = about.get("error"), str(about.get("text", ""))
+def _value(header: dict[str, Any], memory: int) -> Any:
+    kind, text = header.get("error"), str(header.get("text", ""))
     if kind is None:
-        return about.get("value")
+        return header.get("value")
     if kind == "Stopped":
         raise Stopped
     if kind == "MemoryError":
         msg = f"needs more than {memory / 1e9:.1f} GB of memory"
         raise ChildError(msg)
-    trace = "".join(c for c in str(about.get("trace", "")) if c.isprintable() or c == "\n")
+    trace = "".join(c for c in str(header.get("trace", "")) if c.isprintable() or c == "\n")
     raise ChildError(text, str(kind), trace)
 
 
@@ -191,18 +191,18 @@ def _listen(
     waiting: set[int],
     stale: set[int],
 ) -> None:
-    """Take answers until there are no more, and return how the child ended."""
+    """Put answers into a queue until the child ends, and at last how it ended."""
     ending = ""
     try:
         with process.answers:
             while (message := read_message(process.answers, most_bytes)) is not None:
-                about, arrays = message
-                number = about.get("number") if isinstance(about, dict) else None
+                header, arrays = message
+                number = header.get("number") if isinstance(header, dict) else None
                 if number not in waiting:
                     msg = f"an answer to request {number!r}, which was not sent"
                     raise MessageError(msg)
                 waiting.discard(number)
-                answers.put((about, [] if number in stale else arrays))
+                answers.put((header, [] if number in stale else arrays))
     except (MessageError, OSError, MemoryError) as error:
         ending = f"sent a malformed answer: {error}"
         process.end()
@@ -228,7 +228,7 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], lasting: bool) ->
     """Let the fork server start a child."""
     requests, answers, status = os.pipe(), os.pipe(), os.pipe()
     pipes = requests[0], answers[1], status[1]
-    with suppress(OSError):  # fewer turns between the two processes, where it may be so large
+    with suppress(OSError):  # fewer switches between the processes, where this size is allowed
         fcntl.fcntl(answers[1], fcntl.F_SETPIPE_SZ, PIPE_BYTES)
     server = fork_server(preload)
     try:
@@ -240,19 +240,19 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], lasting: bool) ->
     finally:
         for pipe in pipes:
             os.close(pipe)
-    told = os.fdopen(status[0], "rb", buffering=0)
+    status_end = os.fdopen(status[0], "rb", buffering=0)
 
     def exit_status() -> int | None:
         with suppress(OSError, ValueError):
-            if select.select([told], [], [], STATUS_WAIT_S)[0]:
-                if code := told.read(STATUS_BYTES):
+            if select.select([status_end], [], [], STATUS_WAIT_S)[0]:
+                if code := status_end.read(STATUS_BYTES):
                     return int.from_bytes(code, "big", signed=True)
                 server.lost = True  # it has died, or is dying
         return None
 
     # The fork server ends a child whose pipe is closed.
     return _Process(
-        os.fdopen(requests[1], "wb"), os.fdopen(answers[0], "rb"), exit_status, told.close
+        os.fdopen(requests[1], "wb"), os.fdopen(answers[0], "rb"), exit_status, status_end.close
     )
 
 

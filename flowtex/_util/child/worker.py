@@ -1,4 +1,4 @@
-"""What runs in the child: a handler of requests, within a limit of memory."""
+"""The main loop of a child: a handler of requests, within a memory limit."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _PROGRAM = (
     "sys.path[:] = start['path']; module, function = start['entry']; "
     "getattr(import_module(module), function)(**start['arguments'])"
 )
-#: How ready the system is, 0 to 1000, to end the child instead of its parent for want of memory.
+#: Priority, 0 to 1000, with which the system ends the child if memory runs out.
 OOM_SCORE = "800"
-#: Errors that say all in their text, and characters of that, at most.
+#: Errors whose text is sufficient without a trace, and most characters of the text.
 QUIET, TEXT_LENGTH = ("Stopped", "MemoryError", "FieldError"), 4_000
 
 
 def command(function: Callable[..., Any], **arguments: Any) -> list[str]:
-    """Return what starts a process that has the paths of this one, and calls a function."""
+    """Return the command of a process with the paths of this one that calls a function."""
     entry = function.__module__, function.__name__
     start = json.dumps({"path": sys.path, "entry": entry, "arguments": arguments})
     return [sys.executable, "-I", "-c", _PROGRAM, start]
@@ -50,9 +50,9 @@ def spawned(entry: str, memory: int, lasting: bool) -> None:  # noqa: FBT001 by 
 
 
 def settle(memory: int, *, lasting: bool) -> None:
-    """Limit the memory of this process, and be the first to go where it runs out.
+    """Limit the memory of this process, and let the system end it first where memory runs out.
 
-    Nothing is read or printed; what lasts may print on the standard error.
+    Nothing is read or printed; a ``lasting`` process may print on the standard error.
     """
     device = os.open(os.devnull, os.O_RDWR)
     for standard in (0, 1) if lasting else (0, 1, 2):  # output of C libraries is dropped
@@ -70,14 +70,15 @@ def settle(memory: int, *, lasting: bool) -> None:
         used = int(pages[5]) * resource.getpagesize()
     most = resource.getrlimit(resource.RLIMIT_DATA)[1]
     limit = used + memory if most == resource.RLIM_INFINITY else min(used + memory, most)
-    with suppress(ValueError, OSError):  # which a system may refuse that has no such limit
+    with suppress(ValueError, OSError):  # the system has no such limit
         resource.setrlimit(resource.RLIMIT_DATA, (limit, most))
 
 
 def serve(entry: str, reads: IO[bytes], writes: IO[bytes]) -> None:
     """Answer requests, one after another, until the other end is closed; then end the process.
 
-    ``entry`` is ``"module:name"`` of what makes a :data:`Handler`, without arguments.
+    ``entry`` is the ``"module:name"`` of a function without arguments that returns a
+    :data:`Handler`.
     """
     requests: SimpleQueue[tuple[int, Any]] = SimpleQueue()
     cancelled: set[int] = set()
@@ -109,13 +110,13 @@ def _handler(entry: str) -> Handler:
 
 
 def _kind(error: Exception) -> str:
-    """Return the name of the class, or of that above it which the other end knows."""
+    """Return the name of the class, or of its base class that the other end knows."""
     names = [kind.__name__ for kind in type(error).__mro__]
     return next((name for name in names if name in QUIET), names[0])
 
 
 def _listen(reads: IO[bytes], requests: SimpleQueue[tuple[int, Any]], cancelled: set[int]) -> None:
-    """Take requests and cancellations; no process waits for answers then."""
+    """Take requests and cancellations until the other end is closed, then end the process."""
     try:
         while (message := read_message(reads, 0)) is not None:
             value = message[0]

@@ -1,13 +1,16 @@
-"""What is written to a terminal: names and attributes of data are text there, and nothing else."""
+"""Output to a terminal, in which names and attributes of data are plain text."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.segment import Segment
+    from rich.text import Text
 
 #: Characters that move the cursor, colour, ring, or turn the direction of writing, and halves of
 #: characters; a line may end, and have tabs.
@@ -32,12 +35,12 @@ def _console_class() -> type[Console]:
     from rich.segment import Segment
 
     class PlainConsole(Console):
-        """Whatever is rendered, also inside of tables and bars, goes through here."""
+        """A console that removes control characters, also inside of tables and bars."""
 
-        def render_str(self, text: str, **options: Any) -> Any:
+        def render_str(self, text: str, **options: Any) -> Text:
             return super().render_str(plain_text(text), **options)
 
-        def render(self, *arguments: Any, **options: Any) -> Any:
+        def render(self, *arguments: Any, **options: Any) -> Iterator[Segment]:
             for segment in super().render(*arguments, **options):
                 if segment.control:
                     yield segment

@@ -36,13 +36,13 @@ def announce_end(number: int) -> None:
 def ended_by_signals() -> Iterator[None]:
     """Raise :class:`Ended` on the first signal, as Ctrl-C raises KeyboardInterrupt.
 
-    So what is written is removed, and temporary folders as well. Where a callback of a library
-    swallowed the error it is raised again, but not while it is handled: another signal does not
-    interrupt the end. A signal that the program ignores, as under nohup, is ignored still.
+    So incomplete files and temporary folders are removed. If a callback of a library swallowed the
+    error, it is raised again, but not while it is handled: another signal does not interrupt the
+    end. A signal that the program ignores, as under nohup, is still ignored.
     """
     received: list[int] = []
     over, reminding = threading.Event(), threading.Lock()
-    # Python tries that folder by a file, once, which a signal in between would leave there.
+    # Python tests the folder once with a file, which a signal in between would leave there.
     tempfile.gettempdir()
 
     def end(number: int, frame: FrameType | None) -> None:
@@ -65,8 +65,8 @@ def ended_by_signals() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         before = {}
     before = {s: handler for s, handler in before.items() if handler not in (signal.SIG_IGN, None)}
-    for one in before:
-        signal.signal(one, end)
+    for signum in before:
+        signal.signal(signum, end)
     try:
         yield
     except Exception as error:
@@ -76,12 +76,12 @@ def ended_by_signals() -> Iterator[None]:
     finally:
         with reminding:  # afterwards a signal would end the process
             over.set()
-        for one, handler in before.items():
-            signal.signal(one, handler)
+        for signum, handler in before.items():
+            signal.signal(signum, handler)
 
 
 def _is_handled(kind: type[BaseException], error: BaseException | None) -> bool:
-    """Whether an error, or one that it was raised in the handling of, is of a kind."""
+    """Return whether an error, or one during whose handling it was raised, is of a kind."""
     while error is not None and not isinstance(error, kind):
         error = error.__context__
     return error is not None
