@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -25,9 +25,6 @@ from flowtex.field.steps import LazySteps, Nodes, Steps
 from flowtex.pyramid.places import PyramidError, ReadFault, fault_words
 from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, source_of
 from flowtex.textures.tiles.pyramid import ROOT_NODES, level_lines, root_level
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: Nodes of a level may be so many times as far apart as those that are drawn.
 WIDER = 1.5
@@ -152,7 +149,7 @@ class OtherLevels:
     def _values(
         self,
         regions: Regions,
-        variables: list[xr.Variable],
+        variables: list[Any],
         step: int,
         fine: tuple[Indices, Indices],
     ) -> list[Floats]:

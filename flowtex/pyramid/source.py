@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -40,9 +40,6 @@ from flowtex.pyramid.places import (
 )
 from flowtex.textures.tiles import Pyramid, drawn_speeds, ends_of
 from flowtex.trace import chosen_lines, judged_lines
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: Rows or columns, by numbers or as a slice.
 Selection: TypeAlias = Indices | slice
@@ -303,7 +300,7 @@ def _json(path: Path) -> dict[str, Any]:
     return content if isinstance(content, dict) else {}
 
 
-def datasets_at(place: str, options: Mapping[str, Any]) -> list[xr.Dataset]:
+def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
     """Return the datasets of a store of others that have a velocity, the finest first."""
     from flowtex.pyramid.objects import OthersObjects, level_names
 

@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +43,7 @@ class NodeDisplacements:
         frame: Floats,
         nodes: tuple[slice, slice] = (slice(None), slice(None)),
     ) -> None:
-        # Counted from the middle and from the nodes, single precision does.
+        # Relative to the middle and to the nodes, single precision is sufficient.
         self._map = CubicMap(surface, frame, surface.center, np.float32)
         rows, columns = (np.arange(n)[part] for n, part in zip(surface.shape, nodes, strict=True))
         self._shape = len(rows), len(columns)
@@ -57,7 +56,7 @@ class NodeDisplacements:
     def __call__(self, displacement: NDArray[np.floating], error: float = 0.0) -> Floats32:
         """Return displacements in space (C, J, I) of those in index space, (J, I, 2) in cells.
 
-        Such an error is allowed in what is left out of the cubics.
+        Terms of the cubics may be left out up to ``error``.
         """
         rows, columns = self._shape
         along_i, along_j = (displacement[..., c].astype(np.float32).ravel() for c in range(2))
@@ -73,9 +72,9 @@ class NodeDisplacements:
         return result.reshape(-1, rows, columns)
 
 
-#: Mip levels of a texture besides its finest one, at most, and of a tile's.
+#: Most mip levels of a texture besides its finest one, and those of a tile.
 DEEPEST, TILE_LEVELS = 5, 3
-#: Percentile of the sides of cells that small ones have.
+#: Percentile of the sides of cells that counts as that of small ones.
 SMALL_CELLS = 5
 
 
@@ -83,7 +82,7 @@ SMALL_CELLS = 5
 class Padding:
     """Where the nodes of one axis lie in a texture.
 
-    Drawn are ``nodes`` of them from number ``first`` on, of the ``total`` that there are.
+    Of ``total`` nodes, ``nodes`` are drawn, from number ``first`` on.
     """
 
     nodes: int
@@ -97,7 +96,7 @@ class Padding:
     def of(cls, total: int, levels: int, *, periodic: bool, drawn: slice | None = None) -> Padding:
         """Pad to a multiple of the block of the coarsest level.
 
-        What is left out beside the nodes that are ``drawn`` continues them as a period does.
+        Nodes beside those that are ``drawn`` continue them as a period does.
         """
         first, end, _ = (drawn or slice(None)).indices(total)
         block = 2**levels
@@ -128,7 +127,7 @@ class Padding:
 
     @property
     def start(self) -> int:
-        """Texel that holds the first of them."""
+        """Texel that holds the first of :attr:`texels`."""
         return int(self.texels.start) - self.first + self.before
 
     @property
@@ -147,9 +146,9 @@ def paddings(shape: tuple[int, int], periodic: tuple[bool, bool]) -> tuple[int, 
 
 
 class DrawnSurface:
-    """What surfaces of both kinds have: the frame in which they are drawn.
+    """Base of surfaces of both kinds: the frame in which they are drawn.
 
-    ``whole`` is the surface that what is drawn of the ``field`` is a part of, ``points`` are the
+    ``whole`` is the surface of which the drawn part of ``field`` is a part, ``points`` are the
     nodes that are drawn, (J, I, 3).
     """
 
@@ -166,13 +165,13 @@ class DrawnSurface:
         """The nodes that are drawn, (J, I, 3), in the mesh's own coordinates."""
         raise NotImplementedError
 
-    def at_vertices(self, nodal: NDArray[Any]) -> NDArray[Any]:
-        """Return what the vertices of a mesh have, (V, ...), of what the nodes have (J, I, ...)."""
+    def at_vertices(self, nodal: AnyArray) -> AnyArray:
+        """Return values at the vertices of a mesh, (V, ...), from nodal ones, (J, I, ...)."""
         raise NotImplementedError
 
     @property
     def drawn_vertices(self) -> Bools:
-        """Which vertices belong to something that is drawn, (V,)."""
+        """Mask of the vertices that belong to a drawn cell, (V,)."""
         raise NotImplementedError
 
     @property
@@ -182,7 +181,7 @@ class DrawnSurface:
 
     @cached_property
     def outermost(self) -> Indices:
-        """Vertices that touch the sides of the bounding box of all that is drawn, (6,)."""
+        """Vertices that touch the sides of the bounding box of the drawn cells, (6,)."""
         at = np.flatnonzero(self.drawn_vertices)
         points = self.at_vertices(self.points)[at]
         return np.asarray(at[np.concatenate([points.argmin(axis=0), points.argmax(axis=0)])])
@@ -194,7 +193,7 @@ class DrawnSurface:
 
     @property
     def center(self) -> Floats:
-        """What was taken from the mesh's coordinates, (3,)."""
+        """Origin of the surface's frame in the mesh's coordinates, (3,)."""
         return self.whole.center
 
     @property
@@ -214,9 +213,9 @@ class DrawnSurface:
         return self.position_from(np.zeros(3))
 
     def position_from(self, anchor: Floats) -> Floats32:
-        """Nodes in the surface's own frame relative to a point of it (3,), (J, I, 3).
+        """Return nodes in the surface's own frame relative to a point of it (3,), (J, I, 3).
 
-        Close to the anchor single precision tells points apart that it would not from the middle.
+        Close to the anchor single precision resolves points that it would not from the middle.
         """
         local = (self.points - self.center) @ self.frame.T
         return np.asarray(local - anchor, dtype=np.float32)
@@ -302,9 +301,9 @@ class SurfaceGeometry(DrawnSurface):
         return faces_of(self.cells)
 
     def displacements(self, frame: Floats) -> Callable[[AnyArray, float], AnyArray]:
-        """Return what takes displacements (J, I, 2) in cells to a frame, (C, J, I).
+        """Return a function from displacements (J, I, 2) in cells to those in a frame, (C, J, I).
 
-        It takes the error that is allowed as well.
+        Its second argument is the error that is allowed.
         """
         return NodeDisplacements(self.surface, frame, self.texels)
 
@@ -315,7 +314,7 @@ class SurfaceGeometry(DrawnSurface):
 
     @property
     def drawn_vertices(self) -> Bools:
-        """Which vertices belong to a cell that is drawn, (V,)."""
+        """Mask of the vertices that belong to a drawn cell, (V,)."""
         used = np.zeros(self.shape, dtype=bool)
         for j, i in ((0, 0), (0, 1), (1, 0), (1, 1)):
             used[j : used.shape[0] - 1 + j, i : used.shape[1] - 1 + i] |= self.cells
@@ -323,14 +322,14 @@ class SurfaceGeometry(DrawnSurface):
 
     @property
     def periodic(self) -> tuple[bool, bool]:
-        """Whether what is drawn closes on itself, along j and i."""
+        """Whether the drawn surface closes on itself, along j and i."""
         return self.rows.periodic, self.columns.periodic
 
     @cached_property
     def normal(self) -> Floats32:
         """Unit normals at the nodes, (J, I, 3), in the mesh's own axes.
 
-        A node whose cells have collapsed takes that of the line beside it.
+        A node whose cells have collapsed takes the normal of the line beside it.
         """
         normal = np.cross(*self.field.surface.tangents)
         length = norm(normal)[..., None]
@@ -355,7 +354,7 @@ class SurfaceGeometry(DrawnSurface):
 
     @property
     def is_smooth(self) -> bool:
-        """Whether every node has a position, and a normal by those around it or is a pole."""
+        """Whether every node has a position, and a normal from its neighbours or is a pole."""
         surface = self.field.surface
         small = _is_small(norm(np.cross(*surface.tangents)))
         for pole in surface.poles or ():
@@ -368,8 +367,8 @@ class SurfaceGeometry(DrawnSurface):
         u, v = np.meshgrid(self.columns.coordinates, self.rows.coordinates)
         return np.stack([u, v], axis=-1).astype(np.float32)
 
-    def at_vertices(self, nodal: NDArray[Any]) -> NDArray[Any]:
-        """Return what the vertices of a mesh have, (V, ...), of what the nodes have (J, I, ...)."""
+    def at_vertices(self, nodal: AnyArray) -> AnyArray:
+        """Return values at the vertices of a mesh, (V, ...), from nodal ones, (J, I, ...)."""
         return nodal.reshape(-1, *nodal.shape[2:])
 
     @property
@@ -377,8 +376,8 @@ class SurfaceGeometry(DrawnSurface):
         """Unit normals at the vertices, (V, 3), in the mesh's own axes."""
         return self.normal.reshape(-1, 3)
 
-    def as_image(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Return values at the vertices (V,) as an image of the nodes, here (J, I)."""
+    def as_image(self, values: AnyArray) -> AnyArray:
+        """Return values at the vertices (V,) as an image of the nodes, (J, I)."""
         return values.reshape(self.shape)
 
     def write_texels(self, data: Floats32, texels: AnyArray) -> None:
@@ -397,7 +396,7 @@ class SurfaceGeometry(DrawnSurface):
         inner[:, :before] = data[:, columns.picks[:before] - columns.texels.start]
         inner[:, left:] = data[:, columns.picks[left:] - columns.texels.start]
         if columns.periodic:
-            # The closing line is traced apart from the first; every repeat must be the same.
+            # The closing line is traced separately from the first; all repeats must be the same.
             inner[:, left - 1] = inner[:, before]
         if rows.periodic:
             inner[-1] = inner[0]
@@ -406,7 +405,7 @@ class SurfaceGeometry(DrawnSurface):
         texels[top:] = inner[rows.picks[top:] - rows.texels.start]
 
     @cached_property
-    def _nearest(self) -> tuple[Bools, tuple[Any, ...]] | None:
+    def _nearest(self) -> tuple[Bools, tuple[AnyArray, ...]] | None:
         """Blanked nodes of :attr:`texels`, and the nodes that they take their data from."""
         valid = self.field.valid[self.texels]
         if valid.all() or not valid.any():
@@ -416,5 +415,5 @@ class SurfaceGeometry(DrawnSurface):
 
 
 def _is_small(lengths: Floats) -> Bools:
-    """Which normals are those of cells that have collapsed, by their lengths."""
+    """Return which normals are those of collapsed cells, by their lengths."""
     return np.asarray(lengths <= 1e-9 * max(float(np.median(lengths)), 1e-300))

@@ -1,22 +1,25 @@
 """A user's image as texels that a shader can average: colour times opacity, and opacity.
 
-Averaging colours that were multiplied by their opacity is what keeps a transparent pixel's own
-colour out of its neighbours, so dye has clean edges at every level of detail. Files are PNG, JPEG
-and whatever else Pillow, which PyVista brings, can read.
+Averages of colours that were multiplied by their opacity keep the colour of a transparent pixel out
+of its neighbours, so dye has clean edges at every level of detail. Files are PNG, JPEG and all
+others that Pillow, which comes with PyVista, can read.
 """
 
 from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bytes, Floats32
 from flowtex.settings import SettingsError
 
-#: Texels along a side, at most; a larger image is averaged down to it.
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+#: Most texels along a side; a larger image is averaged to fit.
 LARGEST = 4096
 #: Rounding by which a float may lie outside 0 to 1.
 SLACK = 1e-3
@@ -40,8 +43,8 @@ def as_picture(image: Any) -> Floats32:
     """Check an image and return its texels.
 
     It is grey (H, W), colours (H, W, 3) or colours and opacity (H, W, 4), row 0 at the top: whole
-    numbers without sign from 0 to their greatest, floats from 0 to 1, or booleans. An ImageError
-    tells of another array, an empty one, NaN, and values out of range.
+    numbers without sign from 0 to their greatest, floats from 0 to 1, or booleans. Raises an
+    ImageError for another array, an empty one, NaN, and values out of range.
 
     Texels are (h, w, 4) in single precision: red, green and blue times opacity, and opacity, from 0
     to 1. Row 0 is the bottom, as j grows upward. There are no more than :data:`LARGEST` on a side.
@@ -76,7 +79,7 @@ def as_image(picture: Floats32) -> Floats32:
 
 
 def _fractions(array: AnyArray) -> Floats32:
-    """Values from 0 to 1."""
+    """Return values from 0 to 1."""
     if array.dtype.kind == "b":
         return array.astype(np.float32)
     if array.dtype.kind == "u":
@@ -99,7 +102,7 @@ def _fractions(array: AnyArray) -> Floats32:
 
 
 def _shrunk(values: Floats32) -> Floats32:
-    """Average blocks of texels where there are too many."""
+    """Average blocks of texels so that the image fits."""
     block = -(-max(values.shape[:2]) // LARGEST)
     if block == 1:
         return values
@@ -125,15 +128,15 @@ def averaged(pixels: Bytes, times: int) -> Bytes:
 def load_image(image: Any) -> Any:
     """Read an image when it is a path, and return anything else as it is.
 
-    Returns (H, W), (H, W, 3) or (H, W, 4), row 0 at the top, as the file's own orientation says. An
-    :class:`ImageError` says that the file does not exist, or no picture that can be read.
+    Returns (H, W), (H, W, 3) or (H, W, 4), row 0 at the top, by the orientation in the file. Raises
+    an :class:`ImageError` when the file does not exist, or is no picture that can be read.
     """
     if not isinstance(image, (str, Path)):
         return image
     path = Path(image).expanduser()
     if not path.is_file():
-        what = "is a folder" if path.is_dir() else "the file does not exist"
-        msg = f"{image}: {what}; expected a picture, such as a PNG or a JPEG"
+        problem = "is a folder" if path.is_dir() else "the file does not exist"
+        msg = f"{image}: {problem}; expected a picture, such as a PNG or a JPEG"
         raise ImageError(msg)
     from PIL import Image, ImageOps, UnidentifiedImageError
 
@@ -154,8 +157,8 @@ def load_image(image: Any) -> Any:
         raise ImageError(msg) from error
 
 
-def pixels_of(picture: Any) -> AnyArray:
-    """Pixels, with opacity where the picture has any; deep grey stays deep."""
+def pixels_of(picture: Image) -> AnyArray:
+    """Return pixels, with opacity where the picture has any; grey keeps its 16 bits."""
     if picture.mode.startswith("I"):  # 16 bits, which some versions of Pillow hold in 32
         return np.asarray(picture).astype(np.uint16)
     if picture.mode == "F":

@@ -3,7 +3,7 @@
 The noise texture lies on the parameters of the surface (section 3.2), and any picture can take
 its place. Laid evenly over the cells it is stretched with them. *Corrected* for the distribution
 of the cells (figure 6), a noise coordinate grows with the length of the grid lines instead of
-their number, and where the texels are longer than wide all the same, each takes the value of a
+their number, and where the texels are nevertheless longer than wide, each takes the value of a
 pattern in space at its own position (:mod:`flowtex.textures.patterns`).
 
 The step texture holds, for every texel of the noise, the lag in which the flow crosses it
@@ -95,7 +95,7 @@ class PaperTextures:
         )
 
     def with_image(self, image: Floats32) -> PaperTextures:
-        """Return the same with a picture (H, W, 4) in place of what was there."""
+        """Return the same textures with a picture (H, W, 4) in place of the noise."""
         return replace(self, noise=image, grain=1.0, picture=True)
 
     @cached_property
@@ -110,7 +110,7 @@ class PaperTextures:
 
     @property
     def noise_repeat(self) -> tuple[bool, bool]:
-        """Whether that array goes around along (v, u): a picture always does."""
+        """Whether :attr:`noise_texels` go around along (v, u): a picture always does."""
         return (True, True) if self.picture else self.repeat
 
     @property
@@ -124,11 +124,11 @@ class PaperTextures:
         return np.stack(np.meshgrid(self.along_i, self.along_j), axis=-1).astype(np.float32)
 
     def at(self, index: Floats) -> Floats:
-        """Noise coordinates of positions in index space, (..., 2), straight on beyond the ends."""
+        """Return noise coordinates of positions in index space, (..., 2), linear beyond ends."""
         return self._by_axis(along_line, index)
 
     def index(self, coordinate: Floats) -> Floats:
-        """Positions in index space of noise coordinates, (..., 2): the way back from :meth:`at`."""
+        """Return positions in index space of noise coordinates, (..., 2), inverse to :meth:`at`."""
         return self._by_axis(inverse_along_line, coordinate)
 
     def _by_axis(self, function: Callable[..., Floats], places: Floats) -> Floats:
@@ -143,7 +143,7 @@ class PaperTextures:
 
 
 def _coordinates(field: FlowField, *, correction: bool) -> tuple[Floats, Floats]:
-    """Noise coordinate of each line of nodes along i and along j."""
+    """Return the noise coordinate of each line of nodes along i and along j."""
     p_i, p_j = (np.linalg.norm(t, axis=-1) for t in field.surface.tangents)
     lines = []
     for lengths in (p_i.mean(axis=0), p_j.mean(axis=1)):
@@ -156,7 +156,7 @@ def _coordinates(field: FlowField, *, correction: bool) -> tuple[Floats, Floats]
 
 
 def _size(field: FlowField, resolution: int) -> tuple[int, int]:
-    """Height and width, powers of two in about the proportion of the surface."""
+    """Return the height and width, powers of two in about the proportion of the surface."""
     lengths = side_lengths(field)
     shares = np.maximum(lengths / lengths.max(), 1 / 8) * resolution
     width, height = (int(2 ** np.ceil(np.log2(max(n, 8)))) for n in shares)
@@ -164,20 +164,20 @@ def _size(field: FlowField, resolution: int) -> tuple[int, int]:
 
 
 def _texel_positions(along_i: Floats, along_j: Floats, height: int, width: int) -> Floats:
-    """Index-space position of the middle of each texel, (H, W, 2)."""
+    """Return the index-space position of the middle of each texel, (H, W, 2)."""
     i = np.interp((np.arange(width) + 0.5) / width, along_i, np.arange(len(along_i)))
     j = np.interp((np.arange(height) + 0.5) / height, along_j, np.arange(len(along_j)))
     return np.stack(np.meshgrid(i, j), axis=-1)
 
 
 def _slope(line: Floats, x: Floats, texels: int) -> Floats:
-    """Cells by texel at positions along a line."""
+    """Return cells by texel at positions along a line."""
     cell = np.clip(x.astype(np.intp), 0, len(line) - 2)
     return np.asarray(1 / (np.diff(line)[cell] * texels))
 
 
 def _noise(texels: TexelMap, settings: Settings, image: Floats32 | None) -> dict[str, Any]:
-    """Attributes of the noise, or of the picture in its place."""
+    """Return the attributes of the noise, or of the picture in its place."""
     pattern, seed = settings.noise, settings.seed
     if pattern == "image" and image is not None:
         return {"noise": image, "picture": True}
@@ -202,10 +202,10 @@ def _unit(noise: Floats) -> Floats32:
 
 
 def _steps(store: SliceStore, index: Floats, texel: Floats) -> Floats:
-    """Lag in which the flow crosses one texel (equation 3), (H, W).
+    """Return the lag in which the flow crosses one texel (equation 3), (H, W).
 
-    What is interpolated between the nodes is the speed in index space; interpolating its
-    inverse would let one node at rest rule the cells around it.
+    The speed in index space is interpolated between the nodes, not its inverse: with that, one node
+    at rest would dominate the cells around it.
     """
     field = store.field
     speed = np.abs(field.index_velocity.components).max(axis=0)
@@ -219,7 +219,7 @@ def _steps(store: SliceStore, index: Floats, texel: Floats) -> Floats:
 
 
 def _by_length(components: Floats, field: FlowField) -> Floats:
-    """Cells crossed in a unit of length; where nothing moves, what the nearest node has."""
+    """Return the cells crossed in a unit of length; nodes at rest take that of the nearest one."""
     speed = field.speed[0]
     moving = field.valid & (speed > 1e-7 * speed.max())
     if not moving.any():
@@ -234,12 +234,12 @@ def _deviations(noise: Floats32) -> list[float]:
     Between the texels of a level and between two levels the look-up is linear, and the noise
     goes around. Levels too coarse to be judged lose half from one to the next, as white noise.
     """
-    at = np.random.default_rng(0).random((2, DEVIATION_POINTS))
+    points = np.random.default_rng(0).random((2, DEVIATION_POINTS))
     level = noise.astype(np.float64)
-    values, result = _bilinear(level, at), []
+    values, result = _bilinear(level, points), []
     while level.size >= 4 * FEWEST_TEXELS and min(level.shape) > 1:
         level = block_means(level, 2)
-        coarser = _bilinear(level, at)
+        coarser = _bilinear(level, points)
         result += [float(values.std()), float((0.5 * (values + coarser)).std())]
         values = coarser
     result.append(float(values.std()))
@@ -249,6 +249,6 @@ def _deviations(noise: Floats32) -> list[float]:
 
 
 def _bilinear(level: Floats, at: Floats) -> Floats:
-    """Values at coordinates (2, N) from 0 to 1, texels in the middle of their squares."""
+    """Return values at coordinates (2, N) from 0 to 1, texels in the middle of their squares."""
     at = at * np.array(level.shape)[:, None] - 0.5
     return np.asarray(scipy.ndimage.map_coordinates(level, at, order=1, mode="grid-wrap"))

@@ -36,7 +36,7 @@ class TexelMap:
 
     field: FlowField
     index: Floats  #: Middle of each texel as (i, j), (H, W, 2).
-    size: Floats  #: Its size in cells, (H, W, 2).
+    size: Floats  #: Size of each texel in cells, (H, W, 2).
     corrected: bool  #: Whether a pattern is even on the surface, not on the texels.
 
     @property
@@ -65,7 +65,7 @@ class TexelMap:
 
 
 def even_noise(texels: TexelMap, seed: int) -> Floats:
-    """Noise, at each texel as coarse as the texel is long, (H, W) from 0 to 1.
+    """Return noise (H, W) from 0 to 1, at each texel as coarse as the texel is long.
 
     A texel takes the random number of the cube of a lattice in space in which it lies. The
     lattice is that power of two of the finest which is nearest to the texel's longer side.
@@ -79,7 +79,7 @@ def even_noise(texels: TexelMap, seed: int) -> Floats:
 
 
 def spots(texels: TexelMap, seed: int) -> Floats:
-    """Discs of random places and of random sign, (H, W).
+    """Return discs at random places and of random sign, (H, W).
 
     Every cell of a lattice holds one disc at a random place inside it. The lattice is that in
     space, :data:`SPOT` texels wide, or as much wider by a power of two as a long texel needs;
@@ -104,7 +104,7 @@ def spots(texels: TexelMap, seed: int) -> Floats:
 
 
 def _places_in_space(texels: TexelMap) -> tuple[Floats, Ints]:
-    """Texels in cells of the lattice of spots, (H, W, 2 or 3), and its octave, (H, W)."""
+    """Return texels in cells of the lattice of spots, (H, W, 2 or 3), and its octave, (H, W)."""
     long_ = texels.lengths.max(axis=-1)
     width = SPOT * float(np.median(long_))
     octave = np.ceil(np.log2(np.maximum(COARSEST * long_ / width, 1.0)) - 1e-9).astype(np.int64)
@@ -112,7 +112,7 @@ def _places_in_space(texels: TexelMap) -> tuple[Floats, Ints]:
 
 
 def _disc(place: Floats, number: NDArray[np.uint64]) -> Floats:
-    """Value at a place of the disc of one cell, whose number holds its middle and its sign."""
+    """Return the value of a cell's disc, whose number holds its middle and sign, at a place."""
     away = np.zeros(number.shape)
     for axis in range(place.shape[-1]):
         middle = (number >> np.uint64(16 * axis) & np.uint64(0xFFFF)) / 65536.0
@@ -122,7 +122,7 @@ def _disc(place: Floats, number: NDArray[np.uint64]) -> Floats:
 
 
 def checkerboard(texels: TexelMap, tiles: int) -> Floats:
-    """Black and white squares of even size, (H, W) from 0 to 1, with edges as wide as a texel.
+    """Return black and white squares, (H, W) from 0 to 1, with edges as wide as a texel.
 
     Squares lie in the plane of a flat surface when corrected, and on the parameters otherwise.
     :data:`SQUARES` times ``tiles`` of them go along the longer side.
@@ -143,13 +143,13 @@ def checkerboard(texels: TexelMap, tiles: int) -> Floats:
 
 
 def side_lengths(field: FlowField) -> Floats:
-    """Lengths of a surface along i and along j, (2,)."""
+    """Return lengths of a surface along i and along j, (2,)."""
     tangents = (np.linalg.norm(t, axis=-1)[field.valid].mean() for t in field.surface.tangents)
     return np.array([t * (n - 1) for t, n in zip(tangents, field.shape[::-1], strict=True)])
 
 
 def _counts(field: FlowField, count: int) -> Floats:
-    """Squares along i and along j; whole pairs around an axis that closes on itself."""
+    """Return squares along i and along j; whole pairs around an axis that closes on itself."""
     lengths = side_lengths(field)
     counts = np.asarray(count * lengths / lengths.max())
     closed = np.array(field.periodic[::-1])
@@ -157,13 +157,13 @@ def _counts(field: FlowField, count: int) -> Floats:
 
 
 def _wave(x: Floats, wide: Floats) -> Floats:
-    """Square wave of period 2, above zero in 0 ... 1, with steps of the given width."""
+    """Return the square wave of period 2, above zero in 0 ... 1, with steps of the given width."""
     inside = 0.5 - np.abs(np.mod(x + 0.5, 2.0) - 1.0)  # distance to the nearest step, signed
     return np.asarray(np.clip(inside * (2.0 / np.maximum(wide, 1e-9)), -1.0, 1.0))
 
 
 def _hash(cell: Ints, octave: Ints, seed: int) -> NDArray[np.uint64]:
-    """Uniform random whole number of a lattice cell (..., 2 or 3)."""
+    """Return the uniform random whole number of a lattice cell (..., 2 or 3)."""
     primes = np.array([0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D], dtype=np.uint64)
     h = np.zeros(octave.shape, np.uint64)
     for axis in range(cell.shape[-1]):

@@ -46,13 +46,13 @@ from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace import SliceStore, TraceSlices
 from flowtex.trace.lags import typical_speed
 
-#: Slices on each side that a shader has room for.
+#: Most slices on each side, by the room in a shader.
 MOST_LAGS = 32
 #: The layer whose fourth channel is the uncertainty of the direction.
 UNCERTAIN_LAYER = 3
 #: Greatest number in half precision, in which texels are stored.
 HALF_MAX = 65504.0
-#: Share of a slope that may be left out of it: half of what rounding it takes.
+#: Relative error that is allowed in a slope: half of that of rounding.
 SLOPE_ERROR = 2.0**-12
 #: Nodes agree on the direction where their mean velocity is so long, over the mean of the lengths.
 AGREED = 0.99
@@ -60,10 +60,10 @@ AGREED = 0.99
 
 @dataclass(frozen=True, eq=False)
 class TextureSet:
-    """All that a renderer needs of a flow, beside the settings.
+    """The data of a flow that a renderer needs, beside the settings.
 
-    Slopes are in noise coordinates where there is ``paper``, the noise texture and the step
-    texture, and in space otherwise.
+    Slopes are in noise coordinates with ``paper``, the noise texture and the step texture, and in
+    space otherwise.
     """
 
     geometry: SurfaceGeometry | TriangleGeometry
@@ -83,8 +83,8 @@ class TextureSet:
     ) -> TextureSet:
         """Make the textures that the settings ask for.
 
-        The image (H, W, 4) is that for ``noise="image"``, and the geometry is the field's own by
-        default. Raises a FieldError when the slices do not belong to the field, or are more than a
+        The image (H, W, 4) is that for ``noise="image"``, and the geometry by default that of the
+        field. Raises a FieldError when the slices do not belong to the field, or are more than a
         shader has room for; or when an image is missing, or the surface does not support the noise.
         """
         field = store.field
@@ -121,7 +121,9 @@ class TextureSet:
 
     def same_paths(self, other: TextureSet) -> bool:
         """Return whether only the image instead of the noise differs."""
-        steps = [None if one.paper is None else one.paper.step for one in (self, other)]
+        steps = [
+            None if textures.paper is None else textures.paper.step for textures in (self, other)
+        ]
         return self.geometry is other.geometry and steps[0] is steps[1] is not None
 
     @property
@@ -166,9 +168,9 @@ class TextureSet:
 
     @property
     def in_cells(self) -> bool:
-        """Whether there is the last layer, of the velocity in cells."""
-        alike = self.store.streamlines and not self.geometry.field.sign_free
-        return alike and self.paper is None
+        """Whether the last layer holds the velocity in cells."""
+        has_direction = self.store.streamlines and not self.geometry.field.sign_free
+        return has_direction and self.paper is None
 
     @cached_property
     def least_unit(self) -> float:
@@ -199,26 +201,26 @@ class TextureSet:
         # A flow that leaves the plane of a triangle has another direction in it.
         mean = field.surface.in_cells(sum((along[at] for at in corners[1:]), along[corners[0]]))
         mean /= np.maximum(norm(mean), np.finfo(float).tiny)[..., None]
-        # What stands still says nothing of the direction.
+        # A node at rest has no direction.
         cosines = [np.where(length[at][..., 0] > 0, dot(along[at], mean), 1) for at in corners]
         parting = (np.min(cosines, axis=0) < AGREED) & field.surface.cells
         return float(field.surface.cell_lengths[parting].max(initial=0.0))
 
     def forget(self) -> None:
-        """Drop what only making the layers needs."""
+        """Drop data that are only needed to make layers."""
         self.store.forget()
         self.geometry.field.forget()
         for name in ("_displacements", "_length"):
             self.__dict__.pop(name, None)
 
     def layers(self, step: int = 0, lags: int | None = None, dtype: type = np.float16) -> AnyArray:
-        """Texels of the slice texture for one destination time, (layers, H, W, 4).
+        """Return texels of the slice texture for one destination time, (layers, H, W, 4).
 
-        They are those of this many lags, the shortest, and of all by default. They are rounded to
-        half precision here, as drivers may cut digits off, which moves a critical point.
+        They hold the ``lags`` shortest lags, by default all. They are rounded to half precision
+        here: drivers may cut digits off, which would move a critical point.
         """
-        whole = self.store.at(step, lags)
-        slices, tangent = whole.part(*self.geometry.texels), self._tangent(whole)
+        all_nodes = self.store.at(step, lags)
+        slices, tangent = all_nodes.part(*self.geometry.texels), self._tangent(all_nodes)
         count = self.count_of(lags)
         result: AnyArray = np.empty((count, *self.geometry.size, 4), dtype)
 
@@ -231,7 +233,7 @@ class TextureSet:
         return result
 
     def _nodal(self, slices: TraceSlices, tangent: AnyArray, layer: int) -> Floats32:
-        """Give the four channels of one layer at the nodes, (J, I, 4)."""
+        """Return the four channels of one layer at the nodes, (J, I, 4)."""
         result = np.zeros((*slices.shape, 4), np.float32)
         if layer == 0:
             result[..., :3] = tangent
@@ -239,7 +241,7 @@ class TextureSet:
             return result
         if self.in_cells and layer == self.count_of(len(slices.lags)) - 1:
             result[..., :2] = slices.rate[0] * (self.cell / self.unit)
-            # Tangents by arc length have no speed of their own.
+            # Tangents by arc length do not contain the speed.
             timed = self.store.parameter == "time"
             result[..., 3] = 1.0 if timed else self._speed(slices)
             return result
@@ -265,12 +267,12 @@ class TextureSet:
         return result
 
     def _usable_reach(self, reach: AnyArray, slices: TraceSlices) -> AnyArray:
-        """Reach to draw with: where nothing moves, the neighbours alone decide."""
+        """Return the reach to draw with; at nodes at rest the neighbours alone decide."""
         still = ~np.abs(slices.rate[0]).any(axis=-1)
         return np.where(still, np.inf, reach).clip(max=2 * float(self.store.lags[-1]))
 
     def _speed(self, slices: TraceSlices) -> AnyArray:
-        """Speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
+        """Return the speed of the flow at the nodes in multiples of its typical speed, (J, I)."""
         speed = self.geometry.field.speed[self._step(slices)]
         return np.asarray(speed[self.geometry.texels] / self.typical_speed)
 
@@ -279,7 +281,7 @@ class TextureSet:
         return int(np.argmin(np.abs(self.geometry.field.times - slices.times[0])))
 
     def _tangent(self, slices: TraceSlices) -> AnyArray:
-        """Slopes at lag zero of the nodes in the textures, from the slices of all nodes."""
+        """Return slopes at lag zero of the nodes in the textures, from the slices of all nodes."""
         rate, texels = slices.rate[0], self.geometry.texels
         if self.paper is not None:
             return three_components(rate * self.paper.by_cell())
@@ -287,21 +289,21 @@ class TextureSet:
         p_i, p_j = surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j
         for pole in surface.poles or ():
-            # One point has one slope, of which each of its nodes holds a component in its own unit.
+            # A point has one slope, of which each of its nodes holds a component in its unit.
             unit = pole.lines(slices.unit)[pole.line]
             across = pole.lines(rate)[pole.line, :, pole.component] / unit
-            still = pole.vector(across) @ pole.plane
-            pole.lines(along)[pole.line] = unit[:, None] * still
+            slope = pole.vector(across) @ pole.plane
+            pole.lines(along)[pole.line] = unit[:, None] * slope
         if (sharp := surface.sharp).any():
-            # The faces of a sharp edge each take the part of the whole velocity that lies in them.
-            whole = self.geometry.field.velocity[self._step(slices)][sharp]
-            length = np.maximum(norm(whole), np.finfo(float).tiny)
-            along[sharp] = whole * (norm(along[sharp]) / length)[:, None]
+            # Each face of a sharp edge takes the part of the velocity that lies in it.
+            velocity = self.geometry.field.velocity[self._step(slices)][sharp]
+            length = np.maximum(norm(velocity), np.finfo(float).tiny)
+            along[sharp] = velocity * (norm(along[sharp]) / length)[:, None]
         return np.asarray(along[texels] @ self.geometry.frame.T) / self._length
 
     @cached_property
     def _displacements(self) -> Callable[[AnyArray, float], AnyArray]:
-        """Takes displacements to the surface's frame; a flat one has no third component."""
+        """Map of displacements to the surface's frame; a flat one has no third component."""
         geometry = self.geometry
         return geometry.displacements(geometry.frame[:2] if geometry.planar else geometry.frame)
 
@@ -326,8 +328,8 @@ def check_noise(field: FlowField, noise: str) -> None:
 class LayerPrefetch:
     """Layers of a texture set by destination time, one of them computed before it is needed.
 
-    That takes longer than a frame. One thread does it for the first picture while its mesh and its
-    shaders are made, and then for the step that comes next in the direction in which time goes.
+    That takes longer than a frame. A thread computes those of the first picture while its mesh and
+    shaders are made, and then those of the next step in the direction of time.
     """
 
     def __init__(self, textures: TextureSet) -> None:
@@ -338,7 +340,7 @@ class LayerPrefetch:
     def prepare(self, step: int, lags: int | None = None) -> None:
         """Begin to compute the layers of a step, if it exists, at this many lags.
 
-        It stops where work in this thread would, as :func:`flowtex._util.progress.stoppable` says.
+        It is cancelled with the work in this thread, see :func:`flowtex._util.progress.stoppable`.
         """
         if not 0 <= step < self._textures.store.steps:
             return
@@ -352,7 +354,7 @@ class LayerPrefetch:
         self._ready = (step, lags), self._pool.submit(make, self._textures.layers, step, lags)
 
     def take(self, step: int, lags: int | None = None) -> Halves:
-        """Layers of a step, (layers, H, W, 4): those that were prepared, or computed now."""
+        """Return the layers of a step, (layers, H, W, 4), prepared or computed now."""
         ready = self._ready
         if ready is None or ready[0] != (step, lags):
             return self._textures.layers(step, lags)

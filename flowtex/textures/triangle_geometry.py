@@ -1,8 +1,8 @@
 """A surface of triangles as a renderer draws it, and how its nodes lie in the textures.
 
-Nodes fill the texels of a texture row by row, in no order that means anything: a fragment looks up
-the three of its triangle by their numbers. So the vertices of a mesh are those of single triangles,
-three each: each knows the numbers of all three, and its own shares of the second and the third.
+Nodes fill the texels of a texture row by row, in any order: a fragment looks up the three of its
+triangle by their numbers. So each triangle has three vertices to itself, each with the numbers of
+the three nodes and the shares of the second and the third.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,7 +116,7 @@ class TriangleGeometry(DrawnSurface):
         return np.arange(self.triangles.size).reshape(-1, 3)
 
     def displacements(self, frame: Floats) -> Callable[[AnyArray, float], AnyArray]:
-        """Return what takes displacements in space, (1, n, 3), to a frame, (C, 1, n)."""
+        """Return a function from displacements in space, (1, n, 3), to a frame, (C, 1, n)."""
         return lambda displacement, error: np.moveaxis(displacement @ frame.T, -1, 0)
 
     @cached_property
@@ -125,8 +124,8 @@ class TriangleGeometry(DrawnSurface):
         """Numbers of the three nodes at each vertex, (3 m, 3)."""
         return np.repeat(self.triangles.astype(np.float32), 3, axis=0)
 
-    def at_vertices(self, nodal: NDArray[Any]) -> NDArray[Any]:
-        """Return what the vertices have, (3 m, ...), of what the nodes have, (1, n, ...)."""
+    def at_vertices(self, nodal: AnyArray) -> AnyArray:
+        """Return values at the vertices, (3 m, ...), from nodal ones, (1, n, ...)."""
         return np.asarray(nodal[0][self.triangles.ravel()])
 
     @property
@@ -137,10 +136,10 @@ class TriangleGeometry(DrawnSurface):
 
     @property
     def drawn_vertices(self) -> Bools:
-        """Which vertices belong to a triangle, (3 m,): all."""
+        """Mask of the vertices that belong to a triangle, (3 m,): all."""
         return np.ones(self.triangles.size, dtype=bool)
 
-    def as_image(self, values: NDArray[Any]) -> NDArray[Any]:
+    def as_image(self, values: AnyArray) -> AnyArray:
         """Return values at the vertices (3 m,) as an image of the nodes (H, W), as in textures."""
         image = np.zeros(self.size, values.dtype)
         image.reshape(-1)[self.triangles.ravel()] = values
@@ -154,7 +153,7 @@ class TriangleGeometry(DrawnSurface):
 
 
 def _one_block(points: Floats, triangles: Indices) -> tuple[NDArray[np.uint16], Floats]:
-    """Return the blocks of triangles (m, 3) of points (N, 3), and their places: all lie in one."""
+    """Return one block for triangles (m, 3) of points (N, 3): its masks (m,) and its place."""
     corners = points[triangles]
     center = bounds(corners.reshape(-1, 3)).mean(axis=0)
     radius = np.linalg.norm(corners - center, axis=-1).max()

@@ -13,10 +13,10 @@ from flowtex._util.array_types import Floats, Indices
 
 
 class Boxes:
-    """Boxes of so many ``steps``, each of which makes 2 x 2 of one, by medians of points (N, 3).
+    """Boxes from ``steps`` divisions, each of one box into 2 x 2, at medians of points (N, 3).
 
-    Boxes of a depth are numbered as their cuts follow: a number's last two bits are row and column
-    in the box around it, the two before those of that one.
+    Boxes of a depth are numbered in the order of their cuts: the last two bits of a number are row
+    and column in the parent box, the two before those of the parent in its own.
     """
 
     def __init__(self, points: Floats, steps: int) -> None:
@@ -33,7 +33,7 @@ class Boxes:
             parts = halves
 
     def places(self, steps: int) -> tuple[Indices, Indices]:
-        """Row and column of each box of a depth, (4^steps,)."""
+        """Return the row and column of each box of a depth, (4^steps,)."""
         number = np.arange(4**steps)
         bits = [(number >> 2 * n) & 3 for n in range(steps)]
         row = sum((b >> 1) << n for n, b in enumerate(bits))
@@ -41,7 +41,7 @@ class Boxes:
         return np.asarray(row), np.asarray(column)
 
     def members(self, low: Floats, high: Floats, steps: int) -> list[Indices]:
-        """Return which things between two corners, (M, 3) each, reach into the boxes of a depth."""
+        """Return the numbers of the items from corners ``low`` to ``high``, (M, 3), in each box."""
         parts = [np.arange(len(low))]
         lows, highs = (np.ascontiguousarray(corner.T) for corner in (low, high))
         for axes, values in zip(self.axes[: 2 * steps], self.values, strict=False):
@@ -52,7 +52,7 @@ class Boxes:
         return parts
 
     def bounds(self, steps: int) -> tuple[Floats, Floats]:
-        """Lower and upper corners of the boxes of a depth, (4^steps, 3) each."""
+        """Return lower and upper corners of the boxes of a depth, (4^steps, 3) each."""
         low, high = np.full((1, 3), -np.inf), np.full((1, 3), np.inf)
         for axes, values in zip(self.axes[: 2 * steps], self.values, strict=False):
             low, high = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)
@@ -63,7 +63,7 @@ class Boxes:
 
 
 def _cut(points: Floats) -> tuple[int, float]:
-    """Axis and place of a cut, with points on both sides where there are two places."""
+    """Return axis and value of a cut, with points on both sides unless all coincide."""
     if not len(points):
         return 0, 0.0
     low, high = points.min(axis=0), points.max(axis=0)

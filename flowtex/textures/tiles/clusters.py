@@ -1,9 +1,9 @@
-"""A field on triangles with fewer nodes: those in one bin are one, with means of what they have.
+"""A field on triangles with fewer nodes: all in one bin become one, with the means of their data.
 
 Bins are cubes whose side is about twice the edges where they lie, and twice as long at each
 next level, so that a mesh of very different cells loses three nodes of four everywhere. Nodes on
-borders are apart from the others, which keeps outlines, and so are nodes of two sides of a thin
-sheet. Triangles are left where their corners lie in three bins.
+borders are binned apart from the others, which keeps outlines, and so are nodes of two sides of a
+thin sheet. Triangles remain where their corners lie in three bins.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ FIRST_EDGES = 2.0
 SMOOTHING = 3
 #: Rounds of the search for inverted triangles.
 UNTANGLING = 4
-#: Bins along the surface's extent, at most; three numbers of them have room in one of 64 bits.
+#: Most bins along the surface's extent; three of their numbers fit into 64 bits.
 MOST_BINS = 2**18
-#: Share of its nodes that the next level may have at most, for a level not to be the last.
+#: Most nodes of the next level as a share of those of a level that is not the last.
 MOST_LEFT = 0.7
 
 
@@ -40,16 +40,16 @@ class Clusters:
 
     whole: FlowField  #: The field that has all nodes.
     field: FlowField  #: The field at this level.
-    triangles: Indices  #: Those of it that are drawn, which face alike, (M, 3).
-    number: Indices  #: Node of this level that each node of the whole field is in, or -1, (N,).
-    #: Of the bins that nodes are joined in next, a power of two times the first, (n,).
+    triangles: Indices  #: Its triangles that are drawn, which face alike, (M, 3).
+    number: Indices  #: Node of this level for each node of the whole field, or -1, (N,).
+    #: Sides of the bins of the next level, a power of two times the first, (n,).
     sides: Floats
-    border: Bools  #: Nodes on the border of what is drawn, (n,).
+    border: Bools  #: Nodes on the border of the drawn triangles, (n,).
     normals: Floats  #: Unit normals, or sums of them, (n, 3).
 
     @classmethod
     def of(cls, field: FlowField) -> Clusters:
-        """Return the nodes of a field themselves."""
+        """Return the finest level, in which each node represents itself."""
         surface = field.surface
         if not isinstance(surface, TriangleSurface):
             msg = "this field has no triangles; expected one of FlowField.from_triangles"
@@ -59,8 +59,8 @@ class Clusters:
         open_sides[~surface.cells] = False
         border = np.zeros(field.shape[1], dtype=bool)
         for k in range(3):
-            for at in (1, 2):
-                border[triangles[open_sides[:, k], (k + at) % 3]] = True
+            for offset in (1, 2):
+                border[triangles[open_sides[:, k], (k + offset) % 3]] = True
         crosses = surface.crosses
         if surface.flipped.any():
             triangles = triangles.copy()
@@ -83,7 +83,7 @@ class Clusters:
         )
 
     def coarser(self) -> Clusters:
-        """Return the next level; it has no triangles where all are smaller than the bins."""
+        """Return the next level, without triangles if all are smaller than the bins."""
         cluster = self._compact(self._bins())
         corners = _once(cluster[self.triangles])
         used = np.zeros(int(cluster.max(initial=-1)) + 1, dtype=bool)
@@ -106,7 +106,7 @@ class Clusters:
         points = self.field.points[0]
         at = ((points - points.min(axis=0)) / self.sides[:, None]).astype(np.int64)
         size = np.rint(np.log2(self.sides / self.sides.min())).astype(np.int64)
-        # What is not drawn stays by itself, and out of the next level.
+        # Nodes that are not drawn are binned apart, and left out of the next level.
         drawn = np.zeros(len(points), dtype=bool)
         drawn[self.triangles] = True
         key = 4 * size + 2 * drawn + self.border
@@ -117,33 +117,33 @@ class Clusters:
         return np.asarray(np.unique(2 * cluster + away, return_inverse=True)[1])
 
     def _compact(self, cluster: Indices) -> Indices:
-        """Have each node (n,) in the nearest of the clusters beside it.
+        """Return clusters (n,) in which each node belongs to the nearest one beside it.
 
         Separate parts in one bin then join their neighbours, and hardly any triangle is inverted.
         """
         points, count = self.field.points[0], int(cluster.max()) + 1
         center = _sums(points, cluster, count) / np.bincount(cluster)[:, None]
         normal = _sums(self.normals, cluster, count)
-        own = _squares(points - center[cluster])
+        distances = _squares(points - center[cluster])
         parts = []
         for k in range(3):
             node, beside = self.triangles[:, k - 1], self.triangles[:, k]
-            there = cluster[beside]
+            candidate = cluster[beside]
             other = np.flatnonzero(
-                (cluster[node] != there) & (self.border[node] == self.border[beside])
+                (cluster[node] != candidate) & (self.border[node] == self.border[beside])
             )
-            node, there = node[other], there[other]
+            node, candidate = node[other], candidate[other]
             # Column by column, which is several times as fast.
             along = zip(points.T, center.T, strict=True)
-            away = sum((column[node] - middle[there]) ** 2 for column, middle in along)
-            nearer = np.flatnonzero(away < own[node])
-            node, there, away = node[nearer], there[nearer], away[nearer]
-            facing = np.einsum("nc,nc->n", self.normals[node], normal[there]) > 0
-            parts.append((node[facing], there[facing], away[facing]))
-        node, there, away = (np.concatenate(part) for part in zip(*parts, strict=True))
-        order = np.argsort(-away)  # of what is written to a node, the last stays
+            gap = sum((column[node] - middle[candidate]) ** 2 for column, middle in along)
+            nearer = np.flatnonzero(gap < distances[node])
+            node, candidate, gap = node[nearer], candidate[nearer], gap[nearer]
+            facing = np.einsum("nc,nc->n", self.normals[node], normal[candidate]) > 0
+            parts.append((node[facing], candidate[facing], gap[facing]))
+        node, candidate, gap = (np.concatenate(part) for part in zip(*parts, strict=True))
+        order = np.argsort(-gap)  # the last value written to a node stays
         result = cluster.copy()
-        result[node[order]] = there[order]
+        result[node[order]] = candidate[order]
         return result
 
 
@@ -159,7 +159,7 @@ def levels_of(field: FlowField, nodes: int) -> list[Clusters]:
 
 
 def _averaged(field: FlowField, number: Indices, triangles: Indices) -> FlowField:
-    """Return a field on other triangles, whose nodes have the means of those with their number."""
+    """Return a field on other triangles, whose nodes have the means of the nodes of a number."""
     kept, count = np.flatnonzero(number >= 0), int(number.max(initial=-1)) + 1
     members = np.bincount(number[kept], minlength=count)
     weights = 1 / members[number[kept]]
@@ -179,7 +179,7 @@ def _averaged(field: FlowField, number: Indices, triangles: Indices) -> FlowFiel
 
 
 def _sides(areas: Floats, triangles: Indices, count: int, extent: float) -> Floats:
-    """Side of the first bins of each node, (N,): so many times the typical edge around it.
+    """Return the sides of the first bins at the nodes, (N,), in proportion to edges there.
 
     A triangle counts by twice its area: needles, as beside the hull of points at random, are not
     edges.
@@ -198,7 +198,7 @@ def _sides(areas: Floats, triangles: Indices, count: int, extent: float) -> Floa
 
 
 def _once(corners: Indices) -> Indices:
-    """Triangles with three corners, each once; two that face each other are none."""
+    """Return triangles with three different corners, each once, without pairs face to face."""
     a, b, c = corners.T
     corners = corners[(a != b) & (b != c) & (a != c)]
     low, middle, high = np.sort(corners, axis=1).T
@@ -213,7 +213,7 @@ def _once(corners: Indices) -> Indices:
     if not len(begins):
         return corners
     turns = np.add.reduceat(np.where(ahead, 1, -1)[order], begins)
-    low, middle, high = (some[order[begins]] for some in (low, middle, high))
+    low, middle, high = (corner[order[begins]] for corner in (low, middle, high))
     up = np.stack([low, middle, high], axis=-1)
     up[turns < 0] = up[turns < 0][:, [0, 2, 1]]
     return np.asarray(up[turns != 0])
@@ -222,7 +222,7 @@ def _once(corners: Indices) -> Indices:
 def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bools) -> Indices:
     """Move nodes of inverted triangles to the middle of their neighbours.
 
-    Triangles that stay so, as at a border, are left out: others cover what they do.
+    Triangles that remain inverted, as at a border, are left out: others cover their area.
     """
     turned = _turned(points, triangles, normals)
     for _ in range(UNTANGLING):

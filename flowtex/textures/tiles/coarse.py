@@ -10,10 +10,10 @@ from flowtex.textures.tiles.clusters import levels_of
 
 
 def coarsened_field(field: FlowField, nodes: int) -> FlowField:
-    """Keep lines of nodes, the first and the last among them, so that this many nodes are left.
+    """Return a field with about this many nodes: some of its lines, with the first and the last.
 
-    On triangles nodes become means over bins of space, of which there are this many at most. A
-    smaller field is returned as it is, and one of triangles that is so large that it has levels.
+    Nodes of triangles are averaged over bins, at most this many. A smaller field is returned as it
+    is, and so is one on triangles that is so large that it has levels.
     """
     if field.valid.size <= nodes:
         return field

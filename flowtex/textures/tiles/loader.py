@@ -1,6 +1,6 @@
-"""Tiles on their way: made in threads, coarse ones first, within a budget of memory.
+"""A loader of tiles: made in threads, coarse ones first, within a memory budget.
 
-Whoever draws asks for the tiles of a view, in the order of their need, and draws those that are
+A renderer requests the tiles of a view, the most important ones first, and draws those that are
 ready. Tiles that no view requests any more are cancelled if unfinished, and dropped when memory
 is short.
 """
@@ -31,10 +31,10 @@ BUDGET_BYTES = 1_000_000_000
 TEXEL_BYTES, NODE_BYTES = 8, 200
 #: Memory of a triangle that has its own vertices.
 TRIANGLE_BYTES = 250
-#: Tiles that are made at once for one view, at most. All views of a process together have as many,
-#: or one for each core.
+#: Most tiles that are made at once for one view. All views of a process together make as many, or
+#: one for each core.
 MOST_THREADS = 4
-#: How often a tile that waits for its turn is looked at, whether it is still wanted.
+#: Seconds between checks whether a waiting tile is still requested.
 LOOK_INTERVAL_S = 0.1
 #: Seconds before the last request within which a tile must have been requested, or it is dropped.
 GRACE_S = 2.0
@@ -47,7 +47,7 @@ _turns = threading.BoundedSemaphore(max(os.cpu_count() or 1, MOST_THREADS))
 
 @contextmanager
 def _turn() -> Iterator[None]:
-    """Wait until there is room for one more among those of all loaders of this process."""
+    """Wait for a turn among the tiles of all loaders of this process."""
     while not _turns.acquire(timeout=LOOK_INTERVAL_S):
         check()
     try:
@@ -61,13 +61,13 @@ class Tile:
     """One tile with the layers of the destination times that were requested."""
 
     key: TileKey
-    textures: TextureSet | None  #: ``None`` where nothing of it is drawn.
-    prepared: Any = None  #: What the renderer has made of them.
+    textures: TextureSet | None  #: ``None`` where nothing is drawn.
+    prepared: Any = None  #: Data that the renderer has prepared.
     layers: dict[int, Halves | None] = field(default_factory=dict)
 
     @property
     def nbytes(self) -> int:
-        """Memory that it takes, on the graphics card or on its way there."""
+        """Memory of the tile, on the graphics card or before its transfer."""
         if self.textures is None:
             return 0
         geometry = self.textures.geometry
@@ -86,7 +86,7 @@ class Tile:
         return layers
 
     def take(self, step: int) -> Halves:
-        """Hand the layers of a destination time over; they are not kept."""
+        """Return the layers of a destination time, without keeping them."""
         layers, self.layers[step] = self.layers.get(step), None
         return self.make(step) if layers is None else layers
 
@@ -94,10 +94,10 @@ class Tile:
 class TileLoader:
     """Makes tiles of a pyramid in threads.
 
-    ``prepare`` makes of textures, in a thread, what is needed to draw them beside their layers.
-    ``notify`` is called, in a thread, whenever a tile has become ready or has failed. Errors are
-    kept in ``errors`` by tile; a tile that failed is tried again when it is requested some seconds
-    later, for what went wrong may be a network. ``clock`` gives the seconds.
+    ``prepare`` is called in a thread, and returns the data beside the layers that drawing textures
+    needs. ``notify`` is called in a thread whenever a tile has become ready or has failed. Errors
+    are kept in ``errors`` by tile; a tile that failed is tried again when it is requested some
+    seconds later, as the reason may be a network. ``clock`` returns seconds.
     """
 
     def __init__(
@@ -114,15 +114,15 @@ class TileLoader:
         self._failed: dict[TileKey, float] = {}
         self._prepare, self._notify, self._clock = prepare, notify, clock
         self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
-        #: When each tile was requested last, on a clock of requests.
-        self._wanted: dict[TileKey, float] = {}
-        self._asked = 0.0
+        #: Times of the last request of each tile, and of any.
+        self._requests: dict[TileKey, float] = {}
+        self._latest = 0.0
         self._running: dict[tuple[TileKey, int], Future[None]] = {}
         self._lock = threading.RLock()
         self._pool: Executor | None = None
 
     def keeps(self, key: TileKey) -> bool:
-        """Whether a tile is in memory."""
+        """Return whether a tile is in memory."""
         return key in self._tiles
 
     def get(self, key: TileKey, steps: Sequence[int]) -> Tile | None:
@@ -132,7 +132,7 @@ class TileLoader:
         return tile if ready else None
 
     def has_failed(self, key: TileKey) -> bool:
-        """Whether a tile failed of late; the error of one that failed before is dropped."""
+        """Return whether a tile failed recently; errors of earlier failures are dropped."""
         if self._failed.get(key, np.inf) < self._clock() - RETRY_S:
             self._failed.pop(key, None)
             self.errors.pop(key, None)
@@ -141,71 +141,71 @@ class TileLoader:
     def request(self, keys: Sequence[TileKey], steps: Sequence[int]) -> None:
         """Request tiles in this order, and drop those without a recent request.
 
-        A picture may be drawn in several parts, each of which asks for its own.
+        A picture may be drawn in several parts, each of which requests its tiles.
         """
-        self._asked = self._clock()
+        self._latest = self._clock()
         with self._lock:
-            # What has not begun waits behind what is requested now.
+            # Tiles that have not begun wait behind those requested now.
             later = [job for job, future in self._running.items() if future.cancel()]
             for job in later:
                 del self._running[job]
             for key in keys:
-                self._wanted[key] = self._asked
+                self._requests[key] = self._latest
                 tile = self._tiles.peek(key)
                 for step in steps:
                     job = (key, step)
-                    made = tile is not None and step in tile.layers
-                    if made or job in self._running or self.has_failed(key):
+                    is_ready = tile is not None and step in tile.layers
+                    if is_ready or job in self._running or self.has_failed(key):
                         continue
                     self._submit(job)
             for job in later:
-                if job not in self._running and self._is_wanted(job[0]):
+                if job not in self._running and self._is_requested(job[0]):
                     self._submit(job)
 
     def _submit(self, job: tuple[TileKey, int]) -> None:
         if self._pool is None:
             self._pool = pool(min(os.cpu_count() or 1, MOST_THREADS), "flowtex-tile")
-        made = self._pool.submit(self._make, *job)
-        if not made.done():  # a thread waits for the lock before it ends
-            self._running[job] = made
+        future = self._pool.submit(self._make, *job)
+        if not future.done():  # a thread waits for the lock before it ends
+            self._running[job] = future
 
     @property
     def busy(self) -> bool:
-        """Whether tiles that are wanted are on their way."""
+        """Whether requested tiles are being made."""
         with self._lock:
-            return any(self._is_wanted(key) for key, _ in self._running)
+            return any(self._is_requested(key) for key, _ in self._running)
 
     def wait(self) -> None:
         """Wait for the tiles that were requested."""
         while True:
             with self._lock:
-                futures = [f for (key, _), f in self._running.items() if self._is_wanted(key)]
+                futures = [f for (key, _), f in self._running.items() if self._is_requested(key)]
             if not futures:
                 return
-            wait(futures)  # some of which may wait again by now
+            wait(futures)  # some may have been submitted again by now
 
     def close(self) -> None:
-        """Stop, without waiting for what is being made."""
-        self._wanted.clear()
+        """Stop, without waiting for unfinished tiles."""
+        self._requests.clear()
         if self._pool is not None:
             self._pool.shutdown(wait=False, cancel_futures=True)
         self._pool = None
         self._tiles.clear()
 
-    def _is_wanted(self, key: TileKey) -> bool:
-        return self._wanted.get(key, -np.inf) > self._asked - GRACE_S
+    def _is_requested(self, key: TileKey) -> bool:
+        return self._requests.get(key, -np.inf) > self._latest - GRACE_S
 
     def _tile(self, key: TileKey, step: int) -> Tile:
-        """Return a tile without layers, with a halo that does for a destination time."""
+        """Return a tile without layers, with a halo that is wide enough for a destination time."""
         textures = self.pyramid.tile(key, (step,))
         return Tile(key, textures, textures and self._prepare(textures))
 
     def _make(self, key: TileKey, step: int) -> None:
         try:
-            with stoppable(lambda: not self._is_wanted(key)), _turn():
+            with stoppable(lambda: not self._is_requested(key)), _turn():
                 tile = self._tiles.get(key, lambda: self._tile(key, step))
                 tile.layers[step] = tile.make(step)
-                self._tiles.put(key, tile)  # which has grown
+                self._tiles.put(key, tile)  # to count its new size
         except Stopped:
             pass
         except Exception as error:

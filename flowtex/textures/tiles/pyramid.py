@@ -1,10 +1,10 @@
 """A field at every level of detail, cut into tiles.
 
-Level 0 has all nodes, level l every 2^l-th line of them, with velocities averaged over what is
-left out. The coarsest level is a field of moderate size that is traced whole, the root; a tile of a
-finer level is traced in a window of its level, with a halo around the tile as wide as its paths are
-long. A streak is a fixed number of pixels, so that is the same number of cells at every level, and
-what a tile costs does not depend on the size of the surface.
+Level 0 has all nodes, level l every 2^l-th line of them, with velocities averaged over the lines
+that are left out. The coarsest level is a field of moderate size that is traced whole, the root; a
+tile of a finer level is traced in a window of its level, with a halo around the tile as wide as its
+paths are long. A streak is a fixed number of pixels, so that is the same number of cells at every
+level, and the cost of a tile does not depend on the size of the surface.
 
 ::
 
@@ -46,18 +46,18 @@ PATH_CELLS = 28
 #: First lag in cells where a finer level is drawn before cells cover more than a few pixels: the
 #: parabolas up to there are off by hundredths of a pixel.
 COARSE_FIRST_CELLS = 1.0
-#: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile; lines that it
-#: has more than that; and its greatest width.
+#: Width of a halo in lengths of the paths, for cells that grow smaller beyond a tile; additional
+#: lines; and its greatest width.
 HALO_SHARE, HALO_SPARE, MOST_HALO = 1.2, 3, 512
-#: Nodes of a window at most: halos are narrower where there would be more.
+#: Most nodes of a window; halos are narrower where there would be more.
 MOST_WINDOW = 600_000
 #: Lines of a ring around a pole; of more of them some are left out, away from the tile.
 MOST_RING = 1536
-#: Nodes of a window around a pole from which on its paths are not composed: all are traced then.
+#: Most nodes of a window around a pole for composed paths: in a larger one all are traced.
 MOST_COMPOSED = 500_000
 #: Widths of the halo that are tried one after the other, where paths are cut by it.
 WIDENINGS = (1, 2, 4)
-#: Share of its length up to which a path must not be cut, and of the paths of a tile that may be.
+#: Share of a path's length that must not be cut, and most cut paths as a share of those of a tile.
 NEEDED_SHARE, MOST_CUT_SHARE = 0.75, 5e-3
 #: Rows that are averaged together.
 ROWS = 256
@@ -89,7 +89,7 @@ class Pyramid:
 
     ``parameter`` and ``lines`` are as for :class:`~flowtex.trace.SliceStore`. ``nodes`` are the
     numbers of nodes (J, I) at level 0, and ``depth`` is the level of the root; 0 where the whole
-    field is one. ``ranges`` are the ends of scalars and of the speed at level 0, by name and
+    field is the root. ``ranges`` are the ends of scalars and of the speed at level 0, by name and
     whether robust, where they do not follow from the field itself.
     """
 
@@ -142,7 +142,7 @@ class Pyramid:
     def places(self, level: int) -> Floats:
         """Return where the blocks of a level lie, as :func:`block_places` does, from the root.
 
-        What a tile is like is thus known before anything of it is read.
+        So the place of a tile is known before its nodes are read.
         """
         if level not in self._places:
             finer = self.depth - level
@@ -156,12 +156,12 @@ class Pyramid:
         return level_shape(self.nodes, level)
 
     def line_numbers(self, level: int) -> tuple[Indices, Indices]:
-        """Return which rows and columns of level 0 a level has."""
+        """Return the numbers of the rows and columns of a level in level 0."""
         rows, columns = (level_lines(n, level) for n in self.nodes)
         return rows, columns
 
     def blocks_of(self, key: TileKey | None) -> tuple[slice, slice]:
-        """Return the rows and columns of blocks that a tile has among those of its level."""
+        """Return the rows and columns of a tile's blocks among those of its level."""
         if key is None:
             return slice(0, None), slice(0, None)
         size = self.tile_blocks
@@ -169,7 +169,7 @@ class Pyramid:
         return slice(row, row + size), slice(column, column + size)
 
     def children(self, key: TileKey | None) -> list[TileKey]:
-        """Tiles of the next level that cover a tile, or the root for ``None``."""
+        """Return tiles of the next level that cover a tile, or the root for ``None``."""
         if (self.depth if key is None else key.level) == 0:
             return []
         if key is None:
@@ -207,9 +207,9 @@ class Pyramid:
     def textures(self, key: TileKey, widening: int = 1) -> TextureSet | None:
         """Return the textures of a tile, whose layers are traced when they are requested.
 
-        ``None`` means a tile of which nothing is drawn. The halo is so many times as wide as
+        ``None`` means a tile of which nothing is drawn. The halo is ``widening`` times as wide as
         paths of even speed need; :func:`is_cut` returns whether that was enough. Raises a KeyError
-        where the tile does not exist.
+        when the tile does not exist.
         """
         first = [at * TILE_CELLS for at in key[1:]]
         shape = self.shape(key.level) if 0 <= key.level < self.depth else (0, 0)
@@ -228,11 +228,11 @@ class Pyramid:
             [min(widening * width, MOST_HALO) for width in widths],
         )
         lines, closed, is_small = self._window(key.level, first, last, halo)
-        start = [a - int(some[0]) for a, some in zip(first, lines, strict=True)]
+        start = [a - int(line[0]) for a, line in zip(first, lines, strict=True)]
         drawn = [slice(s, s + b - a + 1) for s, a, b in zip(start, first, last, strict=True)]
         sides = [
-            (not c and (p or int(some[0]) > 0), not c and (p or int(some[-1]) < n - 1))
-            for c, p, some, n in zip(closed, self.field.periodic, lines, shape, strict=True)
+            (not c and (p or int(line[0]) > 0), not c and (p or int(line[-1]) < n - 1))
+            for c, p, line, n in zip(closed, self.field.periodic, lines, shape, strict=True)
         ]
         field = self._part(key.level, lines[0], lines[1], closed)
         geometry = SurfaceGeometry.of_tile(
@@ -255,13 +255,13 @@ class Pyramid:
     def _window(
         self, level: int, first: list[int], last: list[int], halo: list[int]
     ) -> tuple[list[Indices], tuple[bool, bool], bool]:
-        """Return the lines around a tile, whether each axis closes there, and if they are few."""
+        """Return the lines around a tile, whether each axis closes, and if paths are composed."""
         shape = self.shape(level)
         lines = [np.arange(a - h, b + h + 1) for a, b, h in zip(first, last, halo, strict=True)]
         around = self._around_pole(lines, shape)
         for axis, (count, cells) in enumerate(zip(shape, np.subtract(last, first), strict=True)):
             if axis == around:
-                # Whoever passes a pole comes out on its far side: all of the ring is needed.
+                # A particle that passes a pole comes out on its far side: it needs all of the ring.
                 aside = min(max(count - 1 - cells, 0) // 2, BLOCK_CELLS)
                 lines[axis] = _ring(cells + 2 * aside, count) + first[axis] - aside
             elif not self.field.periodic[axis]:
@@ -270,7 +270,7 @@ class Pyramid:
         return lines, (around == 0, around == 1), is_small
 
     def _around_pole(self, lines: list[Indices], shape: tuple[int, int]) -> int | None:
-        """Return the axis that goes around a pole beyond which some lines lie."""
+        """Return the axis that goes around a pole, if some lines lie beyond that pole."""
         for pole in self.root.surface.poles or ():
             axis = 1 - pole.component
             if lines[axis][0] < 0 if pole.inward > 0 else lines[axis][-1] >= shape[axis]:
@@ -282,8 +282,8 @@ class Pyramid:
     ) -> FlowField:
         """Return some lines of a level, which may lie beyond a period on axes not ``periodic``."""
         (turns_j, rows), (turns_i, columns) = (
-            np.divmod(some, count - 1) if closed else (np.zeros_like(some), some)
-            for some, count, closed in zip(
+            np.divmod(lines, count - 1) if closed else (np.zeros_like(lines), lines)
+            for lines, count, closed in zip(
                 (rows, columns), self.shape(level), self.field.periodic, strict=True
             )
         )
@@ -305,26 +305,26 @@ class Pyramid:
 
     def _positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         """Return where nodes of a level are, (J, I, 3), and which of them are valid, (J, I)."""
-        some = self.line_numbers(level)
-        at = np.ix_(some[0][rows], some[1][columns])
+        j, i = self.line_numbers(level)
+        at = np.ix_(j[rows], i[columns])
         return self.field.points[at], self.field.valid[at]
 
     def _nodes(self, level: int, rows: Indices, columns: Indices) -> Nodes:
-        """Return what some lines of a level have, by their numbers within it."""
-        this, field = self._level(level), self.field
-        at = np.ix_(this.rows[rows], this.columns[columns])
-        here = np.ix_(rows, columns)
+        """Return the data at some lines of a level, by their numbers within it."""
+        stored, field = self._level(level), self.field
+        at = np.ix_(stored.rows[rows], stored.columns[columns])
+        within = np.ix_(rows, columns)
         return Nodes(
             field.points[at],
             field.valid[at],
-            this.velocity[:, here[0], here[1]],
+            stored.velocity[:, within[0], within[1]],
             {k: s[:, at[0], at[1]] for k, s in field.scalars.items()},
             None if field.has_position is None else field.has_position[at],
         )
 
     @cached_property
     def periods(self) -> tuple[Floats, Floats]:
-        """What leads from the first line of an axis to the last, (3,), for both axes."""
+        """Vectors from the first line of an axis to the last, (3,), for both axes."""
         p = self.field.points
         rows, columns = (
             np.mean(np.take(p, -1, axis=axis) - np.take(p, 0, axis=axis), axis=0) for axis in (0, 1)
@@ -335,22 +335,24 @@ class Pyramid:
         """Return a level, making those before it first."""
         with self._lock:
             while len(self._levels) <= level:
-                fine, some = self._levels[-1], self.line_numbers(len(self._levels))
+                fine, numbers = self._levels[-1], self.line_numbers(len(self._levels))
                 valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
                 rows, columns = (
-                    beside(np.searchsorted(lines, own), len(lines), closed=closed)
-                    for lines, own, closed in zip(fine[:2], some, self.field.periodic, strict=True)
+                    beside(np.searchsorted(lines, chosen), len(lines), closed=closed)
+                    for lines, chosen, closed in zip(
+                        fine[:2], numbers, self.field.periodic, strict=True
+                    )
                 )
                 mean = partial(averaged, valid=valid, rows=rows, columns=columns)
-                self._levels.append(_Level(*some, map_steps(fine.velocity, mean)))
+                self._levels.append(_Level(*numbers, map_steps(fine.velocity, mean)))
             return self._levels[level]
 
 
 def is_cut(textures: TextureSet, step: int) -> bool:
-    """Whether paths of a tile end where its window does, though the surface continues.
+    """Return whether paths of a tile end where its window does, though the surface continues.
 
     Slices may have longer lags than are needed: they double. The last part of a path weighs little.
-    What lies around a tile of triangles is as wide as its paths are long.
+    The surroundings of a tile of triangles are as wide as its paths are long.
     """
     if not isinstance(textures.geometry, SurfaceGeometry):
         return False
@@ -362,12 +364,12 @@ def is_cut(textures: TextureSet, step: int) -> bool:
     ):
         if moved is None or reach is None:
             continue
-        there = slices.nodes + moved[0, -1]
-        gone = np.zeros(reach[0].shape, dtype=bool)
+        ends = slices.nodes + moved[0, -1]
+        outside = np.zeros(reach[0].shape, dtype=bool)
         for axis, (before, after) in enumerate(textures.grid.open_sides):
-            at, last = there[..., 1 - axis], textures.geometry.field.shape[axis] - 1
-            gone |= (before & (at < 0)) | (after & (at > last))
-        if (gone & (reach[0] < needed)).mean() > MOST_CUT_SHARE:
+            at, last = ends[..., 1 - axis], textures.geometry.field.shape[axis] - 1
+            outside |= (before & (at < 0)) | (after & (at > last))
+        if (outside & (reach[0] < needed)).mean() > MOST_CUT_SHARE:
             return True
     return False
 
@@ -385,17 +387,17 @@ def block_places(points: Floats, cells: int = BLOCK_CELLS) -> Floats:
     across = norm(np.diff(points, axis=1))
     side[:, :-1] = np.maximum(side[:, :-1], across)
     size = _greatest(side, firsts, lasts)
-    at = [
+    blocks = [
         np.minimum(np.arange(n) // cells, len(f) - 1)
         for f, n in zip(firsts, points.shape[:2], strict=True)
     ]
-    away = norm(points - center[np.ix_(*at)])
-    radius = _greatest(away, firsts, lasts) + size
+    distances = norm(points - center[np.ix_(*blocks)])
+    radius = _greatest(distances, firsts, lasts) + size
     return np.concatenate([center, radius[..., None], size[..., None]], axis=-1)
 
 
 def _greatest(values: Floats, firsts: list[Indices], lasts: list[Indices]) -> Floats:
-    """Greatest value (J, I) in each block; a border counts for both sides."""
+    """Return the greatest value (J, I) in each block; a border counts for both sides."""
     for axis in (0, 1):
         inner = np.maximum.reduceat(values, firsts[axis], axis=axis)
         values = np.maximum(inner, np.take(values, lasts[axis], axis=axis))
@@ -417,20 +419,20 @@ def level_shape(nodes: tuple[int, int], level: int) -> tuple[int, int]:
 
 
 def level_lines(count: int, level: int) -> Indices:
-    """Every 2^level-th of this many lines, and the last one."""
+    """Return every 2^level-th of this many lines, and the last one."""
     lines = np.arange(0, count, 1 << level)
     return lines if lines[-1] == count - 1 else np.append(lines, count - 1)
 
 
 def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
-    """Length of the paths of a tile (J, I, 3), and how many rows and columns beyond it they go."""
+    """Return the path length in a tile (J, I, 3), and the rows and columns of its halo."""
     sides = []
     for axis in (0, 1):
         both = np.moveaxis(valid, axis, 0)
         size = norm(np.diff(points, axis=axis))
         known = np.moveaxis(size, axis, 0)[both[1:] & both[:-1]]
         sides.append(np.percentile(known[known > 0], (5, 95)) if known.any() else np.ones(2))
-    # A little less, so that rounding does not make even cells ask for twice as long a lag.
+    # A little less, so that rounding does not double the lag for even cells.
     longest = 0.99 * PATH_CELLS * max(float(most) for _, most in sides)
     rows, columns = (int(HALO_SHARE * longest / least) + HALO_SPARE for least, _ in sides)
     return longest, (rows, columns)
@@ -445,10 +447,10 @@ def _within_window(tile: list[int], halo: list[int]) -> list[int]:
 
 
 def _ring(near: int, count: int) -> Indices:
-    """Numbers of the lines around a pole, from 0 to the one that is the first again.
+    """Return numbers of the lines around a pole, from 0 to the one that repeats the first.
 
-    All are there where these are few, and up to ``near``. Beyond, cells grow, and become smaller
-    again: around a pole they are so narrow that nothing is lost.
+    Few lines are all returned, and otherwise those up to ``near``. Beyond, the spacing grows and
+    then decreases again: around a pole cells are so narrow that nothing is lost.
     """
     if count <= MOST_RING:
         return np.arange(count)
@@ -456,28 +458,28 @@ def _ring(near: int, count: int) -> Indices:
     growing = [1]
     while growing[-1] < step:
         growing.append(growing[-1] + (growing[-1] + 1) // 2)
-    there, back = near + np.cumsum(growing), count - 1 - np.cumsum(growing)[::-1]
-    middle = np.linspace(there[-1], back[0], -(-(back[0] - there[-1]) // step) + 1)
-    around = np.unique(np.concatenate([there, np.rint(middle).astype(int), back]))
+    ahead, back = near + np.cumsum(growing), count - 1 - np.cumsum(growing)[::-1]
+    middle = np.linspace(ahead[-1], back[0], -(-(back[0] - ahead[-1]) // step) + 1)
+    around = np.unique(np.concatenate([ahead, np.rint(middle).astype(int), back]))
     return np.concatenate([np.arange(near + 1), around, [count - 1]])
 
 
 def averaged(velocity: Floats, valid: Bools, rows: Indices, columns: Indices) -> Floats:
-    """Velocity (J, I, C) at some rows and columns, averaged with the lines beside them.
+    """Return the velocity (J, I, C) at rows and columns, averaged with the lines beside them.
 
-    These are numbered (3, N) as :func:`beside` gives them. Weights are a quarter, a half and a
+    Their numbers (3, N) are those of :func:`beside`. Weights are a quarter, a half and a
     quarter along each axis, of the nodes that are valid.
     """
     count = rows.shape[1], columns.shape[1]
     result = np.empty((*count, velocity.shape[2]))
     whole = bool(valid.all())
     for first in range(0, count[0], ROWS):
-        some = rows[:, first : first + ROWS]
-        weights = np.zeros((some.shape[1], count[1], 1))
-        total = np.zeros((some.shape[1], *result.shape[1:]))
+        block = rows[:, first : first + ROWS]
+        weights = np.zeros((block.shape[1], count[1], 1))
+        total = np.zeros((block.shape[1], *result.shape[1:]))
         for a in range(3):
             for b in range(3):
-                at = np.ix_(some[a], columns[b])
+                at = np.ix_(block[a], columns[b])
                 weight = (1 + a % 2) * (1 + b % 2) / 16
                 if whole:
                     total += weight * velocity[at]
@@ -492,6 +494,6 @@ def averaged(velocity: Floats, valid: Bools, rows: Indices, columns: Indices) ->
 
 
 def beside(lines: Indices, count: int, *, closed: bool) -> Indices:
-    """Numbers of lines before some, of these, and after, (3, N); a border repeats itself."""
+    """Return the numbers of lines and of those before and after, (3, N); a border repeats."""
     around = lines + np.array([[-1], [0], [1]])
     return np.asarray(np.mod(around, count - 1) if closed else np.clip(around, 0, count - 1))

@@ -27,19 +27,19 @@ SAME_VALUE_SHARE = 1e-9
 SAME_HALVES_SHARE = 2.0**-9
 #: Share of such a value by which its range is widened.
 WIDENED_SHARE = 0.05
-#: What makes the pyramids of fields that do not hold all their levels.
+#: Functions that make the pyramids of fields that do not hold all their levels.
 _attached: WeakKeyDictionary[FlowField, Callable[[FlowField, str, str], Pyramid]]
 _attached = WeakKeyDictionary()
 _pyramids: WeakCache[Pyramid] = WeakCache()
 
 
 def attach_pyramid(field: FlowField, make: Callable[[FlowField, str, str], Pyramid]) -> None:
-    """Give a field levels that it does not hold itself, made for a parameter and lines."""
+    """Attach a pyramid to a field, made for a parameter and lines."""
     _attached[field] = make
 
 
 def has_pyramid(field: FlowField) -> bool:
-    """Whether a field has levels that it does not hold itself."""
+    """Return whether a field has an attached pyramid."""
     return field in _attached
 
 
@@ -47,13 +47,13 @@ def shared_pyramid(field: FlowField, parameter: str, lines: str = "pathlines") -
     """Return the pyramid of a field, one for all that show the field at the same time."""
     kind = Pyramid if field.triangles is None else TrianglePyramid
     make = _attached.get(field, kind)
-    # A pyramid keeps its field alive, so the number of the field is its own meanwhile.
+    # A pyramid keeps its field alive, so the id stays unique.
     key = (id(field), parameter, lines)
     return _pyramids.get(key, lambda: make(field, parameter, lines))
 
 
 def ends_of(values: Floats, *, robust: bool) -> tuple[float, float] | None:
-    """Return the least and the greatest value that is known, or those of a robust range."""
+    """Return the least and the greatest finite value, or those of a robust range."""
     values = values[np.isfinite(values)]
     if not values.size:
         return None
@@ -68,7 +68,7 @@ def ends_of(values: Floats, *, robust: bool) -> tuple[float, float] | None:
 def usual_ends(whole: tuple[float, float], robust: tuple[float, float]) -> tuple[float, float]:
     """Return the whole range, without a tail that is longer than the robust range.
 
-    Of values that are nearly all the same it is the whole.
+    Where nearly all values are the same, it is the whole range.
     """
     (least, most), (low, high) = whole, robust
     tail = LONG_TAIL * (high - low)
@@ -78,7 +78,7 @@ def usual_ends(whole: tuple[float, float], robust: tuple[float, float]) -> tuple
 
 
 def widened(ends: tuple[float, float] | None, field: FlowField, name: str) -> tuple[float, float]:
-    """Return a range to colour by, where all values may be the same up to rounding, or none."""
+    """Return a range for colours, also for equal values up to rounding, and for none."""
     halves = name == "speed" and name not in field.scalars and has_pyramid(field)
     same = SAME_HALVES_SHARE if halves else SAME_VALUE_SHARE
     if ends is None:

@@ -1,10 +1,10 @@
-"""The structure of a flow as it is drawn: of any step, the strongest of it, on request."""
+"""The structure of a flow as it is drawn: the strongest features of a step, on request."""
 
 from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from typing import Any
+from typing import TypeVar
 
 from flowtex._util.array_types import Floats
 from flowtex._util.cache import WeakCache
@@ -22,15 +22,17 @@ from flowtex.trace.structure import (
     separatrices_between,
 )
 
-#: Nodes of a field up to which all of it is searched; of a larger one a coarser form is.
+T = TypeVar("T")
+
+#: Most nodes of a field that is searched whole; a larger one is coarsened.
 SEARCHED_NODES = 1_000_000
-#: Settings that say how much of it is drawn: points, and saddles with their lines.
+#: Settings of the structure; the first two are numbers of points, and of saddles with lines.
 STRUCTURE = ("critical_points", "separatrices", "nullclines")
-#: Points of a step, and saddles whose lines are drawn, at most.
+#: Most points of a step, and saddles whose lines are drawn.
 MOST_POINTS, MOST_SADDLES = (int(TABLE[name].high or 0) for name in STRUCTURE[:2])
-#: Length of a line that is drawn, as a share of the surface's extent, at most.
+#: Greatest length of a drawn line as a share of the surface's extent.
 DRAWN_EXTENTS = 2.0
-#: Points of a line that is drawn, two to a cell, at most.
+#: Most points of a drawn line, two to a cell.
 DRAWN_POINTS = 1500
 #: Steps whose structure is kept.
 KEPT_STEPS = 64
@@ -42,7 +44,7 @@ class Structure:
     def __init__(self, field: FlowField) -> None:
         self._whole, self._field = field, _searched(field)
         self._lock = threading.Lock()
-        self._every: tuple[int, CriticalPoints] | None = None
+        self._all: tuple[int, CriticalPoints] | None = None
         self._points: OrderedDict[int, CriticalPoints] = OrderedDict()
         self._lines: OrderedDict[int, tuple[int, Separatrices]] = OrderedDict()
         self._orbits: OrderedDict[int, list[ClosedOrbit]] = OrderedDict()
@@ -51,14 +53,14 @@ class Structure:
         """Return the critical points of a step, the strongest first."""
         with self._lock:
             if step not in self._points:
-                _keep(self._points, step, self._every_point(step).strongest(MOST_POINTS))
+                _keep(self._points, step, self._all_points(step).strongest(MOST_POINTS))
             return self._points[step]
 
-    def _every_point(self, step: int) -> CriticalPoints:
-        """Return all points of a step, which are kept until those of another one are wanted."""
-        if self._every is None or self._every[0] != step:
-            self._every = step, critical_points(self._field, steps=[step])
-        return self._every[1]
+    def _all_points(self, step: int) -> CriticalPoints:
+        """Return all points of a step, which are kept until another step is requested."""
+        if self._all is None or self._all[0] != step:
+            self._all = step, critical_points(self._field, steps=[step])
+        return self._all[1]
 
     def lines(self, step: int, saddles: int = MOST_SADDLES) -> Separatrices:
         """Return the lines of this many saddles of a step, the strongest."""
@@ -66,7 +68,7 @@ class Structure:
             count, lines = self._lines.get(step, (0, Separatrices()))
             if count < saddles:
                 length = DRAWN_EXTENTS * self._field.surface.extent
-                field, points = self._field.at_step(step), self._every_point(step)
+                field, points = self._field.at_step(step), self._all_points(step)
                 lines = separatrices_between(field, points, length, saddles, most=DRAWN_POINTS)
                 _keep(self._lines, step, (saddles, lines))
             kept = {id(saddle) for saddle in _saddles(lines)[:saddles]}
@@ -76,29 +78,29 @@ class Structure:
         """Return the closed orbits of a step, whether or not a separatrix ends there."""
         with self._lock:
             if step not in self._orbits:
-                points = self._every_point(step)
+                points = self._all_points(step)
                 _keep(self._orbits, step, orbits_around(self._field.at_step(step), points))
             return self._orbits[step]
 
     def paths(self, step: int, saddles: int) -> dict[str, list[Floats]]:
-        """Return lines of this many saddles, and closed orbits, (N, 3) each, by what they are."""
-        found: dict[str, list[Floats]] = {
+        """Return lines of this many saddles and closed orbits, (N, 3) each, by kind."""
+        by_kind: dict[str, list[Floats]] = {
             name: [] for name in ("from saddle", "to saddle", "stable orbit", "unstable orbit")
         }
         for orbit in self.orbits(step):
-            found["stable orbit" if orbit.stable else "unstable orbit"].append(orbit.points)
+            by_kind["stable orbit" if orbit.stable else "unstable orbit"].append(orbit.points)
         for line in self.lines(step, saddles):
-            found["from saddle" if line.forward else "to saddle"].append(line.unwound)
+            by_kind["from saddle" if line.forward else "to saddle"].append(line.unwound)
             if line.orbit is not None:
-                found["stable orbit" if line.forward else "unstable orbit"].append(line.orbit)
-        return found
+                by_kind["stable orbit" if line.forward else "unstable orbit"].append(line.orbit)
+        return by_kind
 
     def nullclines(self, step: int) -> tuple[Floats, Floats]:
         """Return the pieces of the nullclines of a step, as :func:`nullclines` does."""
         return nullclines(self._field.at_step(step))
 
     def find(self, step: int, points: int, saddles: int) -> None:
-        """Have what shows this many points, and the lines of this many saddles, of a step."""
+        """Compute this many points of a step, and the lines of this many saddles."""
         if points:
             self.points(step)
         if saddles:
@@ -106,20 +108,20 @@ class Structure:
             self.orbits(step)
 
     def has(self, step: int, points: int, saddles: int) -> bool:
-        """Return whether all that shows these has been found."""
-        found = self._lines.get(step, (0, None))[0]
-        has_lines = saddles <= found and (not saddles or step in self._orbits)
+        """Return whether :meth:`find` was called for these."""
+        count = self._lines.get(step, (0, None))[0]
+        has_lines = saddles <= count and (not saddles or step in self._orbits)
         return (not points or step in self._points) and has_lines
 
 
 def _saddles(lines: Separatrices) -> CriticalPoints:
     """Return the saddles of lines, each once, the strongest first."""
-    found = {id(line.saddle): line.saddle for line in lines}
-    return CriticalPoints(list(found.values())).strongest(len(found))
+    saddles = {id(line.saddle): line.saddle for line in lines}
+    return CriticalPoints(list(saddles.values())).strongest(len(saddles))
 
 
-def _keep(steps: OrderedDict[int, Any], step: int, found: Any) -> None:
-    steps[step] = found
+def _keep(steps: OrderedDict[int, T], step: int, structure: T) -> None:
+    steps[step] = structure
     if len(steps) > KEPT_STEPS:
         steps.popitem(last=False)
 
@@ -129,12 +131,12 @@ _structures: WeakCache[Structure] = WeakCache()
 
 def shared_structure(field: FlowField) -> Structure:
     """Return the structure of a field, which all users of the field share."""
-    # A structure keeps its field alive, so the number of the field is its own meanwhile.
+    # A structure keeps its field alive, so the id stays unique.
     return _structures.get(id(field), lambda: Structure(field))
 
 
 def check_structure(field: FlowField, settings: Settings) -> None:
-    """Raise a SettingsError where a structure is to be drawn that a field does not have."""
+    """Raise a SettingsError where the settings request a structure that a field does not have."""
     for name in STRUCTURE:
         if not (value := getattr(settings, name)):
             continue
@@ -149,7 +151,7 @@ def check_structure(field: FlowField, settings: Settings) -> None:
 
 
 def _searched(field: FlowField) -> FlowField:
-    """Return a field, or of a large one a coarser form."""
+    """Return the field to search, coarsened if it is large."""
     if field.valid.size <= SEARCHED_NODES:
         return field
     if has_pyramid(field) or field.triangles is not None:

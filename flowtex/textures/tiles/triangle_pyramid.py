@@ -26,21 +26,21 @@ from flowtex.textures.tiles.clusters import Clusters, levels_of
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.trace import SliceStore
 
-#: Most nodes of a field that is traced whole; and of one whose paths lead, from each quarter, so
-#: far that all quarters together would trace its triangles so many times.
+#: Most nodes of a field that is traced whole; and of one with such long paths that the windows of
+#: its quarters would together contain each triangle more than so many times.
 ROOT_NODES, MOST_ROOT_NODES, MOST_OVERLAP = 25_000, 60_000, 2.0
-#: Nodes that boxes are measured by, at most.
+#: Most nodes from which boxes are computed.
 MOST_MEASURED = 100_000
-#: First lag of a tile's paths in cells, and the number of lags, at most.
+#: First lag of a tile's paths in cells, and most lags.
 FIRST_CELLS, MOST_LAGS = 0.25, 24
 #: Share of the side of bins that counts as the size of their cells: finer ones than a few pixels
 #: are drawn no sooner, for a triangle costs as much as the pixels beside it.
 BIN_SHARE = 1 / 4
 #: Share of the triangles of a block whose size counts as that of all.
 MOST_SHARE = 0.95
-#: Nodes that a window has for one of its tile, at most, for paths to be composed: that follows all.
+#: Most nodes of a window for each of its tile with composed paths: composing follows all of them.
 MOST_AROUND = 2.0
-#: Greatest width of what paths are traced in around a tile, in lengths of even paths.
+#: Greatest width of the window around a tile, in lengths of even paths.
 MOST_WIDE = 4.0
 
 
@@ -74,7 +74,7 @@ class TrianglePyramid(Pyramid):
     def places(self, level: int) -> Floats:
         """Return centre, radius, and size of the cells of each block of a level, (J, I, 5).
 
-        They are those of the triangles of level 0, part of which a coarser one may leave out.
+        They enclose the triangles of level 0, some of which a coarser level may leave out.
         """
         low, high, size = self._extents
         for _ in range(level):
@@ -92,7 +92,7 @@ class TrianglePyramid(Pyramid):
         return places
 
     def children(self, key: TileKey | None) -> list[TileKey]:
-        """Tiles of the next level that cover a tile, or the root for ``None``."""
+        """Return tiles of the next level that cover a tile, or the root for ``None``."""
         level = self.depth if key is None else key.level
         if level == 0:
             return []
@@ -129,7 +129,9 @@ class TrianglePyramid(Pyramid):
         rows, columns = self.blocks_of(key)
         places = self.places(key.level)[rows, columns]
         longest = 0.99 * PATH_CELLS * float(places[..., 4].max())
-        around = self._around(key.level, nodes, widening * longest * self._haste(key.level, nodes))
+        around = self._around(
+            key.level, nodes, widening * longest * self._relative_length(key.level, nodes)
+        )
         window, number = _part(level, around)
         geometry = TriangleGeometry.of_tile(
             window, number[nodes], number[triangles], self.root.surface, (masks, places)
@@ -162,13 +164,13 @@ class TrianglePyramid(Pyramid):
     def _members(self, level: int) -> list[Indices]:
         with self._lock:
             if level not in self._parts:
-                this = self._clusters[level]
-                low, high = corner_ends(this.field.points[0], this.triangles)
+                clusters = self._clusters[level]
+                low, high = corner_ends(clusters.field.points[0], clusters.triangles)
                 self._parts[level] = self._boxes.members(low, high, self._steps(level))
             return self._parts[level]
 
     def _triangles(self, key: TileKey) -> tuple[Indices, NDArray[np.uint16]]:
-        """Triangles of a tile, or of the root, and in which of its blocks they lie."""
+        """Return triangles of a tile, or of the root, and in which of its blocks they lie."""
         rows, columns = self._boxes.places(self._steps(key.level) - 1)
         number = int(np.flatnonzero((rows == key.row) & (columns == key.column))[0])
         parts = self._members(key.level)[4 * number : 4 * number + 4]
@@ -180,48 +182,50 @@ class TrianglePyramid(Pyramid):
 
     @cached_property
     def _extents(self) -> tuple[Floats, Floats, Floats]:
-        """Corners of what lies in the blocks of level 0, and the size of cells there."""
-        this, parts = self._clusters[0], self._members(0)
-        some = np.array([len(part) > 0 for part in parts])
-        triangles = this.triangles[np.concatenate(parts)]
-        first = np.cumsum([0, *(len(part) for part in parts)])[:-1][some]
+        """Corners of the content of the blocks of level 0, and the size of cells there."""
+        clusters, parts = self._clusters[0], self._members(0)
+        filled = np.array([len(part) > 0 for part in parts])
+        triangles = clusters.triangles[np.concatenate(parts)]
+        first = np.cumsum([0, *(len(part) for part in parts)])[:-1][filled]
         low, high = self._boxes.bounds(self._steps(0))
         inner = [np.full_like(low, np.inf), np.full_like(high, -np.inf)]
         size = np.zeros(len(parts))
         if len(first):
-            ends = corner_ends(this.field.points[0], triangles)
+            ends = corner_ends(clusters.field.points[0], triangles)
             for corner, end, reduce in zip(inner, ends, (np.minimum, np.maximum), strict=True):
-                corner[some] = reduce.reduceat(end, first)
-            longest = np.maximum.reduce([this.sides[triangles[:, k]] for k in range(3)])
+                corner[filled] = reduce.reduceat(end, first)
+            longest = np.maximum.reduce([clusters.sides[triangles[:, k]] for k in range(3)])
             sides = np.split(longest, first[1:])
-            # At the next level it is twice as much, a share of these bins.
-            size[some] = [BIN_SHARE / 2 * _most(part) for part in sides]
+            # At the next level the size is twice as much, a share of the bins.
+            size[filled] = [BIN_SHARE / 2 * _most(part) for part in sides]
         return np.maximum(low, inner[0]), np.minimum(high, inner[1]), size
 
-    def _haste(self, level: int, nodes: Indices) -> float:
-        """How much further than even paths those of some nodes lead."""
-        still = self.field.steady or self.lines == "streamlines"
-        if still and self.parameter == "arclength":
+    def _relative_length(self, level: int, nodes: Indices) -> float:
+        """Return the length of the paths of some nodes relative to even paths."""
+        is_even = self.field.steady or self.lines == "streamlines"
+        if is_even and self.parameter == "arclength":
             return 1.0
         velocity = self.at_level(level).typical.velocity[:, 0, nodes]
         fast = np.percentile(np.linalg.norm(velocity, axis=-1), 99)
         return float(np.clip(fast / self.whole_speed, 1.0, MOST_WIDE))
 
     def _around(self, level: int, nodes: Indices, width: float) -> Indices:
-        """Triangles of a level that are no further from some nodes than so much, and others."""
-        this = self._clusters[level]
-        points = this.field.points[0]
+        """Return triangles of a level, among them all within ``width`` of some nodes."""
+        clusters = self._clusters[level]
+        points = clusters.field.points[0]
         low, high = points[nodes].min(axis=0) - width, points[nodes].max(axis=0) + width
         near = self._boxes.members(low[None], high[None], self._steps(level))
         parts = self._members(level)
-        some = np.concatenate([part for part, hit in zip(parts, near, strict=True) if len(hit)])
-        least, most = corner_ends(points, this.triangles[some])
+        candidates = np.concatenate(
+            [part for part, hit in zip(parts, near, strict=True) if len(hit)]
+        )
+        least, most = corner_ends(points, clusters.triangles[candidates])
         inside = (most >= low).all(axis=1) & (least <= high).all(axis=1)
-        return np.unique(some[inside])
+        return np.unique(candidates[inside])
 
 
 def _overlaps(level: Clusters) -> bool:
-    """Whether quarters of a level would trace most of it each, as where cells are long and thin."""
+    """Return whether each quarter would trace most of a level, as with long and thin cells."""
     if level.field.shape[1] > MOST_ROOT_NODES:
         return False
     low, high = corner_ends(level.field.points[0], level.triangles)
@@ -241,9 +245,9 @@ def _most(values: Floats) -> float:
 
 
 def _lags(size: Floats, nodes: Bools, longest: float) -> tuple[Floats, Floats]:
-    """Lags (M,) that end at the greatest length, and their one unit at all nodes (1, N).
+    """Return lags (M,) that end at the greatest length, and their one unit at all nodes (1, N).
 
-    Cells of very different sizes may lie in one tile, whose paths are followed alike.
+    Cells of very different sizes may lie in one tile; their paths have the same length.
     """
     unit = float(np.percentile(size[nodes], 5))
     count = int(np.clip(np.ceil(np.log2(longest / unit / FIRST_CELLS)), 1, MOST_LAGS - 1))
