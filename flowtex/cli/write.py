@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -32,6 +32,9 @@ from flowtex.cli.options import (
     arguments,
     pixels,
 )
+
+if TYPE_CHECKING:
+    from flowtex.field import FlowField
 
 #: Share of the flow that may leave the surface before the message has it.
 NOTABLE_LOSS = 0.01
@@ -77,6 +80,7 @@ def render(
         f"  {describe(field)}{lost}  ",
         (f"{_size(options)}, {time.perf_counter() - start:.1f} s", "dim"),
     )
+    _tell_clipped(field, drawing(look, settings))
     return 0
 
 
@@ -126,6 +130,7 @@ def movie(
         f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s"
     )
     say((str(output), "bold"), f"  {describe(field)}{loop}  ", (figures, "dim"))
+    _tell_clipped(field, drawing(look, settings))
     return 0
 
 
@@ -185,6 +190,22 @@ def write_picture(picture: AnyArray, output: Path) -> None:
 
     with writing(output), whole_file(output) as file:
         Image.fromarray(picture).save(file, Image.EXTENSION[output.suffix.lower()])
+
+
+def _tell_clipped(field: FlowField, options: Mapping[str, Any]) -> None:
+    """Tell which values the colours leave out by default."""
+    from flowtex.scene.options import Options
+    from flowtex.scene.scene import Scene
+
+    scene = Scene.from_options(field, Options.split(**options))
+    name = scene.scalar_name
+    if name is None or options.get("clim") is not None or not any(scene.beyond):
+        return
+    (low, high), (least, most) = scene.scalar_limits, scene.scalar_range(name)
+    say(
+        f"The colours of {scene.title_of(name)} are from {low:.3g} to {high:.3g}, its values from "
+        f"{least:.3g} to {most:.3g}; --clim={least:.3g},{most:.3g} shows them all"
+    )
 
 
 def _drawing(look: LookFlags | None, frame: FrameFlags, settings: Any) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
 from cfd_files import CGNS, TIMES, box
 from page_reader import Reader
 from PIL import Image
@@ -132,6 +133,17 @@ def test_flags_reach_the_picture(run: Run, block: Path, tmp_path: Path, opengl: 
     assert run(*base, "--vectors", "wind", "-o", flat, "--contrast", "0")[0] == 0
     assert np.abs(grey(one) - grey(two)).mean() > 5
     assert roughness(grey(flat)[30:60, 40:80])[1] < 1
+
+
+def test_values_beyond_the_colours_are_told(run: Run, tmp_path: Path, opengl: object) -> None:
+    mesh = pv.ImageData(dimensions=(31, 31, 1))
+    mesh["wind"] = np.tile([1.0, 0.2, 0.0], (mesh.n_points, 1))
+    mesh["p"] = np.where(np.arange(mesh.n_points) == 400, 50.0, np.arange(mesh.n_points) % 31 / 30)
+    mesh.save(tmp_path / "spike.vti")
+    base = ("render", tmp_path / "spike.vti", "-o", tmp_path / "p.png", "--scalars", "p")
+    said = run(*base, "--size", "60x40")[1]
+    assert "The colours of p are from 0 to 1, its values from 0 to 50; --clim=0,50" in said
+    assert "The colours" not in run(*base, "--size", "60x40", "--clim", "0,50")[1]
 
 
 def test_flow_that_leaves_the_surface_is_told(
