@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import os
+import reprlib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,18 @@ import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
+
+#: Names that other packages give to arguments, and those of ours.
+SYNONYMS = {
+    **dict.fromkeys(("vmin", "vmax", "range"), "clim"),
+    **dict.fromkeys(("colormap", "palette", "cm"), "cmap"),
+    **dict.fromkeys(("colorbar", "cbar", "legend"), "show_scalar_bar"),
+    **dict.fromkeys(("length", "streak_length", "line_length"), "samples"),
+    **dict.fromkeys(("normal", "cut", "origin"), "slice"),
+    **dict.fromkeys(("variables", "vector", "velocity"), "vectors"),
+    **dict.fromkeys(("scalar", "color_by", "field"), "scalars"),
+    **{"alpha": "opacity", "duration": "seconds", "bgcolor": "background", "crs": "projection"},
+}
 
 
 def is_number(value: Any) -> bool:
@@ -72,7 +85,7 @@ def checked_size(size: Any, low: int = 1) -> tuple[int, int]:
 def checked_path(name: str, path: Any) -> Path:
     """Return a path as one of Python's."""
     if not isinstance(path, (str, os.PathLike)) or "\0" in str(path):
-        msg = f"{name} is {path!r}; expected a path"
+        msg = f"{name} is {reprlib.repr(path)}; expected a path"
         raise FieldError(msg)
     return Path(path)
 
@@ -95,7 +108,10 @@ def check_field(field: Any, kind: type) -> None:
 
 
 def closest(name: str, names: Sequence[str]) -> list[str]:
-    """Return up to two names that begin with a text, such as "proj", or else resemble it."""
+    """Return up to two names that a text stands for, begins, as "proj" does, or resembles."""
+    synonym = SYNONYMS.get(name.replace("-", "_"), "")
+    if synonyms := [each for each in names if each.replace("-", "_") == synonym]:
+        return synonyms
     begun = [candidate for candidate in names if len(name) > 2 and candidate.startswith(name)]
     return begun[:2] or difflib.get_close_matches(name, names, n=2)
 

@@ -40,7 +40,8 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
         console.print(_field_table(load_field(files, options)))
         return 0
     if paths := dataset_paths(files):
-        console.print(Text(" ".join(map(str, files)), "bold"), soft_wrap=True)
+        more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+        console.print(Text(f"{files[0]}{more}", "bold"), soft_wrap=True)
         console.print(_recognised_table(paths))
         console.print(_field_table(load_field(files, options)))
         return 0
@@ -143,7 +144,8 @@ def _block_table(summary: FileSummary) -> Table:
 
 
 def _array_table(summary: FileSummary) -> Table:
-    numbers = ("numbers", "from", "to")
+    moment = f" at t = {summary.times[0]:g}" if len(summary.times) > 1 else ""
+    numbers = ("numbers", f"least{moment}", "greatest")
     table = _table("array", "on", *numbers, right=numbers)
     for array in summary.arrays:
         made = f" = {', '.join(array.parts)}" if array.parts else ""
@@ -154,13 +156,14 @@ def _array_table(summary: FileSummary) -> Table:
 def _span(array: ArraySummary) -> tuple[str, str]:
     if not math.isfinite(array.low):
         return "", ""
-    length = " (length)" if array.components > 1 else ""
-    return f"{array.low:.4g}", f"{array.high:.4g}{length}"
+    magnitude = " (magnitude)" if array.components > 1 else ""
+    return f"{array.low:.4g}", f"{array.high:.4g}{magnitude}"
 
 
 def _field_table(field: FlowField) -> Table:
     import numpy as np
 
+    from flowtex.field.dates import date_text
     from flowtex.textures.tiles import has_pyramid
 
     table = _pairs(
@@ -174,6 +177,9 @@ def _field_table(field: FlowField) -> Table:
         table.add_row("triangles", f"{len(field.triangles):,}")
     steady = "one, steady"
     ends = f"{field.times[0]:g} to {field.times[-1]:g} {field.time_unit}".rstrip()
+    if field.start is not None:
+        step = float(np.diff(field.times).min()) if len(field.times) > 1 else 60.0
+        ends = " to ".join(date_text(field.start, time, step) for time in field.times[[0, -1]])
     table.add_row("times", steady if field.steady else f"{len(field.times)}, {ends}")
     if not field.steady:
         table.add_row("lines", _lines(field))
@@ -184,7 +190,9 @@ def _field_table(field: FlowField) -> Table:
     if field.sign_free:
         table.add_row("signs", "none: v and -v mean the same")
     shape = "curved" if field.surface.frame is None else "flat"
-    table.add_row("surface", f"{shape}, {field.surface.extent:.4g} {field.length_unit}".rstrip())
+    table.add_row(
+        "surface", f"{shape}, {field.surface.extent:.4g} {field.length_unit}".rstrip() + " across"
+    )
     sizes = field.surface.cell_size[field.valid]
     sizes = sizes[np.isfinite(sizes) & (sizes > 0)]
     if sizes.size:
@@ -200,8 +208,10 @@ def _lines(field: FlowField) -> str:
     """Describe the lines along which the flow is drawn, with the reason."""
     from flowtex.trace import changing_share, chosen_lines
 
-    share = f"{changing_share(field):.0%} of the flow changes while a particle moves along a streak"
-    return f"{chosen_lines(field)} ({share})"
+    share = f"{changing_share(field):.0%}"
+    return (
+        f"{chosen_lines(field)} (within a streak, the flow changes by half at {share} of the nodes)"
+    )
 
 
 def _megabytes(field: FlowField) -> float:

@@ -29,7 +29,7 @@ FILE = Annotated[
     Parameter(
         help=(
             "A mesh: any file that PyVista reads, or PLOT3D; or data of the Earth: NetCDF, Zarr, "
-            "GRIB or the JSON of wind maps. Several files are opened as one dataset."
+            "GRIB or the JSON of wind maps. Several files of the Earth are opened as one dataset."
         )
     ),
 ]

@@ -68,7 +68,7 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
 
 ALL_AT_REST = (
     "The velocity is zero at every node, so the picture shows no flow; check the selected "
-    "array and its region."
+    "array and its region. On a wall draw the wall shear stress, such as wallShearStress."
 )
 
 

@@ -19,6 +19,8 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 from flowtex._util.arguments import is_number, near_names
 from flowtex._util.colours import DEFAULT_CMAP, SIGNED_CMAP, colour_table, rgb
 from flowtex._util.notices import notify
@@ -241,6 +243,10 @@ class FieldOptions:
             raise FieldError(msg)
 
 
+#: Lines of the Earth that are drawn or not.
+EARTH_LINES = ("coastlines", "graticule")
+
+
 def default_cmap(scalars: Any) -> str:
     """Return the colour map of scalars for which none was chosen."""
     return SIGNED_CMAP if scalars in SIGNED else DEFAULT_CMAP
@@ -339,7 +345,10 @@ class Appearance:
                 )
             elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
                 object.__setattr__(self, "clim", (low, high))
-        if self.land is False:
+        for name in ("log_scale", "visible", "lighting", "show_scalar_bar", *EARTH_LINES):
+            if not isinstance(value := getattr(self, name), (bool, np.bool_, type(None))):
+                faults.append(f"{name} is {value!r}; expected True or False")
+        if self.land is False or (isinstance(self.land, str) and self.land == "none"):
             object.__setattr__(self, "land", None)
         checks = (
             (colour_table, self.cmap, default_cmap(self.scalars)),
@@ -483,11 +492,15 @@ class Options:
         known = (*TABLE, *(name for names in accepted.values() for name in names))
         for name in values:
             if name not in TABLE:
-                near = near_names(name, known)
+                near = near_names(name, known, ("scalars", "cmap", "samples"))
                 if "sel" in known and not near.startswith("did you mean"):
-                    what = f"an axis of a dataset, use sel={{{name!r}: {values[name]!r}}}"
-                    path = "a group of a file, give its path, such as 'model.nc/ocean'"
-                    near = f"for {path if name == 'group' else what}; {near}"
+                    near = "help(flowtex.render) has all of them"
+                    if name == "group":
+                        path = "give its path, such as 'model.nc/ocean'"
+                        near = f"for a group of a file, {path}; {near}"
+                    elif is_number(values[name]) or isinstance(values[name], str):
+                        axis = f"sel={{{name!r}: {values[name]!r}}}"
+                        near = f"for an axis of a dataset, use {axis}; {near}"
                 msg = f"the setting or argument {name!r} does not exist; {near}"
                 raise SettingsError(msg)
         return cls(**parts, settings=values)

@@ -133,7 +133,8 @@ def test_velocity_of_zero_everywhere_warns_at_the_callers_line() -> None:
         UserWarning,
         match=(
             "^The velocity is zero at every node, so the picture shows no flow; check the "
-            "selected array and its region.$"
+            "selected array and its region. On a wall draw the wall shear stress, such as "
+            "wallShearStress.$"
         ),
     ) as told:
         FlowField.from_arrays(flat(), 0 * ones(flat()))

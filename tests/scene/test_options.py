@@ -47,7 +47,7 @@ def test_each_argument_goes_where_it_belongs() -> None:
         ),
         (
             {"qqqq": 2},
-            r"^the setting .* 'qqqq' does not exist; for an .* expected one of: samples, ",
+            r"^the setting .* 'qqqq' does not exist; for an axis of .*, use sel={'qqqq': 2}; help",
         ),
         ({"proj": "north"}, r"'proj' does not exist; did you mean 'projection'\?$"),
         ({"opacity": 2}, r"^opacity is 2; expected a number from 0 to 1$"),
@@ -191,3 +191,27 @@ def test_a_view_of_nothing_is_warned_of(view: dict[str, Any]) -> None:
 def test_a_picture_full_of_surface_is_none_of_nothing() -> None:
     options: dict[str, Any] = {"zoom": 50, "scalars": False, "color": "black", "strength": 0.0}
     assert np.ptp(flowtex.render(gyre(), size=(60, 40), **options)) == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "hint"),
+    [
+        ("vmin", 0.0, r"did you mean 'clim'\?"),
+        ("alpha", 0.5, r"did you mean 'opacity'\?"),
+        ("colorbar", True, r"did you mean 'show_scalar_bar'\?"),
+        ("qqqq", object(), r"exist; help\(flowtex\.render\) has all"),
+    ],
+)
+def test_arguments_of_other_packages_have_a_hint(name: str, value: Any, hint: str) -> None:
+    with pytest.raises(SettingsError, match=hint):
+        Options.split(**{name: value})
+
+
+@pytest.mark.parametrize("name", ["coastlines", "graticule", "lighting", "visible"])
+def test_a_switch_is_true_or_false(name: str) -> None:
+    with pytest.raises(FieldError, match=f"^{name} is '10m'; expected True or False$"):
+        Options.split(**{name: "10m"})
+
+
+def test_no_land_has_two_names() -> None:
+    assert Appearance(land="none").land is None and Appearance(land=False).land is None

@@ -53,10 +53,15 @@ class Choice:
     isel: Mapping[str, Any] = field(default_factory=dict)
     used: set[str] = field(default_factory=set)
 
-    def check(self, known: set[str]) -> None:
-        """Raise for a name that no axis has."""
+    def check(self, known: set[str], drawn: set[str]) -> None:
+        """Raise for a name that no axis has, or one of those that are drawn."""
         for name in {*self.sel, *self.isel} - self.used:
             msg = f"the axis {name!r} does not exist; {near_names(name, sorted(known))}"
+            if name in drawn:
+                msg = (
+                    f"{name!r} is an axis of the surface, of which all is drawn; to draw a part, "
+                    f"cut it out before, as in data.sel({name}=slice(low, high))"
+                )
             raise FieldError(msg)
 
 
@@ -116,7 +121,10 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
         raise FieldError(msg)
     for array in arrays:
         if empty := [str(d) for d, count in array.sizes.items() if count == 0]:
-            msg = f"{array.name} has no values along {', '.join(empty)}; expected at least one"
+            msg = (
+                f"{array.name} has no values along {', '.join(empty)}; expected at least one. If "
+                "they were cut out, the axis may run the other way: slice(high, low)"
+            )
             raise FieldError(msg)
     done, notes, level = list(arrays), [], ""
     numbers: dict[str, int] = {}
@@ -140,7 +148,7 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
     ]
     done = [a.transpose(*t, *pair) for a, t, pair in zip(done, order, rows, strict=True)]
     names = {str(d) for dims in others for d in dims} | set(kinds[0])
-    choice.check(names)
+    choice.check(names, {str(d) for pair in rows for d in pair})
     if times is None:
         times = _time_beside(arrays[0])
     level = level or _level_beside(arrays[0])

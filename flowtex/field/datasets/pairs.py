@@ -264,6 +264,13 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
                     f"{source.replace('_', ' ')} would be {alone[0]!r}; open the file that has it "
                     "together with this one, or name both, as in u=..., v=..."
                 )
+        for source in ("standard_name", "long_name", "name"):
+            for _, _, partner in _partners(_text(u, source), source):
+                if any(_text(v, source) == partner and _match(u, v) for v in arrays):
+                    try:
+                        to_metres_per_second(u)
+                    except FieldError as error:
+                        return str(error)
     names = ", ".join(str(a.name) for a in arrays)
     if not names:
         msg = "no variable has two axes; expected the two components of a velocity on a surface"

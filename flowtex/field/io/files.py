@@ -155,6 +155,11 @@ def _check_path(file: Path) -> None:
             "this address has no flowtex pyramid, and files are read only from folders; open the "
             "data with xarray.open_dataset or xarray.open_zarr, and pass the dataset"
         )
+    elif file.suffix.lower() == ".foam" and not [
+        *file.parent.glob("constant"),
+        *file.parent.glob("processor*"),
+    ]:
+        problem = "its folder has no folder constant; expected the folder of an OpenFOAM case"
     elif not file.exists():
         problem = "the file does not exist; check the spelling and the folder"
         near = sorted(p.name for p in file.parent.glob(f"{file.stem}.*")) if file.name else []
@@ -162,6 +167,9 @@ def _check_path(file: Path) -> None:
             problem += f". Similar names: {', '.join(near[:5])}"
     elif file.is_dir():
         problem = "this is a folder; expected a file: name the mesh inside it"
+        if (file / "constant" / "polyMesh").exists():
+            case = f"{file.name}.foam"
+            problem = f"this is a case of OpenFOAM; make an empty file {case} in it, and name that"
     elif file.suffix.lower() in {".pkl", ".pickle", ".joblib"}:
         problem = (
             "this is a pickle, which can run any program when it is loaded, so it is refused; "
@@ -216,6 +224,8 @@ def read_files(
             chosen["sel"] = {**chosen.get("sel", {}), "time": time}
         chosen |= {**two_names(vectors), "name": common_name(paths), "regions": regions}
         return read_datasets(open_datasets(paths), uncertainty=uncertainty, **chosen)
+    if isinstance(path, (str, Path)):
+        _check_path(Path(path).expanduser())
     refuse(chosen, "data of the Earth, but this is a mesh")
     if not isinstance(path, (str, Path)):
         msg = (

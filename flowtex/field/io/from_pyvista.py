@@ -83,13 +83,12 @@ def read_meshes(
         return GridArrays(**arrays, **options, name=name)
     given = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
     if wrong := [f"{name}={value!r}" for name, value in given.items() if value not in (None, "")]:
+        instead = 'to cut it, use slice="x=0.5"; otherwise ' if plane is not None else ""
         msg = (
-            f"{', '.join(wrong)} applies to structured meshes, but this is a surface of "
-            "triangles; omit it, or sample the mesh onto a structured one, as in "
-            "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh), with 1 along a flat axis"
+            f"{', '.join(wrong)} applies to structured meshes, and this one is not; {instead}omit "
+            "it, or sample the mesh onto a structured one, as in "
+            "pyvista.create_grid(mesh, (200, 150, 50)).sample(mesh)"
         )
-        if plane is not None:
-            msg += '. To cut a volume, use slice="x=0.5"'
         raise FieldError(msg)
     return TriangleArrays(**read_surfaces(chain([first], steps), vectors, cut, times), name=name)
 

@@ -185,8 +185,9 @@ def _read(reader: Any, block: int | str | None, *, cut: bool) -> Iterator[TimeSt
 def pick(mesh: Any, block: int | str) -> Any:
     """Return one of the meshes in a mesh, by number or by name."""
     parts = parts_of(mesh)
+    ends = [name for name in parts if name.rpartition("/")[2] == block]
     for number, (name, part) in enumerate(parts.items()):
-        if block in (number, name):
+        if block in (number, name) or ends == [name]:
             return part
     if not parts:
         raise FieldError(_no_mesh(mesh, "the mesh"))

@@ -155,9 +155,9 @@ class _Writer:
             yield image
 
     def times(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield the time of a field that varies in time, with a long unit and without it."""
+        """Yield the time, if it is known, with a long unit and without it."""
         field = scene.field
-        if field.steady:
+        if field.steady and field.start is None and not field.times[0]:
             return
         for longest in (len(field.time_unit), UNIT_LENGTH):
             times = (scene.time, *map(float, field.times[[0, -1]]))

@@ -445,7 +445,15 @@ def test_rounded_nodes_have_not_moved() -> None:
 def test_a_scalar_that_a_step_lacks_is_left_out() -> None:
     second = at_time(1.0)
     second.point_data.remove("p")
-    assert not FlowField.from_pyvista([at_time(0.0), second]).scalars
+    with pytest.warns(Notice, match=r"^'p' is missing at time 1, so it is not read$"):
+        assert not FlowField.from_pyvista([at_time(0.0), second]).scalars
+
+
+def test_a_gap_in_time_is_told() -> None:
+    meshes = [at_time(time) for time in (0.0, 5.0, 5.25, 5.5)]
+    with pytest.warns(Notice, match=r"^no data lie between the times 0 and 5, .* are 0\.25 apart"):
+        FlowField.from_pyvista(meshes)
+    FlowField.from_pyvista(meshes[1:])
 
 
 def test_a_step_of_several_blocks() -> None:

@@ -196,3 +196,12 @@ def test_hexahedra_of_cgns(tmp_path: Path) -> None:
     with pytest.warns(Notice, match=OUTER):
         assert FlowField.from_file(path).triangles is not None
     assert FlowField.from_file(path, slice="z").triangles is not None
+
+
+def test_a_case_of_openfoam_is_named_by_a_file_in_it(tmp_path: Path) -> None:
+    (tmp_path / "case" / "constant" / "polyMesh").mkdir(parents=True)
+    with pytest.raises(FieldError, match=r"case of OpenFOAM; make an empty file case\.foam in it"):
+        FlowField.from_file(tmp_path / "case")
+    (tmp_path / "x.foam").touch()
+    with pytest.raises(FieldError, match="its folder has no folder constant"):
+        FlowField.from_file(tmp_path / "x.foam")

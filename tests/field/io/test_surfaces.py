@@ -174,9 +174,7 @@ def test_a_surface_is_not_cut_and_has_no_planes() -> None:
         FlowField.from_pyvista(mesh, slice="x")
     with says("plane='k=0' applies to structured meshes"):
         FlowField.from_pyvista(mesh, plane="k=0")
-    with says(
-        "sign_free=True applies to structured meshes, but this is a surface of triangles; omit"
-    ):
+    with says("sign_free=True applies to structured meshes, and this one is not; omit"):
         FlowField.from_pyvista(mesh, sign_free=True)
 
 
@@ -301,7 +299,7 @@ def test_flow_across_a_surface_is_told() -> None:
 @pytest.mark.parametrize(
     ("choice", "text"),
     [
-        ({"slice": "q=1"}, "slice is 'q=1'; expected \"x=0.5\", a normal as in"),
+        ({"slice": "q=1"}, "slice is 'q=1'; expected a text such as \"x=0.5\", a normal as in"),
         ({"slice": "0,0,0"}, "slice is '0,0,0'; expected"),
         ({"slice": "x=inf"}, "slice is 'x=inf'; expected"),
         ({"slice": "1,0,0 through 1,2"}, "expected"),

@@ -125,8 +125,9 @@ def _slice(given: Any) -> Slice:
     way, place = _vector(normal), None if point is None else _vector(point)
     if way is None or not any(way) or (point is not None and place is None):
         msg = (
-            f'slice is {given!r}; expected "x=0.5", a normal as in "1,1,0", one with a point as in '
-            '"1,1,0 through 0.5,0.5,0.2", or a pair (normal, point) of three numbers each'
+            f'slice is {given!r}; expected a text such as "x=0.5", a normal as in "1,1,0", one '
+            'with a point as in "1,1,0 through 0.5,0.5,0.2", or a pair (normal, point) of three '
+            "numbers each"
         )
         raise FieldError(msg)
     return Slice(way, place, repr(given))

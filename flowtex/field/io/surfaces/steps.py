@@ -10,12 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.notices import notify
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.io.meshes import TimeStep, check_arrays, check_nodes
 from flowtex.field.io.surfaces.cuts import HIDDEN, Cut, cut_faults, surface_of
 from flowtex.field.io.vectors import MeshArray, catalogue, choose_vectors, values_of, vector_faults
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
+
+#: Usual steps in a gap that is told of.
+GAP_STEPS = 8
 
 
 @dataclass(kw_only=True)
@@ -32,14 +36,36 @@ class SheetStep:
 def stacked(sheets: Sequence[SheetStep], times: ArrayLike | None) -> dict[str, Any]:
     """Return arrays of all steps, with the scalars that each of them has."""
     known = [sheet.time for sheet in sheets if sheet.time is not None]
-    names = [n for n in sheets[0].scalars if all(n in sheet.scalars for sheet in sheets)]
+    if times is None and len(known) == len(sheets):
+        times = known
+        _tell_gaps(known)
+    names = []
+    for name in sheets[0].scalars:
+        lacking = [n for n, sheet in enumerate(sheets) if name not in sheet.scalars]
+        if not lacking:
+            names.append(name)
+            continue
+        when = f"time {known[lacking[0]]:g}" if len(known) == len(sheets) else f"step {lacking[0]}"
+        notify(f"{name!r} is missing at {when}, so it is not read")
     return {
         "points": sheets[0].points,
         "velocity": np.stack([sheet.vectors for sheet in sheets]),
-        "times": known if times is None and len(known) == len(sheets) else times,
+        "times": times,
         "valid": np.logical_and.reduce([sheet.shown for sheet in sheets]),
         "scalars": {n: np.stack([sheet.scalars[n] for sheet in sheets]) for n in names},
     }
+
+
+def _tell_gaps(times: Sequence[float]) -> None:
+    """Tell of a time to the next that is many times the usual one, as after initial values."""
+    steps = np.diff(times)
+    if len(steps) > 1 and steps.max() > GAP_STEPS * (usual := float(np.median(steps))) > 0:
+        n = int(np.argmax(steps))
+        notify(
+            f"no data lie between the times {times[n]:g} and {times[n + 1]:g}, where the flow is "
+            f"interpolated; other steps are {usual:g} apart. If the first are initial values, "
+            "leave them out, as in a list of the other meshes"
+        )
 
 
 @dataclass(kw_only=True)
