@@ -92,7 +92,9 @@ def movie(
     seconds: Annotated[
         float | None,
         Parameter(
-            group=PICTURE, help="Length of the movie in seconds; a steady flow repeats after it."
+            group=PICTURE,
+            help="Length of the movie in seconds; a steady flow repeats after it. "
+            "[default: --period for a steady flow, otherwise by the number of times, from 5 to 30]",
         ),
     ] = None,
     fps: Annotated[
