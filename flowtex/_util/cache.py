@@ -32,9 +32,7 @@ class _Gates:
 
     def __init__(self) -> None:
         # A lock lives as long as a thread holds it or waits for it.
-        self._gates: weakref.WeakValueDictionary[Hashable, threading.Lock] = (
-            weakref.WeakValueDictionary()
-        )
+        self._gates = weakref.WeakValueDictionary[Hashable, threading.Lock]()
         self._lock = threading.Lock()
 
     def of(self, key: Hashable) -> threading.Lock:
@@ -52,10 +50,8 @@ class WeakCache(Generic[V]):
     """
 
     def __init__(self) -> None:
-        self._values: weakref.WeakValueDictionary[Hashable, V] = weakref.WeakValueDictionary()
-        self._owned: weakref.WeakKeyDictionary[object, dict[Hashable, V]] = (
-            weakref.WeakKeyDictionary()
-        )
+        self._values = weakref.WeakValueDictionary[Hashable, V]()
+        self._owned = weakref.WeakKeyDictionary[object, dict[Hashable, V]]()
         self._gates = _Gates()
 
     def get(self, key: Hashable, make: Callable[[], V], *, owner: object | None = None) -> V:
@@ -67,8 +63,7 @@ class WeakCache(Generic[V]):
         """
         if owner is not None:
             key = (weakref.ref(owner), key)
-        gate = self._gates.of(key)
-        with gate:
+        with self._gates.of(key):
             value = self._values.get(key)
             if value is None:
                 value = make()
@@ -108,8 +103,7 @@ class ByteCache(Generic[K, S]):
 
     def get(self, key: K, make: Callable[[], S]) -> S:
         """Return the value of a key, computed once: threads that ask meanwhile wait for it."""
-        gate = self._gates.of(key)
-        with gate:
+        with self._gates.of(key):
             value = self.peek(key)
             if value is None:
                 value = make()

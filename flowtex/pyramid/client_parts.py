@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -33,10 +32,6 @@ from flowtex.textures import TextureSet
 from flowtex.textures.tiles import TileKey, widened
 from flowtex.trace import SliceStore
 
-if TYPE_CHECKING:
-    from zarr import Array
-    from zarr.core.metadata import ArrayV3Metadata
-
 #: Entries of the slices that are the same in all tiles, and in the header of the page.
 OF_ALL_TILES = ("steps", "times", "timeUnit", "dates", "pace")
 #: Error of a value as a share of the range that most of them have.
@@ -53,19 +48,19 @@ def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Seque
         # A page of a store may have some of its steps, which pathlines lead through.
         data = ClientData(textures, colours, traces=textures.store.streamlines)
     if 0 in steps and key.level < pyramid.depth:  # a page has the surface of the root
-        _write(array(f"{key.level}/{SURFACE}"), at, fingerprint, _surface(pyramid, key, data))
+        _write(array, f"{key.level}/{SURFACE}", at, fingerprint, _surface(pyramid, key, data))
     prefix = f"tile/{key.level}/{key.row}/{key.column}"
     for step in steps:
         parts: Parts = {}
         if data is not None:
             for number, values in _values(pyramid, data, step).items():
                 file = {f"{prefix}/scalars/{step}/{number}": values}
-                _write(array(f"{key.level}/{VALUES}"), (step, *at, number), fingerprint, file)
+                _write(array, f"{key.level}/{VALUES}", (step, *at, number), fingerprint, file)
             parts_at_step = data.step(step).items()
             parts = {f"{prefix}/{k}": v for k, v in parts_at_step if not k.startswith("scalars/")}
             data.textures.forget()
         # The last file: its presence shows that a tile is complete.
-        _write(array(f"{key.level}/{FLOW}"), (step, *at), fingerprint, parts)
+        _write(array, f"{key.level}/{FLOW}", (step, *at), fingerprint, parts)
 
 
 def _textures(pyramid: StoredPyramid, key: TileKey) -> TextureSet | None:
@@ -79,21 +74,18 @@ def _textures(pyramid: StoredPyramid, key: TileKey) -> TextureSet | None:
     return pyramid.tile(key, typical_steps(len(pyramid.root.times)))
 
 
-def _write(
-    array: Array[ArrayV3Metadata], at: tuple[int, ...], fingerprint: str, parts: Parts
-) -> None:
+def _write(array: Arrays, name: str, at: Sequence[int], fingerprint: str, parts: Parts) -> None:
     """Write a file of parts, as whole chunks."""
     owner = np.frombuffer(fingerprint.encode(), np.uint8)
     file = np.frombuffer(parts_file({"of": owner, **parts}, planes=True), np.uint8)
     size = -(-len(file) // FILE_CHUNK) * FILE_CHUNK
     if size > FILE_BYTES:
         msg = (
-            f"{array.path} of tile {tuple(at)} takes {size:,} bytes; expected {FILE_BYTES:,} at "
+            f"{name} of tile {tuple(at)} takes {size:,} bytes; expected {FILE_BYTES:,} at "
             "most. Build with lines='streamlines', or with fewer nodes"
         )
         raise PyramidError(msg)
-    index: tuple[int | slice, ...] = (*at, slice(0, size))
-    array[index] = np.pad(file, (0, size - len(file)))
+    array(name)[(*at, slice(0, size))] = np.pad(file, (0, size - len(file)))
 
 
 def _surface(pyramid: StoredPyramid, key: TileKey, data: ClientData | None) -> Parts:

@@ -49,9 +49,8 @@ from flowtex.textures.tiles import BLOCK_CELLS, TILE_BLOCKS
 from flowtex.textures.tiles.pyramid import level_shape, root_level
 
 if TYPE_CHECKING:
-    from zarr import Array, Group
+    from zarr import Group
     from zarr.abc.store import Store
-    from zarr.core.metadata import ArrayV3Metadata
 
 TILE_CELLS = BLOCK_CELLS * TILE_BLOCKS
 #: Rows and columns of chunks in a shard of nodes: 8 MB of velocities with two components.
@@ -250,7 +249,7 @@ def rounded(velocity: Floats) -> Floats32:
 
 
 #: A function that returns the array of a name.
-Arrays: TypeAlias = "Callable[[str], Array[ArrayV3Metadata]]"
+Arrays: TypeAlias = Callable[[str], Any]
 
 
 def to_write(store: Store) -> Arrays:
@@ -261,13 +260,10 @@ def to_write(store: Store) -> Arrays:
     """
     zarr = import_extra("zarr", "store")
 
-    def opened(name: str) -> Array[ArrayV3Metadata]:
+    def opened(name: str) -> Any:
         array = zarr.open_array(store, path=name, mode="r+")
         config = {"write_empty_chunks": True}
-        writable: Array[ArrayV3Metadata] = zarr.Array(
-            zarr.AsyncArray(array.metadata, array.store_path, config)
-        )
-        return writable
+        return zarr.Array(zarr.AsyncArray(array.metadata, array.store_path, config))
 
     return cache(opened)
 

@@ -141,15 +141,13 @@ class Levels:
         stored_digest, velocity, *rest = self._read(
             *(piece._replace(name=f"{piece.name} {words}") for piece in pieces)
         )
-        arrays = dict(zip(ground, rest[len(scalars) :], strict=step == 0))
+        nodal = dict(zip(ground, rest[len(scalars) :], strict=step == 0))
         nodes = Nodes(
-            self._points([arrays[k] for k in self._places()], rows, columns)
-            if arrays
-            else velocity,
-            arrays.get("valid", velocity).astype(bool),
+            self._points([nodal[k] for k in self._places()], rows, columns) if nodal else velocity,
+            nodal.get("valid", velocity).astype(bool),
             velocity,
             dict(zip(scalars, rest[: len(scalars)], strict=True)),
-            arrays["has_position"].astype(bool) if "has_position" in arrays else None,
+            nodal["has_position"].astype(bool) if "has_position" in nodal else None,
         )
         if part_digest(nodes, self.about, step) != stored_digest.tobytes():
             msg = f"velocity {words} of {self.place} differs from what was written"
@@ -176,15 +174,13 @@ class Levels:
         try:
             infos, start = file_infos(file.tobytes())
             size = start + sum(info["bytes"] for info in infos)
-            fingerprint = file[start : start + infos[0]["bytes"]].tobytes().decode()
+            owner = file[start : start + infos[0]["bytes"]].tobytes().decode()
             names = [info["name"] for info in infos[1:]]
         except (ValueError, LookupError, TypeError) as error:
             raise self._error(name, error) from None
         tile = [level, *at[1:3]] if kind != SURFACE else [level, *at]
         prefix = "tile/" + "/".join(map(str, tile)) + "/"
-        if fingerprint != self.about["fingerprint"] or not all(
-            name.startswith(prefix) for name in names
-        ):
+        if owner != self.about["fingerprint"] or not all(n.startswith(prefix) for n in names):
             msg = f"{name} of {self.place} belongs to another tile; build it again"
             raise DamageError(msg)
         for first in range(FILE_CHUNK, size, FILE_CHUNK):

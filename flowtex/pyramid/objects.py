@@ -65,9 +65,7 @@ class Objects(WrapperStore[Store]):
     def __init__(self, store: Store) -> None:
         super().__init__(store)
         self._kept: ByteCache[tuple[str, str], _Piece] = ByteCache(CACHE_BYTES)
-        self._gates: weakref.WeakValueDictionary[tuple[str, str], asyncio.Lock] = (
-            weakref.WeakValueDictionary()
-        )
+        self._gates = weakref.WeakValueDictionary[tuple[str, str], asyncio.Lock]()
         self._reads = asyncio.Semaphore(MOST_READS)
 
     async def get(

@@ -47,9 +47,7 @@ def levels_of_others(
         return FlowField.from_xarray(datasets[0], uncertainty=uncertainty, **arguments)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Notice)  # those of the finest level were issued
-        coarser: list[Any] = [
-            read_datasets(level, regions=True, **arguments) for level in datasets[1:]
-        ]
+        coarser: list[Any] = [read_datasets(d, regions=True, **arguments) for d in datasets[1:]]
     return OtherLevels(place, [finest, *map(RegionSource, coarser)])
 
 
@@ -147,11 +145,7 @@ class OtherLevels:
         return tuple(np.where(wet, part * regions.factor, np.nan) for part in (u, v))  # type: ignore[return-value]
 
     def _values(
-        self,
-        regions: Regions,
-        variables: list[Any],
-        step: int,
-        fine: tuple[Indices, Indices],
+        self, regions: Regions, variables: list[Any], step: int, fine: tuple[Indices, Indices]
     ) -> list[Floats]:
         """Interpolate variables of a level of theirs at lines of the finest one."""
         lines, theirs = self._regions[0].lines, regions.lines
@@ -206,13 +200,10 @@ def _interpolated(
     """Interpolate (J, I) between lines; NaN has no weight, and results where half is missing."""
     known = np.isfinite(values)
     total, weight = (np.zeros((at[0].shape[1], at[1].shape[1])) for _ in range(2))
-    for a in (0, 1):
-        for b in (0, 1):
-            share = (shares[0] if a else 1 - shares[0])[:, None] * (
-                shares[1] if b else 1 - shares[1]
-            )
+    for a, down in enumerate((1 - shares[0], shares[0])):
+        for b, across in enumerate((1 - shares[1], shares[1])):
             nodes = np.ix_(at[0][a], at[1][b])
-            share = share * known[nodes]
+            share = down[:, None] * across * known[nodes]
             total += share * np.where(known[nodes], values[nodes], 0.0)
             weight += share
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -276,10 +276,7 @@ def _source_from(arrays: FieldArrays | Regions) -> Source:
 
 
 def has_parts(place: object) -> bool:
-    """Return whether a place is a store, of flowtex or another program, that is read in parts.
-
-    Any URL is one.
-    """
+    """Return whether a place is a store of any program that is read in parts, as all URLs are."""
     if not isinstance(place, (str, Path)) or is_store(place):
         return isinstance(place, (str, Path))
     if is_remote(place):
@@ -329,16 +326,12 @@ def datasets_at(place: str, options: Mapping[str, Any]) -> list[Any]:
     names = [name.strip("/") for name in level_names(attributes)]
     by_name = {name.strip("/"): dataset for name, dataset in groups.items()}
     chosen = [by_name[name] for name in names if name in by_name] or list(by_name.values())
-    with_velocity = [
-        dataset
-        for dataset in chosen
-        if (components and components <= {*dataset}) or find_pairs([dataset])
-    ]
-    if not with_velocity:
+    levels = [d for d in chosen if (components and components <= {*d}) or find_pairs([d])]
+    if not levels:
         msg = (
             f"{place} contains no pyramid, and no velocity; expected two variables such as u and "
             "v in each level, or their names (on the web with consolidated metadata, see "
             "zarr.consolidate_metadata)"
         )
         raise PyramidError(msg)
-    return sorted(with_velocity, key=lambda dataset: -max(array.size for array in dataset.values()))
+    return sorted(levels, key=lambda level: -max(array.size for array in level.values()))

@@ -121,9 +121,7 @@ class TextureSet:
 
     def same_paths(self, other: TextureSet) -> bool:
         """Return whether only the image instead of the noise differs."""
-        steps = [
-            None if textures.paper is None else textures.paper.step for textures in (self, other)
-        ]
+        steps = [None if t.paper is None else t.paper.step for t in (self, other)]
         return self.geometry is other.geometry and steps[0] is steps[1] is not None
 
     @property

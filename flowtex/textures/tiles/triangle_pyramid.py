@@ -129,9 +129,8 @@ class TrianglePyramid(Pyramid):
         rows, columns = self.blocks_of(key)
         places = self.places(key.level)[rows, columns]
         longest = 0.99 * PATH_CELLS * float(places[..., 4].max())
-        around = self._around(
-            key.level, nodes, widening * longest * self._relative_length(key.level, nodes)
-        )
+        width = widening * longest * self._stretch(key.level, nodes)
+        around = self._around(key.level, nodes, width)
         window, number = _part(level, around)
         geometry = TriangleGeometry.of_tile(
             window, number[nodes], number[triangles], self.root.surface, (masks, places)
@@ -200,7 +199,7 @@ class TrianglePyramid(Pyramid):
             size[filled] = [BIN_SHARE / 2 * _most(part) for part in sides]
         return np.maximum(low, inner[0]), np.minimum(high, inner[1]), size
 
-    def _relative_length(self, level: int, nodes: Indices) -> float:
+    def _stretch(self, level: int, nodes: Indices) -> float:
         """Return the length of the paths of some nodes relative to even paths."""
         is_even = self.field.steady or self.lines == "streamlines"
         if is_even and self.parameter == "arclength":
@@ -216,12 +215,10 @@ class TrianglePyramid(Pyramid):
         low, high = points[nodes].min(axis=0) - width, points[nodes].max(axis=0) + width
         near = self._boxes.members(low[None], high[None], self._steps(level))
         parts = self._members(level)
-        candidates = np.concatenate(
-            [part for part, hit in zip(parts, near, strict=True) if len(hit)]
-        )
-        least, most = corner_ends(points, clusters.triangles[candidates])
+        nearby = np.concatenate([part for part, hit in zip(parts, near, strict=True) if len(hit)])
+        least, most = corner_ends(points, clusters.triangles[nearby])
         inside = (most >= low).all(axis=1) & (least <= high).all(axis=1)
-        return np.unique(candidates[inside])
+        return np.unique(nearby[inside])
 
 
 def _overlaps(level: Clusters) -> bool:
