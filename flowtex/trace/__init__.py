@@ -1,4 +1,4 @@
-"""FlowField to TraceSlices: where the particle now at a node was at earlier times, and will be."""
+"""FlowField to TraceSlices: earlier and later positions of the particles at the nodes."""
 
 from __future__ import annotations
 

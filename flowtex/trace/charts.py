@@ -1,4 +1,4 @@
-"""Coordinates in which paths are followed: index space, and next to a pole the plane there.
+"""Coordinates in which paths are followed: index space, and next to a pole the tangent plane.
 
 Cells around a pole have no width, and in index space the velocity there has no bound. In the
 plane that touches the surface at the pole both are ordinary, so a path that comes within a few
@@ -22,17 +22,17 @@ from flowtex.trace.node_grid import Corners, NodeGrid
 
 Numbers = NDArray[np.int8]
 
-#: Cells from a pole within which a path is followed in the plane: so many at least, and up to
-#: where cells are this share as wide as long.
+#: Cells from a pole within which a path is followed in the plane: at least so many, and up to
+#: where cells have this ratio of width to length.
 LEAST_NEAR_CELLS, NEAR_ASPECT = 6, 0.5
-#: Cells from a pole within which nothing is looked up between nodes.
+#: Cells from a pole within which slices are not interpolated between nodes.
 CLOSE_CELLS = 4
 #: Cells beyond those at which a path leaves the plane again, and cells beyond that with data.
 LEAVE_CELLS, SPARE_CELLS = 1, 3
 
 
 class Patch(NamedTuple):
-    """Nodal data on one chart, each array flat, of sets behind each other."""
+    """Nodal data on one chart: flat arrays of consecutive sets."""
 
     grid: NodeGrid
     data: list[Floats]
@@ -43,9 +43,9 @@ class Patch(NamedTuple):
     signs: NDArray[np.int8] | None = None
 
     def without_sign(self, vectors: Floats | None = None) -> Patch:
-        """Return the patch for data of which only the axis counts, v meaning the same as -v.
+        """Return the patch for sign-free data, in which v means the same as -v.
 
-        The vectors at the nodes (J, I, C) are those of the chart itself when left out.
+        The vectors at the nodes (J, I, C) are by default those of the chart itself.
         """
         if vectors is None:
             parts = [a.reshape(self.grid.rows, self.grid.columns) for a in self.data[:2]]
@@ -54,30 +54,30 @@ class Patch(NamedTuple):
         return self._replace(signs=None if signs is None else signs.reshape(4, -1))
 
     def corners(self, position: Floats) -> Corners:
-        """Cells of positions (2, N) of the chart."""
+        """Return cells of positions (2, N) of the chart."""
         if self.pole is not None:
             position = self.pole.index(position)
             position[self.pole.component] -= self.offset
         return self.grid.corners(position)
 
     def blend(self, number: int, corners: Corners, step: Indices | int = 0) -> Floats:
-        """Interpolate one of the arrays, in the set of the number ``step``."""
+        """Interpolate one of the arrays in the set number ``step``."""
         result = self.grid.blend(self.data[number], corners, step * self.grid.size)
         if self.signs is not None and number < 2:
             cut = np.flatnonzero((self.signs[:, corners.at] < 0).any(axis=0))
-            some = Corners(*(part[cut] for part in corners))
-            result[cut] = self._aligned(self.data[number], some)
+            crossed = Corners(*(part[cut] for part in corners))
+            result[cut] = self._aligned(self.data[number], crossed)
         return np.asarray(result)
 
     def _aligned(self, data: Floats, corners: Corners) -> Floats:
-        """Interpolate in cells whose corners are brought into line, as the nearest one points."""
+        """Interpolate in cells whose corners are given the sign of the nearest one."""
         at, s, t = corners
         weights = ((1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t)
         result = np.zeros(len(at))
         if self.signs is not None:
-            width = self.grid.columns
-            for sign, weight, on in zip(self.signs, weights, (0, 1, width, width + 1), strict=True):
-                result += sign[at] * weight * data[at + on]
+            offsets = (0, 1, self.grid.columns, self.grid.columns + 1)
+            for sign, weight, offset in zip(self.signs, weights, offsets, strict=True):
+                result += sign[at] * weight * data[at + offset]
             result *= self.signs[(s >= 0.5) + 2 * (t >= 0.5), at]
         return result
 
@@ -95,7 +95,7 @@ class Charts:
         )
 
     def choose(self, index: Floats, chart: Numbers | None = None) -> Numbers:
-        """Charts (N,) for positions (2, N) in index space; those of before stay a little longer."""
+        """Return charts (N,) for positions (2, N) in index space, with hysteresis by ``chart``."""
         index = self._poles.fold(index)
         result = np.zeros(index.shape[1], np.int8)
         for number, pole in enumerate(self._poles, 1):
@@ -104,51 +104,51 @@ class Charts:
         return result
 
     def close(self, index: Floats) -> Bools:
-        """Whether positions (2, N) in index space are close to a pole, (N,)."""
+        """Return whether positions (2, N) in index space are close to a pole, (N,)."""
         index = self._poles.fold(index)
         close = [pole.depth(index) < min(CLOSE_CELLS, self.near) for pole in self._poles]
         return np.asarray(np.any(close, axis=0))
 
     def enter(self, index: Floats, chart: Numbers) -> Floats:
-        """Coordinates (2, N) on charts (N,) of positions (2, N) in index space."""
+        """Return coordinates (2, N) on charts (N,) of positions (2, N) in index space."""
         result = np.array(index)
         for number, pole in enumerate(self._poles, 1):
-            some = chart == number
-            if some.any():
-                result[:, some] = pole.place(self._poles.fold(index[:, some]))
+            mask = chart == number
+            if mask.any():
+                result[:, mask] = pole.place(self._poles.fold(index[:, mask]))
         return result
 
     def index(self, position: Floats, chart: Numbers, near: Floats | None = None) -> Floats:
-        """Positions (2, N) in index space of coordinates (2, N) on charts (N,).
+        """Return positions (2, N) in index space of coordinates (2, N) on charts (N,).
 
-        Where positions ``near`` (2, N) are given, those on the planes are written as close to
-        them as can be, beyond the pole if need be.
+        With positions ``near`` (2, N), those on the planes are as close to them as possible, if
+        necessary beyond the pole.
         """
         result = np.array(position)
         for number, pole in enumerate(self._poles, 1):
-            some = chart == number
-            if some.any():
-                there = pole.index(position[:, some])
+            mask = chart == number
+            if mask.any():
+                inside = pole.index(position[:, mask])
                 if near is not None:
-                    # A path as long as from pole to pole is written again.
-                    beside = near[:, some]
+                    # A position as far as the other pole is folded back.
+                    beside = near[:, mask]
                     far = np.abs(pole.depth(beside)) >= self._poles.lines - 1
                     beside = np.where(far, self._poles.fold(beside), beside)
-                    there = pole.nearest(there, beside)
-                result[:, some] = there
+                    inside = pole.nearest(inside, beside)
+                result[:, mask] = inside
         return result
 
 
 def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
     """Lay out the data around a pole on its plane, up to ``near`` cells from it and some more.
 
-    The data are components along i and j, in cells, and anything else, each (sets * J * I,).
+    The data are components along i and j, in cells, and other values, (sets * J * I,) each.
     """
     shape = (-1, grid.rows, grid.columns)
     lines = (grid.rows if pole.component else grid.columns) - 1
     depth = min(near + LEAVE_CELLS + SPARE_CELLS, lines)
     first = pole.line if pole.inward > 0 else pole.line - depth
-    # From here on with the lines around the pole as the second axis.
+    # The second axis is that of the lines around the pole.
     strips = [pole.lines(a.reshape(shape), 1)[:, first : first + depth + 1] for a in data]
     strips[:2] = _to_plane(pole, strips[1 - pole.component], strips[pole.component])
     strips = [pole.lines(a, 1) for a in strips]
@@ -163,17 +163,17 @@ def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
 
 
 def _to_plane(pole: Pole, around: Floats, across: Floats) -> list[Floats]:
-    """Velocities in the plane, two of (T, lines, n + 1), from those along the lines."""
+    """Return velocities in the plane, two of (T, lines, n + 1), from those along the lines."""
     rays = pole.rays / pole.size
     turn = (np.roll(rays[:-1], -1, axis=0) - np.roll(rays[:-1], 1, axis=0)) / 2
     turn = np.concatenate([turn, turn[:1]])
     at = 0 if pole.inward > 0 else -1
     depth = np.arange(around.shape[1], dtype=float)[:, None]
     depth = depth if pole.inward > 0 else depth[::-1]
-    still = pole.vector(across[:, at]) / pole.size
+    at_pole = pole.vector(across[:, at]) / pole.size
     components = []
     for c in range(2):
         v = pole.inward * across * rays[:, c] + around * depth * turn[:, c]
-        v[:, at] = still[:, c, None]
+        v[:, at] = at_pole[:, c, None]
         components.append(v)
     return components

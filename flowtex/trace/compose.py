@@ -1,4 +1,4 @@
-"""Long paths put together from short ones.
+"""Long paths composed of short ones.
 
 A path of lag 2 s is the path of lag s, continued by the path of lag s from where, and when, that
 one ends (hierarchical line integration, Hlawatsch, Sadlo and Weiskopf 2011). Doubling the lags
@@ -8,16 +8,16 @@ as the path has cells.
 A look-up between the nodes is bilinear, corrected by the mean second differences around its cell,
 and as good as the slice is smooth there. Around a centre or near a separatrix long paths of
 neighbours part, so the change of the second differences in a cell is compared with the slice's
-length, and where it is large the path is continued in shorter, smooth pieces. What is
-left is of the order of the error that bilinear velocity has itself.
+length, and where it is large the path is continued in shorter, smooth pieces. The remaining
+error is of the order of that of the bilinear velocity.
 
-Displacements are complex numbers, i + j sqrt(-1), as one gather takes both components then.
+Displacements are complex numbers, i + j sqrt(-1), so that one gather takes both components.
 
 A flow that varies is composed only when its lags are whole numbers of its equal time steps, from
 one step up: then each piece begins at a time for which there are slices.
 
-Close to a pole nothing can be looked up between nodes, whose paths pass it on either side. There,
-and only there, paths are integrated.
+Close to a pole slices cannot be interpolated, as the paths of neighbours pass it on either side.
+Only there are paths integrated.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 import scipy
@@ -35,37 +35,47 @@ from flowtex._util.progress import check
 from flowtex.field import FlowField
 from flowtex.trace.node_grid import Corners, NodeGrid
 
-#: Pieces of a path, at most, before the rest is looked up in one whatever its error.
+#: Most pieces of a path, after which the rest is looked up at once despite its error.
 MOST_PIECES = 64
 #: Paths looked up together.
 BLOCK = 65536
-#: Cells beyond a border where a path that follows it may be put by its look-ups.
+#: Cells beyond a border to which look-ups may displace a path that follows it.
 BORDER_CELLS = 1e-2
-#: Parts of a piece in which its end is looked for, and how often one is halved then.
+#: Parts of a piece in which its end is searched, and halvings of the one with the end.
 SEARCH_PARTS, SEARCH_BISECTIONS = 16, 6
 
 #: Error of a look-up that is allowed, as a share of the path's length, and in cells.
 ERROR_SHARE, ERROR_CELLS = 0.002, 0.003
 #: Typical error of a look-up over the range of the second differences at the corners of its cell.
 ERROR_CHANGE = 1 / 64
-#: How many times that is allowed in the first slice that is composed, whose pieces are many.
+#: Factor of the allowed error in the first composed slice, whose pieces are many.
 ROUGH = 4
 #: Lags closer to a slice than this share are taken from it.
 LAG_ROUNDING = np.float32(1e-4)
 
 
-Some = slice | Indices
-#: Runs a function over blocks, perhaps in threads, and gives the results in order.
-Map = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
-#: Whether positions (2, n) are where paths are to be followed, (n,).
+A = TypeVar("A")
+B = TypeVar("B")
+#: Numbers of paths.
+Selection = slice | Indices
+
+
+class Map(Protocol):
+    """A function that maps another one over blocks, perhaps in threads."""
+
+    def __call__(self, work: Callable[[A], B], blocks: Iterable[A], /) -> Iterable[B]:
+        """Return the results in order."""
+
+
+#: Returns whether paths are followed at positions (2, n), (n,).
 Within = Callable[[Floats], Bools]
-#: Follows paths from positions (2, n), by lags (n,), from time steps (n,), as long as they are
-#: there: displacements (2, n), lags covered, and lags at which they end, infinite if they do not.
+#: Follows paths from positions (2, n), by lags (n,), from time steps (n,), as long as ``Within``:
+#: displacements (2, n), lags covered, and lags at which they end, infinite if they do not.
 Integrate = Callable[[Floats32, Floats, Indices, Within | None], tuple[Floats32, Floats, Floats]]
 
 
 def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
-    """Time steps that each lag of a time-varying field spans, 0 for a part of one, (M,).
+    """Return the time steps that each lag of a time-varying field spans, 0 for a part of one, (M,).
 
     ``None`` when paths cannot be composed: the steps are not equal, or the lags are not multiples
     of the first one that is a whole number of them; or the field is sign-free, so that slices of
@@ -114,7 +124,7 @@ def compose(
     lags: Floats,
     unit: Floats,
     side: SideSlices,
-    known: int,
+    direct: int,
     landing: Indices,
     run: Map,
     integrate: Integrate,
@@ -123,21 +133,21 @@ def compose(
 ) -> None:
     """Fill the long slices of one direction in place.
 
-    The slices of the first ``known`` of all lags (M,) are filled, and ``reach`` is infinite for
+    The slices of the first ``direct`` of all lags (M,) are filled, and ``reach`` is infinite for
     paths that did not end within these. ``landing`` comes from :func:`landings`, ``run`` maps a
     function over blocks of paths, and ``integrate`` follows paths close to a pole, of which more
     are marked. Direction -1 is backward, 1 forward. Paths end, and stay there, with the first slice
     whose lag, times the unit, is ``longest`` or more, one number or one for each node.
     """
-    wanted = np.maximum(np.searchsorted(lags, longest / unit) + 1, known)
-    lookup = _SliceLookup(field, lags, unit, side, landing * int(direction), wanted)
+    counts = np.maximum(np.searchsorted(lags, longest / unit) + 1, direct)
+    lookup = _SliceLookup(field, lags, unit, side, landing * int(direction), counts)
     beside = None if field.surface.poles is None else integrate
     for m in range(1, len(lags) + 1):
-        if m > known:
+        if m > direct:
             _Doubling(lookup, m, beside).run(run)
         if m < len(lags):
-            lookup.judge(m, np.inf if m <= known else ROUGH if m == known + 1 else 1)
-    ends = np.where(wanted < len(lags), lookup.knots[np.minimum(wanted, len(lags))], np.inf)
+            lookup.judge(m, np.inf if m <= direct else ROUGH if m == direct + 1 else 1)
+    ends = np.where(counts < len(lags), lookup.knots[np.minimum(counts, len(lags))], np.inf)
     np.minimum(side.reach, ends, out=side.reach)
 
 
@@ -151,11 +161,11 @@ class _Piece(NamedTuple):
 
 
 class _SliceLookup:
-    """Slices that are known so far, looked up at any position.
+    """The slices that are filled so far, and look-ups in them at any position.
 
-    For each slice it is known where it is smooth enough, for its length, to be looked up between
-    nodes. Where a path comes close to a pole it never is, because its neighbours pass the pole on
-    the other side: a slice is used up to the lag at which they do.
+    It judges where each slice is smooth enough, for its length, to be interpolated between nodes.
+    Where a path comes close to a pole it never is, because its neighbours pass the pole on the
+    other side: a slice is used up to the lag at which they do.
     """
 
     def __init__(
@@ -165,16 +175,16 @@ class _SliceLookup:
         unit: Floats,
         side: SideSlices,
         landing: Indices,
-        wanted: Indices,
+        counts: Indices,
     ) -> None:
         #: Number of slices of each node whose paths are followed, (J, I).
-        self.wanted = wanted
+        self.counts = counts
         self.grid = NodeGrid.of(field)
         self.knots = np.concatenate([[0.0], lags]).astype(np.float32)
-        # What is stored at lag zero is the slope itself.
+        # At lag zero the slope itself is stored.
         self._inverse = np.concatenate([[1.0], 1 / lags]).astype(np.float32)
         self.landing = np.concatenate([[0], landing])
-        #: What units are counted in here, so that single precision holds them: a power of two.
+        #: Measure of the units here, a power of two, so that single precision holds them.
         self.scale = float(2.0 ** np.rint(np.log2(np.median(unit))))
         self.unit = (unit.ravel() / self.scale).astype(np.float32)
         #: Whether all nodes have one unit.
@@ -190,30 +200,30 @@ class _SliceLookup:
         self._pace = _corners(np.minimum, _greatest(np.abs(side.slices[0])))
         self._trust = np.zeros(self._pace.shape, np.float32)
         # The second differences at the corners of a cell take the nodes beside them.
-        self._known = _corners(np.minimum, scipy.ndimage.minimum_filter(wanted, 3)[None])
+        self._filled = _corners(np.minimum, scipy.ndimage.minimum_filter(counts, 3)[None])
         self._longest = self._capped = np.empty(0, np.float32)
         self._endless = False
         #: Which nodes have a path that has come close to a pole, (T, J, I).
         self.polar = side.polar
 
     def judge(self, m: int, share: float) -> None:
-        """Find the cells in which slice m errs by no more than so many times what is allowed.
+        """Find the cells in which the error of slice m is at most ``share`` times that allowed.
 
-        Where it does, the longest slice that does not is used.
+        In other cells shorter slices are used.
         """
-        error: Any = 0.0
+        error: AnyArray = np.zeros((), np.float32)
         for axis, means in zip((1, 2), self._bends[:, m], strict=True):
             bend = _bend(self._grids[m], axis)
             means[:, :-1, :-1] = _corners(np.add, bend.view(np.complex64)[..., 0]) / 4
             if np.isfinite(share):
                 error = error + (_corners(np.maximum, bend) - _corners(np.minimum, bend))
-        good = ~_corners(np.logical_or, self.polar) & (m <= self._known)
+        good = ~_corners(np.logical_or, self.polar) & (m <= self._filled)
         if np.isfinite(share):
             limit = share * (ERROR_SHARE * self.knots[m] * self._pace + ERROR_CELLS)
             good &= (ERROR_CHANGE * _greatest(error) <= limit) & (self._trust == self.knots[m - 1])
         self._trust[good] = self.knots[m]
         self._longest = np.pad(self._trust, ((0, 0), (0, 1), (0, 1))).ravel()
-        # Endless ones count as so long that a path ends only between nodes whose paths all end.
+        # Endless paths count as so long that a path ends only between nodes whose paths all end.
         self._capped = np.minimum(self.reach, 1e4 * self.knots[m])
         self._endless = bool(np.isinf(self.reach).all())
 
@@ -222,8 +232,8 @@ class _SliceLookup:
     ) -> _Piece:
         """Continue paths from positions (2, n), in these cells, by up to ``left`` of lag.
 
-        They continue by a whole slice, or by a part of the first: between slices of long lags
-        nothing can be interpolated that would be as good.
+        They continue by a whole slice, or by a part of the first: interpolation between slices of
+        long lags would be less accurate.
         """
         base = self._base(step)
         unit = self.unit[:1] if self.even else self.grid.blend(self.unit, corners)
@@ -246,7 +256,7 @@ class _SliceLookup:
         return _Piece(moved, covered, ends, self.landing[m])
 
     def stuck(self, position: Floats) -> Bools:
-        """Whether positions (2, n) are so close to a pole that nothing can be looked up, (n,)."""
+        """Return whether positions (2, n) are too close to a pole for interpolation, (n,)."""
         return self.is_stuck(self.grid.corners(position))
 
     def is_stuck(self, corners: Corners, step: Indices | int = 0) -> Bools:
@@ -254,19 +264,19 @@ class _SliceLookup:
         return np.asarray(self._longest[corners.at + self._base(step)] == 0)
 
     def displaced(self, position: Floats32, lag: Floats32, step: Indices) -> Complexes:
-        """Displacements (n,) of paths from positions (2, n) at any lags up to the last slice."""
+        """Return displacements (n,) of paths from positions (2, n) at lags up to the last slice."""
         corners = self.grid.corners(position)
         base = self._base(step)
-        units: Any = lag / (self.unit[:1] if self.even else self.grid.blend(self.unit, corners))
-        m = self._below(units * (1 - 2 * LAG_ROUNDING))
-        late = (units - self.knots[m]) / (self.knots[m + 1] - self.knots[m])
+        span: AnyArray = lag / (self.unit[:1] if self.even else self.grid.blend(self.unit, corners))
+        m = self._below(span * (1 - 2 * LAG_ROUNDING))
+        late = (span - self.knots[m]) / (self.knots[m + 1] - self.knots[m])
         before, after = (self._blend(corners, base, k) * self._inverse[k] for k in (m, m + 1))
-        moved = np.asarray((before + late * (after - before)) * units)
+        moved = np.asarray((before + late * (after - before)) * span)
         self._mirror(moved, position)
         return moved
 
     def clipped(self, step: Indices) -> Indices:
-        """Return the first or the last step for those beyond, where the flow stays as it is."""
+        """Return steps, those beyond the first or last one clipped: there the flow is constant."""
         return np.clip(step, 0, len(self._trust) - 1)
 
     def _base(self, step: Indices | int) -> Indices | int:
@@ -282,13 +292,13 @@ class _SliceLookup:
     def _below(self, lag: Floats32) -> Indices:
         """Return the number of the longest slice up to each lag.
 
-        To compare with all takes a quarter of the time of a search.
+        Comparing with all takes a quarter of the time of a search.
         """
         longer = lag >= self.knots[1:, None] * (1 - LAG_ROUNDING)
         return np.asarray(longer.view(np.int8).sum(axis=0, dtype=np.int8), np.intp)
 
     def _blend(self, corners: Corners, base: Indices | int, m: Indices) -> Complexes:
-        """Displacements (n,) by the slices m, (n,) or (1,)."""
+        """Return displacements (n,) by the slices m, (n,) or (1,)."""
         corners = Corners(corners.at + (base + m * self.slices.shape[1]), *corners[1:])
         result = self.grid.blend(self.slices.ravel(), corners)
         for bend, inside in zip(self._bends, (corners.t, corners.s), strict=True):
@@ -299,7 +309,7 @@ class _SliceLookup:
 
 
 class _Doubling:
-    """Paths on their way from one slice to the next, (T * J * I,) of them."""
+    """Continuation of paths, (T * J * I,) of them, from one slice to the next."""
 
     def __init__(self, lookup: _SliceLookup, m: int, integrate: Integrate | None) -> None:
         count, nodes = len(lookup.reach), lookup.grid.size
@@ -307,7 +317,7 @@ class _Doubling:
         self._lookup, self._lag, self._before = lookup, lag, before
         self._moved = lookup.slices[m]
         self._moved[:] = lookup.slices[m - 1]
-        going = np.tile(lookup.wanted.ravel() >= m, count // nodes)
+        going = np.tile(lookup.counts.ravel() >= m, count // nodes)
         #: Paths that are followed, ``None`` for all; the others stay where they are.
         self._which = None if going.all() else np.flatnonzero(going)
         self._whole = lag * lookup.unit
@@ -320,7 +330,7 @@ class _Doubling:
     def run(self, run: Map) -> None:
         """Follow all paths to their end, piece by piece."""
         count = len(self._left)
-        blocks: list[Some] = [slice(k, min(k + BLOCK, count)) for k in range(0, count, BLOCK)]
+        blocks: list[Selection] = [slice(k, min(k + BLOCK, count)) for k in range(0, count, BLOCK)]
         if self._which is not None:
             blocks = _parts(self._which)
         for number in range(2 * MOST_PIECES if blocks else 0):
@@ -328,7 +338,7 @@ class _Doubling:
             longest = self._before if number >= MOST_PIECES else None
             more = np.concatenate(list(run(partial(self.follow, longest=longest), blocks)))
             if not len(more) and self._stuck:
-                # All at once: they are few, and each call has its price.
+                # All at once: they are few, and each call has an overhead.
                 stuck, self._stuck = np.concatenate(self._stuck), []
                 work = partial(self._pass, final=number >= MOST_PIECES)
                 more = np.concatenate(list(run(work, _parts(stuck))))
@@ -338,51 +348,51 @@ class _Doubling:
         if self._suspects:
             self._find_ends()
 
-    def follow(self, some: Some, longest: np.float32 | None) -> Indices:
+    def follow(self, selection: Selection, longest: np.float32 | None) -> Indices:
         """Continue some paths by a piece, and return those that must go further."""
         lookup = self._lookup
-        position = self._where(some)
+        position = self._positions(selection)
         corners = lookup.grid.corners(position)
         if self._integrate is not None:
-            stuck = lookup.is_stuck(corners, self._at(some))
+            stuck = lookup.is_stuck(corners, self._at(selection))
             if stuck.any():
-                self._stuck.append(_numbers(some, np.flatnonzero(stuck)))
+                self._stuck.append(_numbers(selection, np.flatnonzero(stuck)))
                 free = np.flatnonzero(~stuck)
-                some, position = _numbers(some, free), position[:, free]
+                selection, position = _numbers(selection, free), position[:, free]
                 corners = Corners(*(part[free] for part in corners))
-        left = self._left[some]
+        left = self._left[selection]
         if not len(left):
             return np.empty(0, np.intp)
-        piece = lookup.continued(position, corners, left, self._at(some), longest)
-        whole = self._whole[:1] if lookup.even else self._whole[self._node(some)]
-        self._suspect(some, position, piece)
-        self._moved[some] += piece.moved
+        piece = lookup.continued(position, corners, left, self._at(selection), longest)
+        whole = self._whole[:1] if lookup.even else self._whole[self._node(selection)]
+        self._suspect(selection, position, piece)
+        self._moved[selection] += piece.moved
         left -= piece.covered
-        self._left[some] = left
+        self._left[selection] = left
         if lookup.unsteady:
-            self._step[some] = lookup.clipped(self._step[some] + piece.steps)
-        return _numbers(some, np.flatnonzero(left > LAG_ROUNDING * whole))
+            self._step[selection] = lookup.clipped(self._step[selection] + piece.steps)
+        return _numbers(selection, np.flatnonzero(left > LAG_ROUNDING * whole))
 
-    def _node(self, some: Some) -> Some:
-        """Nodes at which some paths begin."""
+    def _node(self, selection: Selection) -> Selection:
+        """Return nodes at which some paths begin."""
         if not self._lookup.unsteady:
-            return some
-        return np.asarray(np.arange(len(self._left))[some] % self._lookup.grid.size)
+            return selection
+        return np.asarray(np.arange(len(self._left))[selection] % self._lookup.grid.size)
 
-    def _at(self, some: Some) -> Indices | int:
-        """Time steps at which some paths are."""
-        return self._step[some] if self._lookup.unsteady else 0
+    def _at(self, selection: Selection) -> Indices | int:
+        """Return the time steps at which some paths are."""
+        return self._step[selection] if self._lookup.unsteady else 0
 
-    def _where(self, some: Some) -> Floats32:
-        """Where some paths have come, (2, n)."""
-        return _rows(self._lookup.nodes[self._node(some)] + self._moved[some])
+    def _positions(self, selection: Selection) -> Floats32:
+        """Return current positions of some paths, (2, n)."""
+        return _rows(self._lookup.nodes[self._node(selection)] + self._moved[selection])
 
     def _pass(self, which: Indices, *, final: bool) -> Indices:
-        """Integrate paths by a pole, or to their end, and return those that must go further."""
+        """Integrate paths past a pole, or to their end, and return those that must go further."""
         lookup, left, step = self._lookup, self._left[which], self._step[which]
         if self._integrate is None:
             return which
-        position = self._where(which)
+        position = self._positions(which)
         within = None if lookup.unsteady or final else lookup.stuck
         scale = lookup.scale
         moved, covered, ends = self._integrate(position, left.astype(float) * scale, step, within)
@@ -395,7 +405,7 @@ class _Doubling:
         lookup.reach[which[new]] = self._lag * (1 - (left - ends)[new] / whole[new])
         return _numbers(which, np.flatnonzero(self._left[which] > LAG_ROUNDING * whole))
 
-    def _suspect(self, some: Some, position: Floats32, piece: _Piece) -> None:
+    def _suspect(self, selection: Selection, position: Floats32, piece: _Piece) -> None:
         """List the paths that seem to end within their piece."""
         lookup = self._lookup
         if piece.ends is None and lookup.grid.endless:
@@ -407,8 +417,8 @@ class _Doubling:
             ending |= rest < piece.covered
         if ending.any():
             ended = np.flatnonzero(ending)
-            ended = ended[np.isinf(lookup.reach[_numbers(some, ended)])]
-            which = _numbers(some, ended)
+            ended = ended[np.isinf(lookup.reach[_numbers(selection, ended)])]
+            which = _numbers(selection, ended)
             rest = np.broadcast_to(rest, ending.shape)[ended]
             self._suspects.append(
                 (
@@ -426,12 +436,12 @@ class _Doubling:
         which, start, length, rest, left, step = (
             np.concatenate(part, axis=-1) for part in zip(*self._suspects, strict=True)
         )
-        # _Pieces come in order, and only the first in which a path ends counts.
-        which, once = np.unique(which, return_index=True)
-        start, length, rest, left, step = (p[..., once] for p in (start, length, rest, left, step))
+        # Pieces are in order, and only the first in which a path ends counts.
+        which, first = np.unique(which, return_index=True)
+        start, length, rest, left, step = (p[..., first] for p in (start, length, rest, left, step))
         shares = np.linspace(0, 1, SEARCH_PARTS + 1, dtype=np.float32)[1:]
-        many = np.outer(shares, length).ravel()
-        outside = self._outside(np.tile(start, SEARCH_PARTS), many, np.tile(step, SEARCH_PARTS))
+        lags = np.outer(shares, length).ravel()
+        outside = self._outside(np.tile(start, SEARCH_PARTS), lags, np.tile(step, SEARCH_PARTS))
         outside = outside.reshape(SEARCH_PARTS, -1)
         leaves = outside.any(axis=0)
         high = np.where(leaves, shares[outside.argmax(axis=0)], 0)
@@ -449,24 +459,24 @@ class _Doubling:
         return ~self._lookup.grid.alive(start + _rows(moved), BORDER_CELLS)
 
 
-def _numbers(some: Some, which: Indices) -> Indices:
-    """Numbers of paths from their positions in a selection."""
-    if isinstance(some, slice):
-        return np.asarray(which + some.start)
-    return some[which]
+def _numbers(selection: Selection, which: Indices) -> Indices:
+    """Return numbers of paths from their positions in a selection."""
+    if isinstance(selection, slice):
+        return np.asarray(which + selection.start)
+    return selection[which]
 
 
-def _parts(which: Indices) -> list[Some]:
+def _parts(which: Indices) -> list[Selection]:
     return [which[k : k + BLOCK] for k in range(0, len(which), BLOCK)]
 
 
 def _rows(numbers: Complexes) -> Floats32:
-    """Complex numbers (n,) as rows (2, n)."""
+    """Return complex numbers (n,) as rows (2, n)."""
     return np.stack([numbers.real, numbers.imag])
 
 
 def _bend(grid: Floats32, axis: int) -> Floats32:
-    """Second differences along an axis of (T, J, I, 2), as beside it at the border."""
+    """Return second differences of (T, J, I, 2) along an axis, repeated at the borders."""
     if grid.shape[axis] < 3:
         return np.zeros_like(grid)
     width = [(int(a == axis),) * 2 for a in range(grid.ndim)]
@@ -479,6 +489,6 @@ def _greatest(parts: AnyArray) -> AnyArray:
 
 
 def _corners(combine: np.ufunc, nodal: AnyArray) -> AnyArray:
-    """Combine what the four nodes of each cell have, (T, J, I, ...) to (T, J - 1, I - 1, ...)."""
+    """Combine values at the four nodes of each cell, (T, J, I, ...) to (T, J - 1, I - 1, ...)."""
     sides = combine(nodal[:, :-1], nodal[:, 1:])
     return np.asarray(combine(sides[:, :, :-1], sides[:, :, 1:]))

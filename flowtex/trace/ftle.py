@@ -1,4 +1,4 @@
-"""The finite-time Lyapunov exponent, by the trace slices: they are a flow map.
+"""The finite-time Lyapunov exponent, from the trace slices, which are a flow map.
 
 Shadden, Lekien and Marsden 2005, Definition and properties of Lagrangian coherent structures from
 finite-time Lyapunov exponents in two-dimensional aperiodic flows.
@@ -43,17 +43,16 @@ FOLLOWED["ftle"] = lyapunov_exponent
 
 
 def _moved(field: FlowField, step: int, horizon: float) -> Floats:
-    """Return how far the particles at the nodes move, (J, I, 3), on the true surface."""
+    """Return displacements of the particles at the nodes, (J, I, 3), on the true surface."""
     times = field.times - field.times[step]
-    span = (min(horizon, 0.0), max(horizon, 0.0))
+    span, forward = (min(horizon, 0.0), max(horizon, 0.0)), horizon > 0
     first = max(int(np.searchsorted(times, span[0], side="right")) - 1, 0)
     last = min(int(np.searchsorted(times, span[1])), len(times) - 1)
     part = field.at_steps(range(first, last + 1))
     slices = trace(
         part, lags=[1.0], unit=abs(horizon), parameter="time", steps=[step - first],
-        two_sided=horizon > 0, compose=False,
+        two_sided=forward, compose=False,
     )  # fmt: skip
-    forward = horizon > 0
     moved, reach = (
         (slices.forward, slices.forward_reach) if forward else (slices.displacement, slices.reach)
     )

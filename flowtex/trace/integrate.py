@@ -32,12 +32,12 @@ Numbers = NDArray[np.int8]
 STEP_SHRINK, STEP_GROWTH, STEP_SAFETY = 0.2, 4.0, 0.9
 #: Bisections that find where inside a step a path ends.
 BISECTIONS = 20
-#: Rounds of steps after which the paths that still continue are ended where they are: so many for
-#: each line of nodes, as a path in few cells goes round and round, and between these ends.
+#: Rounds of steps after which the remaining paths are ended: so many for each line of nodes, as a
+#: path in few cells goes round and round, within these limits.
 STEPS_PER_LINE, LEAST_STEPS, MOST_STEPS = 50, 1_000, 20_000
 #: Share of a step by which rounding may miss a lag.
 LAG_ROUNDING = 1e-9
-#: Displacement in cells that single precision holds, with what is computed of it.
+#: Displacement in cells that single precision holds, also in computations.
 MOST_CELLS = 1e30
 
 
@@ -47,9 +47,9 @@ class Paths:
 
     positions: Floats  #: Positions in index space, (M, N, 2) as (i, j).
     reach: Floats  #: Lag at which each path ended, (N,), infinite where it continues.
-    polar: Bools  #: Which paths came right near a pole, (N,).
-    #: Which paths came where they are not to be followed, (N,): ``reach`` is the lag at which they
-    #: did, and all their later positions are the one where they did.
+    polar: Bools  #: Which paths came close to a pole, (N,).
+    #: Which paths left the region in which they are followed, (N,): ``reach`` is the lag at which
+    #: they did, and all later positions are the one where they did.
     interrupted: Bools
 
 
@@ -67,8 +67,8 @@ def integrate(
 
     Lags are positive and increasing, in multiples of each particle's ``unit`` (N,). Direction -1 is
     backward, 1 forward; the tolerance is the error allowed in one step, in cells. ``within``
-    returns for positions (2, N) in index space whether paths are followed there; a path that comes
-    elsewhere is interrupted.
+    returns whether paths are followed at positions (2, N) in index space; a path that leaves them
+    is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
     for _ in range(_most_steps(sampler)):
@@ -92,9 +92,9 @@ class _Columns:
 
     def pick(self, mask: Bools | Indices) -> Self:
         # Numbers are several times as fast as a mask where there is more than one row.
-        some = np.flatnonzero(mask) if mask.dtype == bool else mask
+        at = np.flatnonzero(mask) if mask.dtype == bool else mask
         parts = vars(self).values()
-        return type(self)(*(None if part is None else part.take(some, axis=-1) for part in parts))
+        return type(self)(*(None if part is None else part.take(at, axis=-1) for part in parts))
 
 
 @dataclass
@@ -109,7 +109,7 @@ class _Particles(_Columns):
     step: Floats
     rate: Floats
     next: Indices
-    chart: Numbers | None  #: What ``y`` is given on where there are poles.
+    chart: Numbers | None  #: Charts of ``y``, on a surface with poles.
     index: Floats | None  #: The same in index space.
 
 
@@ -127,14 +127,14 @@ class IntegrationStep(_Columns):
     index: Floats | None = None
 
     def at(self, s: Floats) -> Floats:
-        """Position at a fraction of each step, by the cubic through both ends and slopes."""
+        """Return positions at fractions of the steps, by the cubic through both ends and slopes."""
         r = 1 - s
         start = r * r * (self.y0 + s * (2 * self.y0 + self.h * self.k0))
         return np.asarray(start + s * s * (self.y1 + r * (2 * self.y1 - self.h * self.k1)))
 
 
 class _Run:
-    """Everything about one call of :func:`integrate`."""
+    """State of one call of :func:`integrate`."""
 
     def __init__(
         self,
@@ -151,7 +151,7 @@ class _Run:
         self.charts, self.within = sampler.charts, within
         self.span = sampler.span(direction)
         self.lags = lags
-        #: The lags and one that is never reached, for particles that have them all.
+        #: The lags and one that is never reached, for particles that have passed all.
         self.next_lags = np.append(lags, np.inf)
         self.out = np.repeat(start[None], len(lags), axis=0)
         self.reach = np.full(count, np.inf)
@@ -176,7 +176,7 @@ class _Run:
         )
 
     def end_resting(self) -> None:
-        """End the paths that do not move any more."""
+        """End the paths that are at rest."""
         resting = _speed(self.state.rate) < self.state.rest
         if resting.any():
             ended = self.state.pick(resting)
@@ -190,7 +190,7 @@ class _Run:
         """Try one step of every particle, and accept it where its error is small enough."""
         state = self.state
         rest = self.lags[-1] * state.unit - state.lag
-        # A path must not jump over a blanked cell unseen.
+        # A step must not pass a blanked cell unnoticed.
         longest = self.sampler.room(state.y) / np.maximum(_speed(state.rate), 1e-300)
         h = np.minimum(np.minimum(state.step, longest), rest)
         if np.isfinite(self.sampler.longest):
@@ -212,7 +212,7 @@ class _Run:
             self.state = self.state.pick(~finished)
 
     def _try(self, h: Floats) -> tuple[IntegrationStep, Floats]:
-        """One Bogacki-Shampine step, and its estimated error in cells, (N,)."""
+        """Return one Bogacki-Shampine step, and its estimated error in cells, (N,)."""
         state = self.state
         y, k1, lag = state.y, state.rate, state.lag
         k2 = self._rate(y + (0.5 * h) * k1, lag + 0.5 * h, k1)
@@ -226,7 +226,7 @@ class _Run:
         return self.sampler.rate(position, lag, self.direction, self.state.chart, ahead)
 
     def _index(self, position: Floats, along: IntegrationStep | _Particles) -> Floats:
-        """Positions in index space of positions on the charts of a step or state."""
+        """Return positions in index space of positions on the charts of a step or state."""
         if self.charts is None or along.chart is None:
             return position
         return self.charts.index(position, along.chart, along.index)
@@ -253,7 +253,7 @@ class _Run:
             self._change_chart(state, before)
 
     def _interrupt(self, state: _Particles, index: Floats, outside: Bools) -> None:
-        """Stop the paths that have come where they are not to be followed."""
+        """Stop the paths that have left the region in which they are followed."""
         if self.within is None:
             return
         now = ~(self.within(index) | outside) & (state.next < len(self.lags))
@@ -267,7 +267,7 @@ class _Run:
         state.next[now] = len(self.lags)
 
     def _change_chart(self, state: _Particles, before: Floats | None) -> None:
-        """Go on in the plane of a pole that has come close, or in index space again."""
+        """Continue in the plane of a pole that is close, or in index space again."""
         if self.charts is None or state.chart is None or state.index is None or before is None:
             return
         self.polar[state.which[self.charts.close(state.index)]] = True
@@ -275,10 +275,10 @@ class _Run:
         new = np.flatnonzero(chart != state.chart)
         if len(new):
             state.chart = chart
-            there = chart[new]
-            state.y[:, new] = y = self.charts.enter(state.index[:, new], there)
-            ahead = y - self.charts.enter(before[:, new], there)
-            state.rate[:, new] = self.sampler.rate(y, state.lag[new], self.direction, there, ahead)
+            charts = chart[new]
+            state.y[:, new] = y = self.charts.enter(state.index[:, new], charts)
+            ahead = y - self.charts.enter(before[:, new], charts)
+            state.rate[:, new] = self.sampler.rate(y, state.lag[new], self.direction, charts, ahead)
 
     def _record(self, state: _Particles, step: IntegrationStep, share: Floats) -> None:
         """Write the positions at the lags that the first ``share`` of the steps has passed."""
@@ -292,13 +292,13 @@ class _Run:
                 state.next += 1
                 continue
             d = np.flatnonzero(due)
-            some = step if len(d) == len(s) else step.pick(d)
-            where = self._index(some.at(s[d]), some)
-            self.out[state.next[d], :, state.which[d]] = where.T
+            due_step = step if len(d) == len(s) else step.pick(d)
+            positions = self._index(due_step.at(s[d]), due_step)
+            self.out[state.next[d], :, state.which[d]] = positions.T
             state.next[d] += 1
 
     def _border(self, step: IntegrationStep) -> Floats:
-        """Share of a step that ends outside which is still inside, by bisection."""
+        """Return the share of a step to the outside that is still inside, by bisection."""
         low, high = np.zeros(len(step.h)), np.ones(len(step.h))
         for _ in range(BISECTIONS):
             middle = (low + high) / 2
@@ -307,7 +307,7 @@ class _Run:
         return low
 
     def _go_straight(self, state: _Particles, rate: Floats) -> None:
-        """End paths where they are, and fill the lags that are left straight ahead."""
+        """End paths at their positions, and fill the remaining lags straight ahead."""
         self.reach[state.which] = state.lag
         m, n = np.nonzero(np.arange(len(self.lags))[:, None] >= state.next)
         if len(n):
@@ -317,13 +317,13 @@ class _Run:
 
 
 def _speed(rate: Floats) -> Floats:
-    """Greatest component of a rate, (N,)."""
+    """Return the greatest component of a rate, (N,)."""
     size = np.abs(rate)
     return np.asarray(np.maximum(size[0], size[1]))
 
 
 def _join(one: _Particles, two: _Particles) -> _Particles:
-    """Put some particles behind others."""
+    """Concatenate particles."""
     pairs = zip(vars(one).values(), vars(two).values(), strict=True)
     joined: Iterator[Any] = (
         None if a is None else np.concatenate([a, b], axis=-1) for a, b in pairs

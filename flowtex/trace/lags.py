@@ -14,11 +14,11 @@ from flowtex.field import FlowField
 
 #: First lag in cells, last lag as a share of the surface's extent, greatest number of lags.
 FIRST_CELLS, LAST_EXTENTS, MOST_CHOSEN_LAGS = 0.25, 0.25, 24
-#: Parts of an octave, in one of which a last lag lies that is chosen.
+#: Parts of an octave to which a chosen last lag is rounded.
 LAST_PARTS = 8
-#: Percentile of the sizes of cells that small ones have.
+#: Percentile of the sizes of cells that counts as that of small ones.
 SMALL_CELLS = 5
-#: Sizes of cells, in one unit for all, from which and up to which they share it.
+#: Least and greatest size of cells, in multiples of one unit, with which they share it.
 LEAST_CELL, MOST_CELL = 0.25, 16.0
 #: Quotient of one lag and the one before.
 RATIO = 2.0
@@ -27,7 +27,7 @@ LEAST_LAGS = 2
 
 
 def lag_unit(field: FlowField, parameter: str) -> Floats:
-    """One unit of lag at each node, (J, I).
+    """Return one unit of lag at each node, (J, I).
 
     By arc length it is the local cell size, so cells of very different sizes share the same
     lags; by time it is one unit of the field's time. On triangles it is the size of small cells
@@ -43,7 +43,7 @@ def lag_unit(field: FlowField, parameter: str) -> Floats:
 
 
 def longest_path(field: FlowField) -> float:
-    """Length of the paths where none is chosen, in the mesh's units.
+    """Return the default length of the paths, in the mesh's units.
 
     A globe is as wide as a side of its bounding box, and no view shows the diagonal.
     """
@@ -55,9 +55,9 @@ def longest_path(field: FlowField) -> float:
 def choose_lags(
     field: FlowField, parameter: str, longest: float | None = None, first_cells: float = FIRST_CELLS
 ) -> Floats:
-    """Lags from a quarter of a cell to a quarter of the surface, (M,), in lag units.
+    """Return lags from a quarter of a cell to a quarter of the surface, (M,), in lag units.
 
-    The first may be given instead, in cells, and the greatest length, in the mesh's units.
+    ``first_cells`` sets the first one in cells, ``longest`` the last in the mesh's units.
     """
     if longest is None:
         longest = longest_path(field)
@@ -76,7 +76,7 @@ def choose_lags(
         typical = typical_speed(field) if on_earth else np.sqrt(np.mean(speed[moving] ** 2))
         last = longest / float(typical)
         if not field.steady:
-            # Lags that reach other time steps are what long paths can be composed of.
+            # Long paths can be composed of lags that reach other time steps.
             step = float(np.mean(np.diff(field.times)))
             first = step * RATIO ** np.rint(np.log(first / step) / np.log(RATIO))
     count = max(int(np.ceil(np.log(max(last / first, RATIO)) / np.log(RATIO))) + 1, least)
@@ -89,15 +89,15 @@ def typical_speed(field: FlowField) -> float:
     On a map it is that of the speed on the Earth: towards the poles a flat map stretches velocities
     without limit.
     """
-    some = field.typical
+    typical = field.typical
     on_earth = field.projection is not None and "speed" in field.scalars
-    speed = np.asarray(some.scalars["speed"] if on_earth else some.speed)[:, field.valid]
-    known = speed[np.isfinite(speed)]
-    return float(np.sqrt(np.square(known).sum() / max(known.size, 1))) or 1.0
+    speed = np.asarray(typical.scalars["speed"] if on_earth else typical.speed)[:, field.valid]
+    finite = speed[np.isfinite(speed)]
+    return float(np.sqrt(np.square(finite).sum() / max(finite.size, 1))) or 1.0
 
 
 def small_cell(field: FlowField) -> float:
-    """Size of the small cells of a field."""
+    """Return the size of the small cells of a field."""
     return float(np.percentile(field.surface.cell_size[field.valid], SMALL_CELLS))
 
 
@@ -108,32 +108,32 @@ def drawn_lags(
     cell: float | None = None,
     first_cells: float = FIRST_CELLS,
 ) -> tuple[Floats, Floats]:
-    """Lags to draw with, (M,), and their unit at each node, (J, I), as :func:`choose_lags` takes.
+    """Return lags to draw with, (M,), and their unit at each node, (J, I).
 
     Cells of about the same size have one unit, so that a path takes the same slice everywhere, and
     is composed at a single look-up. In a part of a surface it is that surface's ``cell`` times a
-    power of two: all parts have the same lags. The last is the greatest length, where it is given.
+    power of two: all parts have the same lags. The last is ``longest``, if set.
     """
     unit = lag_unit(field, parameter)
     if parameter == "time":
         lags = choose_lags(field, parameter, longest, first_cells)
-        # Half precision holds lags near one, whatever the field's unit of time is.
+        # Half precision holds lags near one, in any unit of time.
         first = 2.0 ** np.rint(np.log2(lags[0]))
         return lags / first, unit * first
-    known, even = unit[field.valid], small_cell(field)
+    sizes, even = unit[field.valid], small_cell(field)
     if cell is not None:
         even = cell * 2.0 ** np.rint(np.log2(even / cell))
-    alike = LEAST_CELL * even <= known.min() and known.max() <= MOST_CELL * even
+    alike = LEAST_CELL * even <= sizes.min() and sizes.max() <= MOST_CELL * even
     if not alike or field.triangles is not None:
         return choose_lags(field, parameter, longest, first_cells), unit
     unit = np.full(field.shape, even)
     if longest is None:
         return choose_lags(field, parameter, first_cells=first_cells), unit
-    # The last is a sum of few that double, as paths are composed of whole slices.
+    # The last is a sum of few lags that double, as paths are composed of whole slices.
     part = 2.0 ** np.floor(np.log2(longest / even)) / LAST_PARTS
     last = np.ceil(longest / even / part) * part
     doubled = first_cells * RATIO ** np.arange(MOST_CHOSEN_LAGS - 1)
-    # A last lag that is hardly longer than the one before takes its place.
+    # A last lag that is hardly longer than the one before replaces it.
     lags = np.append(doubled[doubled < last / np.sqrt(RATIO)], last)
     lacking = LEAST_LAGS + bool(field.uncertainty) - len(lags)
     return np.append(lags, last * RATIO ** np.arange(1.0, lacking + 1)), unit

@@ -1,8 +1,8 @@
-"""Which lines the texture of a field that varies in time follows.
+"""The kind of lines along which a time-varying field is drawn.
 
-Pathlines are where particles went, and go; streamlines are those of the flow at one moment, as
-if it stood still. Both are the same in a steady field. Where the flow turns while a particle goes
-the length of a streak, pathlines through points side by side cross, and what is drawn is speckle.
+Pathlines are the paths of particles; streamlines are the lines of the flow at one moment. Both are
+the same in a steady field. Where the flow turns while a particle goes the length of a streak,
+pathlines through neighbouring points cross, and the picture is speckle.
 """
 
 from __future__ import annotations
@@ -13,31 +13,31 @@ from flowtex._util.array_types import Indices
 from flowtex.field import FlowField
 from flowtex.field.steps import LazySteps
 
-#: Length of a streak as a share of the surface, and of the velocity that may change meanwhile.
+#: Length of a streak as a share of the surface, and most change of velocity meanwhile, as a share.
 STREAK_EXTENTS, MOST_CHANGE = 0.05, 0.5
-#: Share of the nodes where it may change by more, along pathlines.
+#: Most nodes where it changes by more, as a share, for pathlines.
 MOST_CHANGING = 0.05
-#: Nodes along each axis, and pairs of steps, by which a field is judged.
+#: Most nodes along each axis, and pairs of steps, by which a field is judged.
 MOST_JUDGED = 100
 
 
 def chosen_lines(field: FlowField, lines: str = "auto") -> str:
-    """Return ``"pathlines"`` or ``"streamlines"``, which ``"auto"`` leaves to the data."""
+    """Return ``"pathlines"`` or ``"streamlines"``; with ``"auto"`` the data decide."""
     if lines != "auto":
         return lines
     return "streamlines" if changing_share(field) > MOST_CHANGING else "pathlines"
 
 
 def changing_share(field: FlowField) -> float:
-    """Share of nodes and times where the flow changes by half within a streak, 0 to 1.
+    """Return the share of nodes and times where the flow changes by half within a streak, 0 to 1.
 
-    That is within the time in which a particle goes a twentieth of the surface. Of a large field
-    some of the lines of nodes, and of the steps, are judged.
+    A streak lasts until a particle has moved by a twentieth of the surface. Of a large field some
+    of the lines of nodes, and of the steps, are judged.
     """
     if field.steady:
         return 0.0
     j, i = judged_lines(field.shape)
-    t = _some(len(field.times) - 1, MOST_JUDGED)
+    t = _sample(len(field.times) - 1, MOST_JUDGED)
     if isinstance(field.velocity, LazySteps):
         t = t[:1]
     valid = field.valid[np.ix_(j, i)]
@@ -55,9 +55,9 @@ def changing_share(field: FlowField) -> float:
 def judged_lines(shape: tuple[int, int]) -> tuple[Indices, Indices]:
     """Return the rows and columns of a field with nodes (J, I) by which it is judged."""
     rows, columns = shape
-    # A row of nodes is all there is of triangles.
-    return _some(rows, MOST_JUDGED), _some(columns, MOST_JUDGED if rows > 1 else MOST_JUDGED**2)
+    # Nodes of triangles are one row.
+    return _sample(rows, MOST_JUDGED), _sample(columns, MOST_JUDGED if rows > 1 else MOST_JUDGED**2)
 
 
-def _some(count: int, most: int) -> Indices:
+def _sample(count: int, most: int) -> Indices:
     return np.arange(0, count, -(-count // most))

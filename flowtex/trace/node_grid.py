@@ -31,7 +31,7 @@ class Corners(NamedTuple):
 
 
 class NodeGrid:
-    """The nodes of a surface in index space, (J, I), going on beyond its poles where there are any.
+    """The nodes of a surface in index space, (J, I), continued beyond its poles.
 
     ``cells`` (J - 1, I - 1) are those that are not blanked.
     """
@@ -69,7 +69,7 @@ class NodeGrid:
         return self._open is None and not borders
 
     def corners(self, position: AnyArray) -> Corners:
-        """Cells of positions (2, N); those beyond a border are moved onto it."""
+        """Return the cells of positions (2, N); those beyond a border are moved onto it."""
         if self.poles is not None:
             position = self.poles.fold(position)
         i, s = _cell(position[0], self.columns - 1, closed=self.periodic[1])
@@ -82,7 +82,7 @@ class NodeGrid:
     def room(self) -> Bytes:
         """Cells that a particle may move at once from each cell, (J * I,), 0 if it is blanked.
 
-        Further it might jump over a blanked cell unseen.
+        In longer steps it might pass a blanked cell unnoticed.
         """
         shape = (self.rows, self.columns)
         if self._open is None:
@@ -99,18 +99,18 @@ class NodeGrid:
         return np.pad(room, ((0, 1), (0, 1))).astype(np.uint8).ravel()
 
     def room_at(self, position: AnyArray) -> AnyArray | int:
-        """Cells that particles at positions (2, N) may move at once, the same for all or (N,)."""
+        """Return the cells that particles at positions (2, N) may move at once, for all or (N,)."""
         if self._open is None:
             return MOST_ROOM_CELLS
         return np.maximum(self.room[self.corners(position).at], LEAST_ROOM_CELLS)
 
     def blend(self, data: AnyArray, corners: Corners, base: Indices | int = 0) -> AnyArray:
-        """Interpolate nodal data, several sets behind each other, (sets * J * I,).
+        """Interpolate nodal data of consecutive sets, (sets * J * I,).
 
         The set of each particle begins at index ``base``.
         """
         at, first = (corners.at + base, 0) if np.ndim(base) else (corners.at, int(base))
-        # Complex numbers are several times as fast by others of their kind.
+        # Products of complex numbers with complex ones are several times as fast.
         s, t = (share.astype(data.dtype, copy=False) for share in (corners.s, corners.t))
         low = _between(data[first:], at, s)
         high = _between(data[first + self.columns :], at, s)
@@ -120,7 +120,7 @@ class NodeGrid:
         return high
 
     def alive(self, position: AnyArray, edge: float = BORDER_ROUNDING_CELLS) -> Bools:
-        """Whether positions (2, N) are inside the domain, in a cell that is not blanked.
+        """Return whether positions (2, N) are inside the domain, in a cell that is not blanked.
 
         ``edge`` cells beyond a border still count as inside.
         """

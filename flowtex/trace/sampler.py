@@ -31,13 +31,13 @@ STILL_CELLS = 1e-5
 
 
 class Sampler(ABC):
-    """What the integrator asks of a field.
+    """The field as the integrator samples it.
 
     Positions and rates are (2, N): as (i, j), or on the charts (N,) that are given with them. The
-    data are components along i and j, and anything else that is interpolated, (T, J, I, C).
+    data are components along i and j, and other values to interpolate, (T, J, I, C).
     """
 
-    #: Longest step in units of lag, so that no change in time is jumped over.
+    #: Longest step in units of lag, so that no change in time is missed.
     longest = np.inf
     #: Times of the data, and the one from which lags count.
     times = np.zeros(1)
@@ -73,19 +73,19 @@ class Sampler(ABC):
         chart: NDArray[np.int8] | None = None,
         ahead: Floats | None = None,
     ) -> Floats:
-        """Rate of change of positions by lag for particles that have come ``lag`` (N,).
+        """Return rates of change of positions by lag for particles at ``lag`` (N,).
 
-        In a sign-free field, that of the two which leads ``ahead`` (2, N), where it is given,
-        whatever the direction.
+        In a sign-free field with ``ahead`` (2, N) it is the one of both rates that leads ahead,
+        in either direction.
         """
         if chart is None or not chart.any():
             result = self._rate(self._patches[0], position, lag, direction)
         else:
             result = np.empty_like(position)
             for number, patch in enumerate(self._patches):
-                some = np.flatnonzero(chart == number)
-                if len(some):
-                    result[:, some] = self._rate(patch, position[:, some], lag[some], direction)
+                at = np.flatnonzero(chart == number)
+                if len(at):
+                    result[:, at] = self._rate(patch, position[:, at], lag[at], direction)
         if self._poles is not None and chart is not None:
             # Beyond a pole index space runs the other way.
             turned = (chart == 0) & self._poles.mirrored(position)
@@ -96,24 +96,24 @@ class Sampler(ABC):
         return np.negative(result, out=result) if direction < 0 else result
 
     def room(self, position: Floats) -> AnyArray | int:
-        """Cells that particles may move at once, the same for all or (N,)."""
+        """Return the cells that particles may move at once, for all or (N,)."""
         return self.grid.room_at(position) if self.charts is None else LEAST_ROOM_CELLS
 
     def span(self, direction: float) -> float:
-        """Lag up to which the flow changes in time: to the first time step, or to the last."""
+        """Return the lag to the first or last time step, beyond which the flow is constant."""
         return float(direction * (self.times[0 if direction < 0 else -1] - self.destination))
 
     @abstractmethod
     def rest(self, unit: Floats, last: float) -> Floats:
-        """Rate (N,) below which a particle stands still, for lags up to ``last * unit``."""
+        """Return rates (N,) below which a particle is at rest, for lags up to ``last * unit``."""
 
     @abstractmethod
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Rate on one chart, forward."""
+        """Return the rate on one chart, forward."""
 
 
 class _Axes:
-    """Choice between the two directions of a velocity whose sign means nothing."""
+    """Choice between the two directions of a sign-free velocity."""
 
     def __init__(self, field: FlowField, grid: NodeGrid) -> None:
         p = field.surface.tangents
@@ -123,14 +123,14 @@ class _Axes:
     def sign(
         self, position: Floats, one: Floats, two: Floats, chart: NDArray[np.int8] | None
     ) -> Floats:
-        """Sign of the angle between rates (2, N) in space, -1 where it is more than 90 degrees."""
+        """Return 1, or -1 where rates (2, N) form an angle above 90 degrees in space, (N,)."""
         along = one[0] * two[0] + one[1] * two[1]
         flat = slice(None) if chart is None else np.flatnonzero(chart == 0)
-        here, (a, b), (c, d) = position[:, flat], one[:, flat], two[:, flat]
-        at = self._grid.corners(here).at
+        flat_position, (a, b), (c, d) = position[:, flat], one[:, flat], two[:, flat]
+        at = self._grid.corners(flat_position).at
         ii, ij, jj = (part[at] for part in self._metric)
         if self._poles is not None:
-            ij = np.where(self._poles.mirrored(here), -ij, ij)
+            ij = np.where(self._poles.mirrored(flat_position), -ij, ij)
         along[flat] = ii * a * c + ij * (a * d + b * c) + jj * b * d
         return np.where(along < 0, -1.0, 1.0)
 
@@ -138,8 +138,8 @@ class _Axes:
 class LengthSampler(Sampler):
     """A steady field by arc length: the direction of the flow, at unit speed in space.
 
-    Beside a critical point the speed that divides is that of the nodes around it, so a path
-    comes to rest there instead of jumping across.
+    Beside a critical point the velocity is divided by the interpolated speed of the nodes, so a
+    path comes to rest there instead of passing it.
     """
 
     def __init__(self, field: FlowField) -> None:
@@ -149,7 +149,7 @@ class LengthSampler(Sampler):
         self.floor = max(STOPPED_SPEED * float(speed.max()), np.finfo(float).tiny)
 
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Direction for one unit of length."""
+        """Return the direction for one unit of length."""
         del lag, direction
         corners = patch.corners(position)
         speed = patch.blend(2, corners)
@@ -161,7 +161,7 @@ class LengthSampler(Sampler):
         return result
 
     def rest(self, unit: Floats, last: float) -> Floats:
-        """Rate below which a particle has come to rest: those that move cover a cell a unit."""
+        """Return rates below which a particle is at rest; moving ones cover a cell per unit."""
         del last
         return RESTING_CELLS / unit
 
@@ -182,7 +182,7 @@ class TimeSampler(Sampler):
         return other
 
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Velocity at time destination + direction * lag."""
+        """Return the velocity at time destination + direction * lag."""
         corners = patch.corners(position)
         if len(self.times) == 1:
             return np.stack([patch.blend(0, corners), patch.blend(1, corners)])
@@ -198,5 +198,5 @@ class TimeSampler(Sampler):
         return result
 
     def rest(self, unit: Floats, last: float) -> Floats:
-        """Rate at which a particle gets nowhere; in a flow that varies none stays at rest."""
+        """Return rates below which a particle is at rest; in a time-varying flow none stays so."""
         return np.full(len(unit), 0.0 if len(self.times) > 1 else STILL_CELLS) / (unit * last)

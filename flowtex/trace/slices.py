@@ -23,7 +23,7 @@ from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError
 from flowtex.field.interpolation import bracket
 
-#: Written into every file; a reader refuses what it does not know.
+#: Format of every file; a reader refuses any other.
 FORMAT = "flowtex-slices-1"
 #: Arrays over the nodes, and the axis along which j runs in them.
 NODE_AXES = {
@@ -35,7 +35,7 @@ NODE_AXES = {
     "displacement": 2,
     "forward": 2,
 }
-#: Those whose first axis is the destination time.
+#: Arrays whose first axis is the destination time.
 STEP_ARRAYS = tuple(name for name, axis in NODE_AXES.items() if axis > 0)
 
 
@@ -113,9 +113,9 @@ class TraceSlices:
 
     def at_step(self, step: int) -> TraceSlices:
         """Return the slices of one destination time, with T = 1."""
-        one = slice(step, step + 1 or None)
+        span = slice(step, step + 1 or None)
         parts: dict[str, Any] = {
-            name: data[one]
+            name: data[span]
             for name in (*STEP_ARRAYS, "times")
             if (data := getattr(self, name)) is not None
         }
@@ -231,7 +231,7 @@ class TraceSlices:
             f"{path} does not contain trace slices; expected a file written by TraceSlices.save"
         )
         try:
-            # Opened here, because NumPy leaves a file open that it cannot read.
+            # Opened here: NumPy does not close a file that it cannot read.
             with place.open("rb") as data, np.load(data, allow_pickle=False) as file:
                 arrays: dict[str, Any] = {name: file[name] for name in file.files}
         except (zipfile.BadZipFile, zlib.error, ValueError, EOFError, TypeError) as error:

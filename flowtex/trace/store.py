@@ -26,9 +26,9 @@ from flowtex.trace.trace import trace
 
 #: Size of the slices that are cached, besides the ones in use.
 CACHE_BYTES = 512_000_000
-#: Size of the steps in which paths to one time are traced, where they are read late, and bytes of a
-#: node of each: velocity, speed, and what is sampled. Of more steps every second is left out, or
-#: more of them, down to a few.
+#: Most bytes of the steps in which paths to one time are traced, where they are read late; bytes of
+#: a node of each: velocity, speed, and samples; and least number of steps that remain when more are
+#: thinned out evenly.
 HELD_BYTES, STEP_BYTES, LEAST_HELD = 500_000_000, 72, 8
 
 
@@ -38,7 +38,7 @@ class SliceStore:
     With ``lines="streamlines"`` each destination time of a field that varies is traced as a steady
     field; the parameter, that of :func:`flowtex.trace`, counts then. With slices of all steps that
     were traced already nothing is traced; in a sign-free field they lead to both sides. ``compose``
-    allows to compose all steps together, which is quicker than step by step, but slower for one or
+    allows composing all steps together, which is quicker than step by step, but slower for one or
     two of them. ``longest`` is the greatest length that is traced, in the mesh's units, a quarter
     of the surface by default, ``first_cells`` the first lag in cells, ``cell`` the size of small
     cells of the surface that the field is a part of, and ``nodes`` (J, I) are those that
@@ -73,8 +73,7 @@ class SliceStore:
         self._lock = threading.Lock()
         if slices is None:
             self.parameter = parameter if self.streamlines else "time"
-            given = (longest, cell, first_cells)
-            self.lags, self.unit = drawn_lags(field, self.parameter, *given)
+            self.lags, self.unit = drawn_lags(field, self.parameter, longest, cell, first_cells)
             # On a globe the lags that are long enough near a pole are many times that elsewhere.
             poles = field.surface.poles
             closed = poles is not None and poles.both
@@ -89,12 +88,12 @@ class SliceStore:
 
     @property
     def traced(self) -> list[TraceSlices]:
-        """Slices that it holds, of the steps that were requested last."""
+        """Slices in the cache, of the steps that were requested last."""
         return self._cache.values()
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the slices that it holds."""
+        """Bytes of the slices in memory."""
         return self._cache.nbytes + (0 if self._whole is None else self._whole.nbytes)
 
     @property
@@ -103,14 +102,14 @@ class SliceStore:
         return self._whole is None or self._whole.forward is not None
 
     def at(self, step: int, lags: int | None = None) -> TraceSlices:
-        """Slices of one destination time, T = 1, at this many lags; at all by default."""
-        wanted = len(self.lags[:lags])
+        """Return slices of one destination time, T = 1, at this many lags, by default all."""
+        count = len(self.lags[:lags])
         with self._lock:
             kept = self._cache.peek(step)
-            if kept is None or len(kept.lags) < wanted:
-                kept = self._trace(step, wanted)
+            if kept is None or len(kept.lags) < count:
+                kept = self._trace(step, count)
                 self._cache.put(step, kept)
-        return kept if len(kept.lags) == wanted else kept.up_to(wanted)
+        return kept if len(kept.lags) == count else kept.up_to(count)
 
     def forget(self) -> None:
         """Drop the slices that can be traced again."""
@@ -124,13 +123,13 @@ class SliceStore:
             moment, shortest = self.field.at_step(step), self.lags[:lags]
             return self._trace_with(moment, shortest, parameter=self.parameter, compose=compose)
         if isinstance(self.field.velocity, LazySteps):
-            # Only what paths to this time can meet is read.
+            # Only the steps that paths to this time can meet are read.
             reach = float(self.lags[-1] * self.unit.max())
             near = np.flatnonzero(np.abs(self.field.times - self.field.times[step]) <= reach)
             first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, self.steps)
-            some = _held(first, last, step, HELD_BYTES // (STEP_BYTES * self.unit.size))
-            part = self.field.at_steps(some)
-            return self._trace_with(part, self.lags, steps=[some.index(step)])
+            steps = _thinned_steps(first, last, step, HELD_BYTES // (STEP_BYTES * self.unit.size))
+            part = self.field.at_steps(steps)
+            return self._trace_with(part, self.lags, steps=[steps.index(step)])
         size = self.steps * len(self.lags) * self.unit.size * 4 * np.float32().nbytes
         if (
             self._compose
@@ -143,7 +142,7 @@ class SliceStore:
         return self._trace_with(self.field, self.lags, steps=[step])
 
     def _trace_with(self, field: FlowField, lags: Floats, **options: Any) -> TraceSlices:
-        # A part of a surface is one of many, whose progress bars would mean nothing.
+        # A part of a surface is one of many, so it has no progress bar.
         alone = self._nodes is None
         parts: dict[str, Any] = {
             "nodes": self._nodes,
@@ -154,28 +153,28 @@ class SliceStore:
         return _slices.get(self._key(field, lags, options), follow) if alone else follow()
 
     def _key(self, field: FlowField, lags: Floats, options: dict[str, Any]) -> bytes:
-        """Return a hash of all numbers that slices of a field are made of."""
-        given = (field.points, field.valid, *field.velocity, field.times, lags, self.unit)
-        some = (part for part in (field.has_position, field.triangles) if part is not None)
-        kinds = (field.periodic, field.sign_free, field.has_position is None, self.long_enough)
-        return digest(*given, *some, words=(kinds, *sorted(options.items())))
+        """Return a hash of all numbers that determine the slices of a field."""
+        arrays = (field.points, field.valid, *field.velocity, field.times, lags, self.unit)
+        optional = (part for part in (field.has_position, field.triangles) if part is not None)
+        choices = (field.periodic, field.sign_free, field.has_position is None, self.long_enough)
+        return digest(*arrays, *optional, words=(choices, *sorted(options.items())))
 
 
-def _held(first: int, last: int, step: int, most: int) -> list[int]:
-    """Return the steps from ``first`` on, this one among them: every n-th where they are many."""
+def _thinned_steps(first: int, last: int, step: int, most: int) -> list[int]:
+    """Return steps from ``first`` to ``last`` with ``step``, every n-th where they are many."""
     apart = -(-(last - first) // max(most, LEAST_HELD))
-    some = range(first + (step - first) % apart, last, apart)
-    return sorted({first, *some, last - 1})
+    steps = range(first + (step - first) % apart, last, apart)
+    return sorted({first, *steps, last - 1})
 
 
 _stores: WeakCache[SliceStore] = WeakCache()
-#: Slices in use by the numbers that they are made of: reading these again gives the same ones.
+#: Slices in use by the hash of their data: reading these again gives the same slices.
 _slices: WeakCache[TraceSlices] = WeakCache()
 
 
 def shared_store(field: FlowField, parameter: str, lines: str = "pathlines") -> SliceStore:
     """Return the store of a field, one for all that show the field at the same time."""
-    # A store keeps its field alive, so the number of the field is its own while the store lives.
+    # A store keeps its field alive, so the id stays unique.
     lines = chosen_lines(field, lines)
     key = (id(field), parameter, lines)
     return _stores.get(key, lambda: SliceStore(field, parameter=parameter, lines=lines))

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,7 +30,10 @@ from flowtex.trace.sampler import LengthSampler, Sampler, TimeSampler
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.triangles import triangle_paths, triangle_slices
 
-#: Lags that single precision holds, with what is computed of them.
+A = TypeVar("A")
+B = TypeVar("B")
+
+#: Lags that single precision holds, also in computations.
 LEAST_LAG, MOST_LAG = 1e-30, 1e30
 #: Error allowed in one step, in cells.
 TOLERANCE = 1e-3
@@ -196,12 +199,12 @@ def paths(
 ) -> Paths:
     """Follow particles from chosen positions in index space.
 
-    They start at (N, 2) as (i, j), or on triangles as
-    :class:`~flowtex.field.triangles.surface.TriangleSurface` has places, at destination time
-    ``step``, and are wanted at lags (M,) in units of length or time. ``within`` tells for positions
-    (2, N) whether paths are followed there: one that comes elsewhere is interrupted. On triangles
-    all are followed, and one that has ended stays there. The other parameters, and the errors, are
-    those of :func:`trace`.
+    They start at (N, 2) as (i, j), or on triangles at places as of
+    :class:`~flowtex.field.triangles.surface.TriangleSurface`, at destination time ``step``, and
+    are followed to lags (M,) in units of length or time. ``within`` returns whether paths are
+    followed at positions (2, N): one that leaves these is interrupted. On triangles all are
+    followed, and one that has ended stays there. The other parameters, and the errors, are those of
+    :func:`trace`.
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)
@@ -217,9 +220,9 @@ def paths(
             tolerance=tolerance,
         )
     sampler = _samplers(field, _step_numbers(field, [step]), parameter)[0]
-    # A path rests by what it moves in a unit, which is a cell and not one of the mesh's lengths.
+    # Rest is judged by the motion in a unit, which is a cell and not a unit of the mesh.
     unit = float(lag_unit(field, parameter)[field.valid].max(initial=0.0)) or 1.0
-    found = integrate(
+    result = integrate(
         sampler,
         begin,
         _checked_lags(lags) / unit,
@@ -228,11 +231,11 @@ def paths(
         tolerance=tolerance,
         within=within,
     )
-    return replace(found, reach=found.reach * unit)
+    return replace(result, reach=result.reach * unit)
 
 
 def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> None:
-    """Refuse what has no meaning in a sign-free field."""
+    """Raise a FieldError for arguments that have no meaning in a sign-free field."""
     if field.sign_free and not two_sided:
         msg = "two_sided is False; expected True, because a sign-free field has two equal sides"
         raise FieldError(msg)
@@ -244,12 +247,11 @@ def _check_signs(field: FlowField, *, two_sided: bool, compose: bool | None) -> 
         raise FieldError(msg)
 
 
-def _step_numbers(field: FlowField, steps: Sequence[int] | None) -> list[int]:
-    """Destination times as indices from 0."""
+def _step_numbers(field: FlowField, steps: Any) -> list[int]:
+    """Return destination times as indices from 0."""
     if steps is None:
         return list(range(len(field.times)))
-    given: Any = steps
-    numbers = [field.step_number(step) for step in given] if np.iterable(given) else []
+    numbers = [field.step_number(step) for step in steps] if np.iterable(steps) else []
     if not numbers:
         msg = f"steps is {steps!r}; expected numbers of time steps, such as [0]"
         raise FieldError(msg)
@@ -265,10 +267,10 @@ def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sample
 
 @contextmanager
 def _threads() -> Iterator[Map]:
-    """Give what maps a function over blocks in threads, and a single block in this one."""
+    """Yield a function that maps over blocks in threads, and over a single block in this one."""
     with pool(min(os.cpu_count() or 1, MOST_THREADS), "flowtex-trace") as threads:
 
-        def run(work: Callable[[Any], Any], blocks: Iterable[Any]) -> Iterable[Any]:
+        def run(work: Callable[[A], B], blocks: Iterable[A], /) -> Iterable[B]:
             blocks = list(blocks)
             return map(work, blocks) if len(blocks) == 1 else threads.map(work, blocks)
 
@@ -315,19 +317,19 @@ def _checked_nodes(field: FlowField, nodes: ArrayLike) -> Bools:
 
 
 def _distance(chosen: Bools) -> Floats:
-    """Distance of nodes from the box of the chosen ones, in that of the farthest line, (J, I)."""
-    away = []
+    """Return distances of nodes from the box of chosen ones, 1 for the farthest line, (J, I)."""
+    distances = []
     for axis in (0, 1):
         lines, at = np.arange(chosen.shape[axis]), np.flatnonzero(chosen.any(axis=1 - axis))
         first, last = (at[0], at[-1]) if len(at) else (0, len(lines) - 1)
         beyond = np.maximum(np.maximum(first - lines, lines - last), 0)
-        away.append(beyond / max(beyond.max(), 1))
-    return np.asarray(np.maximum(away[0][:, None], away[1][None, :]))
+        distances.append(beyond / max(beyond.max(), 1))
+    return np.asarray(np.maximum(distances[0][:, None], distances[1][None, :]))
 
 
 @dataclass(frozen=True, eq=False)
 class _Tracing:
-    """Everything that the paths of one call share."""
+    """The common data of the paths of one call."""
 
     field: FlowField
     samplers: list[Sampler]
@@ -336,7 +338,7 @@ class _Tracing:
     followed: Bools  #: nodes whose paths are followed, (J, I)
     tolerance: float
     progress: bool
-    longest: Floats  #: that paths by arc length have to be, (J, I)
+    longest: Floats  #: required length of paths by arc length, (J, I)
 
     @cached_property
     def nodes(self) -> Floats:
@@ -358,7 +360,7 @@ class _Tracing:
         self, directions: Sequence[float], landing: Indices | None
     ) -> dict[float, SideSlices]:
         """Follow all paths, by composition where there are landings."""
-        known = len(self.lags) if landing is None else self._direct(landing)
+        direct = len(self.lags) if landing is None else self._direct_lags(landing)
         shape = (len(self.samplers), self.field.valid.size)
         sides = {
             direction: SideSlices(
@@ -369,16 +371,16 @@ class _Tracing:
             for direction in directions
         }
         with _threads() as run:
-            self._integrate(sides, known, run)
+            self._integrate(sides, direct, run)
             for direction, flat in sides.items():
                 side = sides[direction] = self._as_grids(flat, direction)
-                if landing is not None and known < len(self.lags):
+                if landing is not None and direct < len(self.lags):
                     compose(
                         self.field,
                         self.lags,
                         self.unit,
                         side,
-                        known,
+                        direct,
                         landing,
                         run,
                         partial(self._piece, direction),
@@ -387,34 +389,34 @@ class _Tracing:
                     )
         return sides
 
-    def _direct(self, landing: Indices) -> int:
-        """How many lags to integrate: a cell, and up to the first time step."""
+    def _direct_lags(self, landing: Indices) -> int:
+        """Return the number of lags to integrate: up to a cell, and to the first time step."""
         if landing.any():
             return int(np.flatnonzero(landing)[0]) + 1
         pace = np.abs(self.rate[:, self.field.valid]).max(axis=-1)
         typical = float(np.median(pace[pace > 0])) if pace.any() else 1.0
         return max(int(np.searchsorted(self.lags * typical, DIRECT_CELLS, side="right")), 1)
 
-    def _integrate(self, sides: dict[float, SideSlices], known: int, run: Map) -> None:
-        """Fill the first ``known`` slices."""
+    def _integrate(self, sides: dict[float, SideSlices], direct: int, run: Map) -> None:
+        """Fill the first ``direct`` slices."""
         at = np.flatnonzero(self.followed)
         start, unit = self.nodes.reshape(-1, 2)[at], self.unit.ravel()[at]
 
         def work(job: tuple[int, float, slice]) -> None:
             step, direction, block = job
             side, nodes = sides[direction], at[block]
-            slices, reach = side.slices[1 : known + 1, step], side.reach[step]
+            slices, reach = side.slices[1 : direct + 1, step], side.reach[step]
             options: dict[str, Any] = {"direction": direction, "tolerance": self.tolerance}
-            lags, units = self.lags[:known], unit[block]
+            lags, units = self.lags[:direct], unit[block]
             result = integrate(self.samplers[step], start[block], lags, units, **options)
             moved = _in_single(result.positions - start[block])
-            some: Indices | slice = nodes
+            target: Indices | slice = nodes
             if nodes[-1] - nodes[0] == len(nodes) - 1:
                 # Writing to a slice is several times as fast as to a list of nodes.
-                some = slice(nodes[0], nodes[-1] + 1)
-            slices[:, some] = moved
-            reach[some] = result.reach
-            side.polar[step, some] = result.polar
+                target = slice(nodes[0], nodes[-1] + 1)
+            slices[:, target] = moved
+            reach[target] = result.reach
+            side.polar[step, target] = result.polar
 
         jobs = [
             (step, direction, slice(first, first + BLOCK))
@@ -433,12 +435,12 @@ class _Tracing:
         step: Indices,
         within: Within | None,
     ) -> tuple[Floats32, Floats, Floats]:
-        """Follow some paths, as :data:`flowtex.trace.compose.Integrate` says."""
+        """Follow some paths, an :data:`flowtex.trace.compose.Integrate`."""
         moved, covered, ends = np.empty_like(position), lag.copy(), np.empty_like(lag)
         for number in np.unique(step) if len(self.samplers) > 1 else [0]:
-            some = step == number if len(self.samplers) > 1 else slice(None)
-            start, unit = position[:, some].T.astype(float), lag[some]
-            paths = integrate(
+            group = step == number if len(self.samplers) > 1 else slice(None)
+            start, unit = position[:, group].T.astype(float), lag[group]
+            result = integrate(
                 self.samplers[number],
                 start,
                 np.ones(1),
@@ -447,13 +449,13 @@ class _Tracing:
                 tolerance=self.tolerance,
                 within=within,
             )
-            moved[:, some] = (paths.positions[0] - start).T
-            covered[some] = np.where(paths.interrupted, paths.reach, 1.0) * unit
-            ends[some] = np.where(paths.interrupted, np.inf, paths.reach) * unit
+            moved[:, group] = (result.positions[0] - start).T
+            covered[group] = np.where(result.interrupted, result.reach, 1.0) * unit
+            ends[group] = np.where(result.interrupted, np.inf, result.reach) * unit
         return moved, covered, ends
 
     def _as_grids(self, flat: SideSlices, direction: float) -> SideSlices:
-        """Lay out by nodes, with the slope at lag zero; nodes left out move as the nearest."""
+        """Lay out by nodes, with the slope at lag zero; blank nodes move as the nearest one."""
         grid = self.field.shape
         slices = flat.slices.reshape(*flat.slices.shape[:2], *grid, 2)
         slices[0] = direction * _in_single(self.rate)

@@ -1,10 +1,10 @@
-"""Critical points: where the velocity is zero, and what the flow around it does."""
+"""Critical points: zeros of the velocity, classified by the flow around them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import scipy
@@ -19,6 +19,9 @@ from flowtex.trace.structure.records import Records, steady_parts
 from flowtex.trace.structure.strength import strengths
 from flowtex.trace.structure.zeros import bilinear_zeros, linear_zeros, triangle_indices
 
+if TYPE_CHECKING:
+    import pyvista as pv
+
 #: Kinds of critical points, for tables and legends.
 KINDS = ("saddle", "source", "sink", "centre", "spiral source", "spiral sink")
 #: Growth of a spiral, as a share of its rotation, up to which it is a centre.
@@ -27,7 +30,7 @@ CENTRE_SHARE = 0.05
 SAME_POINT_CELLS = 1e-3
 #: Speed as a share of the largest at which a node is at rest.
 REST_SHARE = 1e-12
-#: Share of a neighbour's velocity that takes the place of one that is zero.
+#: Share of a neighbour's velocity that replaces one that is zero.
 LEAST_SHARE = 1e-7
 
 
@@ -136,7 +139,7 @@ class CriticalPoints(Records, Sequence[CriticalPoint]):
         places = (point.lonlat for point in self._points)
         return [place and {"type": "Point", "coordinates": list(place)} for place in places]
 
-    def to_pyvista(self) -> Any:
+    def to_pyvista(self) -> pv.PolyData:
         """Return a ``pyvista.PolyData`` of the points.
 
         It has the arrays ``kind`` (index into ``KINDS``), ``time`` and ``strength``.
@@ -283,23 +286,23 @@ def _on_triangles(field: FlowField) -> list[CriticalPoint]:
     # A single node at rest gets the least of its neighbours' velocities: one triangle has the zero.
     alone = triangles[rest[triangles].any(axis=1)]
     corner = np.argmax(rest[alone], axis=1)
-    one, two = (
+    first, second = (
         velocity[np.take_along_axis(alone, (corner[:, None] + k) % 3, 1)[:, 0]] for k in (1, 2)
     )
-    still = np.take_along_axis(alone, corner[:, None], 1)[:, 0]
-    velocity[still] = LEAST_SHARE * (0.62 * one + 0.38 * two)
+    resting_nodes = np.take_along_axis(alone, corner[:, None], 1)[:, 0]
+    velocity[resting_nodes] = LEAST_SHARE * (0.62 * first + 0.38 * second)
     corners = points[triangles]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    own = np.einsum("mc,mc->m", normal, crosses) < 0
-    facing = np.where(own[:, None], triangles[:, ::-1], triangles)
+    flipped = np.einsum("mc,mc->m", normal, crosses) < 0
+    facing = np.where(flipped[:, None], triangles[:, ::-1], triangles)
     turning = triangle_indices(points, normals, velocity, facing)
     chosen = turning != 0
     number, triangles = number[chosen], triangles[chosen]
     normal = crosses[chosen] / np.linalg.norm(crosses[chosen], axis=1, keepdims=True)
     corners = points[triangles]
-    one = corners[:, 1] - corners[:, 0]
-    one /= np.linalg.norm(one, axis=1, keepdims=True)
-    frame = np.stack([one, np.cross(normal, one)], axis=1)
+    first = corners[:, 1] - corners[:, 0]
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    frame = np.stack([first, np.cross(normal, first)], axis=1)
     flat = np.einsum("mkc,mfc->mkf", corners - corners[:, :1], frame)
     flow = np.einsum(
         "mkc,mfc->mkf", _turned(velocity[triangles], normals[triangles], normal), frame
@@ -327,11 +330,11 @@ def _points(
     field: FlowField, position: Floats, gradient: Floats, tangents: Floats, index: Floats
 ) -> list[CriticalPoint]:
     """Make records of points (K, 3), gradients (K, 2, 2) and tangents (K, 2, 3) there."""
-    known = np.isfinite(gradient).all(axis=(1, 2)) & (np.abs(gradient).max(axis=(1, 2)) > 0)
-    values, vectors = np.linalg.eig(np.where(known[:, None, None], gradient, np.eye(2)))
+    finite = np.isfinite(gradient).all(axis=(1, 2)) & (np.abs(gradient).max(axis=(1, 2)) > 0)
+    values, vectors = np.linalg.eig(np.where(finite[:, None, None], gradient, np.eye(2)))
     lonlat = None if field.projection is None else field.projection.lonlat(position)
     result = []
-    for n in np.flatnonzero(known):
+    for n in np.flatnonzero(finite):
         order = np.argsort(-values[n].real, kind="stable")
         value, directions = values[n][order].astype(complex), vectors[n].T[order] @ tangents[n]
         size = np.linalg.norm(directions, axis=1, keepdims=True)
@@ -360,7 +363,7 @@ def _kind(values: AnyArray) -> str:
 
 
 def _distinct(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoint]:
-    """Drop points that two cells have found, or both ends of a closed axis."""
+    """Drop points that were found in two cells, or at both ends of a closed axis."""
     if len(points) < 2:
         return points
     size = field.surface.cell_size
@@ -377,7 +380,7 @@ def _distinct(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoi
 
 
 def _with_strength(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoint]:
-    """Have the strengths of the points of one step."""
+    """Return the points of one step with their strengths."""
     columns = field.shape[1]
     nodes = [int(j * columns + i) for j, i in (field.surface.node_near(p.index) for p in points)]
     signs = np.array([point.poincare_index for point in points], dtype=np.intp)

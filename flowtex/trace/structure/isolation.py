@@ -1,9 +1,9 @@
-"""Whether a closed line of a flow is isolated, as a limit cycle is, or one of many beside it.
+"""Isolation of closed lines: a limit cycle is isolated, other closed lines have neighbours.
 
 Over a turn, the distance of a line beside a closed one grows by a factor: the exponential of the
-divergence of the velocity, integrated over the time of the turn. Lines come or leave where it is
-not 1. In a flow without divergence it is 1; there, lines nearly close by errors of interpolation.
-So the integral must be greater than what interpolation may change it by.
+divergence of the velocity, integrated over the time of the turn. Lines approach or leave where it
+is not 1. In a flow without divergence it is 1; there, lines nearly close by errors of
+interpolation. So the integral must exceed its error by interpolation.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ ERROR_CELLS = 0.5
 
 
 class Isolation:
-    """Judges closed lines of a steady field."""
+    """Test of closed lines of a steady field."""
 
     def __init__(self, field: FlowField) -> None:
         self._field = field

@@ -11,19 +11,19 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex.field import FlowField
 from flowtex.field.formula import Formula
 
-#: A component is zero up to this share of what it is below at most nodes: beside a pole it is huge.
+#: A component is zero up to this share of its quantile at the other: beside a pole it is huge.
 ROUNDING, USUAL_SHARE = 1e-12, 0.9
-#: Halvings of a side of a triangle that a line crosses, and what they leave of a value that goes
-#: to zero there, at most; at a pole and at a jump more is left.
+#: Halvings of a side of a triangle that a line crosses, and the greatest remaining share of a value
+#: that goes to zero there; at a pole and at a jump more remains.
 HALVINGS, LEFT = 12, 0.25
 
 
 def nullclines(field: FlowField) -> tuple[Floats, Floats]:
-    """Return where the components of a steady flow are zero; a curved surface has no such lines.
+    """Return the zeros of the components of a steady flow; a curved surface has no such lines.
 
     The components are those along the axes of a flat surface, x and y in the plane of these. They
-    are linear in the triangles that are drawn; those of a formula are not, which tells a zero from
-    a pole. Returns the straight pieces of both lines, (S, 2, 3) each, in no order.
+    are linear in the drawn triangles; those of a formula are not, which distinguishes a zero from a
+    pole. Returns the straight pieces of both lines, (S, 2, 3) each, in no order.
     """
     surface, formula = field.surface, field.formula
     if surface.frame is None:
@@ -52,16 +52,16 @@ def _vanishes(rate: Callable[[Floats], Floats], sides: Floats) -> Bools:
     It has different signs at the ends, or is zero at the second one.
     """
     ends = [sides[:, 0], sides[:, 1]]
-    found = [rate(end) for end in ends]
-    first = np.maximum(*np.abs(found))
+    values = [rate(end) for end in ends]
+    first = np.maximum(*np.abs(values))
     for _ in range(HALVINGS):
         middle = 0.5 * (ends[0] + ends[1])
         value = rate(middle)
-        is_one = (value > 0) == (found[0] > 0)
-        for n, moves in enumerate((is_one, ~is_one)):
+        like_first = (value > 0) == (values[0] > 0)
+        for n, moves in enumerate((like_first, ~like_first)):
             ends[n] = np.where(moves[:, None], middle, ends[n])
-            found[n] = np.where(moves, value, found[n])
-    return np.asarray(np.maximum(*np.abs(found)) < LEFT * first)
+            values[n] = np.where(moves, value, values[n])
+    return np.asarray(np.maximum(*np.abs(values)) < LEFT * first)
 
 
 def _zero_pieces(points: Floats, values: Floats) -> tuple[Floats, Floats]:
@@ -71,15 +71,15 @@ def _zero_pieces(points: Floats, values: Floats) -> tuple[Floats, Floats]:
     """
     least = ROUNDING * np.quantile(np.abs(values), USUAL_SHARE) if len(values) else 0.0
     differs = np.abs(values) > least
-    # A side along which it is zero is a piece, and may be a wall, with a triangle on one side only.
+    # A side along which the component is zero is a piece, perhaps a wall with one triangle.
     is_side = differs.sum(axis=1) == 1
     above = np.where(is_side[:, None], differs, values > least)
     count = above.sum(axis=1)
-    some = np.flatnonzero((count == 1) | (count == 2))
-    points, values = points[some], values[some]
+    crossed = np.flatnonzero((count == 1) | (count == 2))
+    points, values = points[crossed], values[crossed]
     # The corner that differs from the other two, and both sides of the triangle that meet there.
-    alone = np.argmax(above[some] == (count[some] == 1)[:, None], axis=1)
-    row = np.arange(len(some))
+    alone = np.argmax(above[crossed] == (count[crossed] == 1)[:, None], axis=1)
+    row = np.arange(len(crossed))
     ends, sides = [], []
     for k in (1, 2):
         other = (alone + k) % 3

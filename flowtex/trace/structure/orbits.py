@@ -1,9 +1,9 @@
-"""Closed orbits: lines that end where they began, to which others come, or which they leave.
+"""Closed orbits: lines that end where they began, and that other lines approach or leave.
 
 A closed orbit in a plane turns around a critical point that is not a saddle, so it crosses every
-ray from there. Where the flow returns to a ray one turn later (its Poincare map) tells on which
-side of an orbit it is: it comes nearer from both sides, or moves away. Around a centre it returns
-to where it was but for errors of interpolation, which :mod:`isolation` tells from an orbit.
+ray from there. Where the flow returns to a ray one turn later (its Poincare map) shows the side of
+an orbit: from both sides it comes nearer, or moves away. Around a centre it returns to where it
+was but for errors of interpolation, which :mod:`isolation` distinguishes from an orbit.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from flowtex.trace.structure.isolation import Isolation
 from flowtex.trace.structure.records import steady_parts
 from flowtex.trace.trace import paths
 
-#: Distance between the points of a line in cells, points that are followed at once, and the length
-#: of a turn at most, as a share of the surface's extent and in points.
+#: Distance between the points of a line in cells, points that are followed at once, and greatest
+#: length of a turn, as a share of the surface's extent and in points.
 POINT_CELLS, CHUNK, TURN_EXTENTS, MOST_POINTS = 0.5, 50, 3.0, 3000
-#: Points of a ray: the first one in cells, the ratio of the distances of two, and the distance of
-#: two at most, as a share of the extent.
+#: Points of a ray: the first one in cells, the ratio of successive distances, and the greatest
+#: distance of two, as a share of the extent.
 FIRST_CELLS, RATIO, EXTENT_SHARE = 1.0, 1.2, 0.03
-#: How much farther out or in a line returns where the flow moves away, in cells and as a share of
-#: the distance from the middle; and how far from its beginning an orbit may end, in cells.
+#: Least radial displacement by a turn, in cells and as a share of the distance from the middle; and
+#: greatest distance of the end of an orbit from its beginning, in cells.
 MOVED_CELLS, MOVED_SHARE, CLOSED_CELLS = 0.05, 0.05, 0.1
 #: Parts into which a stretch of a ray with an orbit is divided, and how often.
 PARTS, ROUNDS = 64, 2
@@ -106,32 +106,32 @@ def closed_orbits(field: FlowField, *, steps: Sequence[int] | None = None) -> li
     (True, 6.7, 2.0)
     """
     check_field(field, FlowField)
-    found: list[ClosedOrbit] = []
+    orbits: list[ClosedOrbit] = []
     for part in steady_parts(field, steps, "Finding closed orbits"):
-        found += orbits_around(part, critical_points(part))
-    return found
+        orbits += orbits_around(part, critical_points(part))
+    return orbits
 
 
 def orbits_around(field: FlowField, points: CriticalPoints) -> list[ClosedOrbit]:
     """Find the closed orbits of a steady field whose critical points are known."""
-    turning = [p for p in points if p.poincare_index > 0 and _leaves(p.eigenvalues[0])]
+    turning = [p for p in points if p.poincare_index > 0 and _is_spiral(p.eigenvalues[0])]
     around = CriticalPoints(turning).strongest(MOST_RAYS)
     if not around:
         return []
     rays = _Rays(field, points, around)
     low, high, ray, stable = rays.turns()
-    found: list[ClosedOrbit] = []
+    orbits: list[ClosedOrbit] = []
     for forward in (True, False):
-        some = stable == forward
-        for orbit in rays.orbits(low[some], high[some], ray[some], forward=forward):
-            near = (scipy.spatial.KDTree(o.points).query(orbit.points[0])[0] for o in found)
+        chosen = stable == forward
+        for orbit in rays.orbits(low[chosen], high[chosen], ray[chosen], forward=forward):
+            near = (scipy.spatial.KDTree(o.points).query(orbit.points[0])[0] for o in orbits)
             if not any(distance < 2 * rays.spacing for distance in near):
-                found.append(orbit)
-    return found
+                orbits.append(orbit)
+    return orbits
 
 
-def _leaves(eigenvalue: complex) -> bool:
-    """Tell whether lines around a point come nearer or move away, by enough in a turn."""
+def _is_spiral(eigenvalue: complex) -> bool:
+    """Return whether lines around a point approach or leave it, by enough in a turn."""
     return 2 * np.pi * abs(eigenvalue.real) > MOVED_SHARE * abs(eigenvalue.imag)
 
 
@@ -159,34 +159,34 @@ class _Rays:
         low, high = np.where(np.isinf(ends), -np.inf, WALL_CELLS), ends - WALL_CELLS
 
         def within(index: Floats) -> Bools:
-            there = surface.wrap(index.T)
-            away = np.isinf(near.query(there, distance_upper_bound=REST_CELLS)[0])
-            return np.asarray(away & ((low < index.T) & (high > index.T)).all(axis=1))
+            position = surface.wrap(index.T)
+            is_away = np.isinf(near.query(position, distance_upper_bound=REST_CELLS)[0])
+            return np.asarray(is_away & ((low < index.T) & (high > index.T)).all(axis=1))
 
         self._follow = partial(paths, field, parameter="arclength", within=within)
 
     def turns(self) -> tuple[Floats, Floats, Indices, Bools]:
         """Return stretches of rays with an orbit: both ends, the ray, and whether it is stable."""
         extent = self._field.surface.extent
-        wanted: list[tuple[float, int]] = []
+        starts: list[tuple[float, int]] = []
         for which, cell in enumerate(self._cell):
             place = FIRST_CELLS * cell
             while place < extent:
-                wanted.append((place, which))
+                starts.append((place, which))
                 place += min((RATIO - 1) * place, max(EXTENT_SHARE * extent, cell))
-        places, number, index = self._put(*map(np.array, zip(*wanted, strict=True)))
+        places, number, index = self._put(*map(np.array, zip(*starts, strict=True)))
         moved = self._returns(index, number, forward=True) - places
         lost = np.isnan(moved)
         moved[lost] = places[lost] - self._returns(index[lost], number[lost], forward=False)
         with np.errstate(invalid="ignore"):
             least = np.maximum(MOVED_CELLS * self._cell[number], MOVED_SHARE * places)
-            known = np.flatnonzero(np.abs(moved) > least)
-        one, two = known[:-1], known[1:]
+            measured = np.flatnonzero(np.abs(moved) > least)
+        first, second = measured[:-1], measured[1:]
         gaps = np.cumsum(np.isnan(moved))
-        turned = (moved[one] * moved[two] < 0) & (number[one] == number[two])
-        turned &= gaps[one] == gaps[two]
-        one, two = one[turned], two[turned]
-        return places[one], places[two], number[one], moved[one] > 0
+        turned = (moved[first] * moved[second] < 0) & (number[first] == number[second])
+        turned &= gaps[first] == gaps[second]
+        first, second = first[turned], second[turned]
+        return places[first], places[second], number[first], moved[first] > 0
 
     def orbits(
         self, low: Floats, high: Floats, ray: Indices, *, forward: bool
@@ -195,9 +195,9 @@ class _Rays:
         low, high = low.copy(), high.copy()
         for _ in range(ROUNDS):
             share = np.linspace(0, 1, PARTS + 1)
-            wanted = low[:, None] + (high - low)[:, None] * share
+            distances = low[:, None] + (high - low)[:, None] * share
             number = np.repeat(np.arange(len(ray)), PARTS + 1)
-            places, kept, index = self._put(wanted.ravel(), number, ray)
+            places, kept, index = self._put(distances.ravel(), number, ray)
             moved = self._returns(index, ray[kept], forward=forward) - places
             first = np.flatnonzero((moved[:-1] >= 0) & (moved[1:] < 0) & (kept[:-1] == kept[1:]))
             # Where rounding hides it, the stretch stays as it is.
@@ -217,23 +217,23 @@ class _Rays:
 
         The number is that of the ray, or of an entry of ``ray``.
         """
-        own = number if ray is None else ray[number]
+        rays = number if ray is None else ray[number]
         if not len(places):
             return places, number, np.empty((0, 2))
-        wanted = self._middle[own] + places[:, None] * self._along[own]
-        index, _ = locator(self._field).nearest(wanted)
+        targets = self._middle[rays] + places[:, None] * self._along[rays]
+        index, _ = locator(self._field).nearest(targets)
         index = np.array(index[:, ::-1], dtype=float)
-        along, across = self._off(self._field.surface.at(index)[None], own)
-        reached = np.abs(along[0] - places) < 0.5 * self._cell[own] + 0.1 * places
-        there = reached & (np.abs(across[0]) < 0.05 * self._cell[own])
-        return along[0][there], number[there], index[there]
+        along, across = self._offsets(self._field.surface.at(index)[None], rays)
+        reached = np.abs(along[0] - places) < 0.5 * self._cell[rays] + 0.1 * places
+        on_ray = reached & (np.abs(across[0]) < 0.05 * self._cell[rays])
+        return along[0][on_ray], number[on_ray], index[on_ray]
 
-    def _off(self, points: Floats, ray: Indices) -> tuple[Floats, Floats]:
-        """Return how far points (M, N, 3) are along the rays and beside them, (M, N) each."""
-        off = points - self._middle[ray]
+    def _offsets(self, points: Floats, ray: Indices) -> tuple[Floats, Floats]:
+        """Return offsets of points (M, N, 3) along the rays and across them, (M, N) each."""
+        offsets = points - self._middle[ray]
         return (
-            np.einsum("mnc,nc->mn", off, self._along[ray]),
-            np.einsum("mnc,nc->mn", off, self._across[ray]),
+            np.einsum("mnc,nc->mn", offsets, self._along[ray]),
+            np.einsum("mnc,nc->mn", offsets, self._across[ray]),
         )
 
     def _returns(
@@ -252,7 +252,7 @@ class _Rays:
                 break
             found = self._follow(begin, lags, forward=forward)
             positions = np.concatenate([begin[None], found.positions])
-            along, across = self._off(self._field.surface.at(positions), ray[going])
+            along, across = self._offsets(self._field.surface.at(positions), ray[going])
             if not done:
                 side = np.where(across[1] > across[0], 1.0, -1.0)
             across = across * side
@@ -264,10 +264,10 @@ class _Rays:
             share = across[at, n] / np.where(returned, across[at, n] - across[at + 1, n], 1.0)
             ends = along[at, n] + share * (along[at + 1, n] - along[at, n])
             result[going[returned]] = ends[returned]
-            for here, k in enumerate(going):
+            for column, k in enumerate(going):
                 if lines is not None:
-                    last = at[here] + 1 if returned[here] else CHUNK + 1
-                    lines[k] = np.concatenate([lines[k], positions[1:last, here]])
+                    last = at[column] + 1 if returned[column] else CHUNK + 1
+                    lines[k] = np.concatenate([lines[k], positions[1:last, column]])
             left = ~returned & alive.all(axis=0)
             going, side, begin = going[left], side[left], positions[-1, left]
         return result
@@ -278,8 +278,8 @@ class _Rays:
         points = surface.at(np.concatenate([line, line[:1]]))
         velocity = np.array([surface_point(surface, at[::-1]).interpolate(nodal) for at in line])
         # A component of the velocity is linear in a cell, and the speed is not.
-        way = np.roll(points[:-1], -1, axis=0) - np.roll(points[:-1], 1, axis=0)
-        along = np.abs(np.einsum("nc,nc->n", velocity, way)) / np.linalg.norm(way, axis=1)
+        chord = np.roll(points[:-1], -1, axis=0) - np.roll(points[:-1], 1, axis=0)
+        along = np.abs(np.einsum("nc,nc->n", velocity, chord)) / np.linalg.norm(chord, axis=1)
         slow = 1 / along
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
         period = float(np.sum(lengths * 0.5 * (slow + np.roll(slow, -1))))

@@ -1,4 +1,4 @@
-"""What critical points, separatrices and orbits share: their steps, and the form of a table."""
+"""The common parts of critical points, separatrices and orbits: steps, and tables."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flowtex.field import FlowField
 
 
 class Records(ABC):
-    """Things that are rows of a table, and places on the Earth where the field is there."""
+    """Features that are rows of a table, with places on the Earth for a field there."""
 
     @abstractmethod
     def records(self) -> list[dict[str, Any]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy
@@ -23,12 +23,15 @@ from flowtex.trace.structure.isolation import Isolation
 from flowtex.trace.structure.records import Records, steady_parts
 from flowtex.trace.trace import paths
 
+if TYPE_CHECKING:
+    import pyvista as pv
+
 #: Distance from the saddle at which a line begins, and between its points, in cells.
 BEGIN_CELLS, POINT_CELLS = 0.05, 0.5
-#: Length of a line, as a share of the surface's extent, and points of one at most.
+#: Length of a line, as a share of the surface's extent, and most points of one.
 LENGTH_EXTENTS, MOST_POINTS = 3.0, 4000
-#: Points of a line before others may end it, and distance in cells from a critical point at which
-#: one is followed no longer.
+#: Points of a line before a critical point may end it, and distance in cells from such a point at
+#: which it is followed no longer.
 FIRST_POINTS, REST_CELLS = 4, 0.25
 #: Distance in cells between two turns of a line at which it is a closed orbit.
 CLOSED_CELLS = 0.02
@@ -64,11 +67,11 @@ class Separatrix:
     def unwound(self) -> Floats:
         """The points up to the second turn that lies close beside the one before, (N, 3).
 
-        That is what a picture has room for of a line that winds up.
+        A picture has no room for more turns.
         """
         spacing = float(np.median(np.linalg.norm(np.diff(self.points, axis=0), axis=1)))
-        found = _turned(self.points, spacing, WOUND_POINTS * spacing)
-        return self.points if found is None else self.points[: 2 * found[1] - found[0] + 1]
+        turn = _turned(self.points, spacing, WOUND_POINTS * spacing)
+        return self.points if turn is None else self.points[: 2 * turn[1] - turn[0] + 1]
 
 
 class Separatrices(Records, list[Separatrix]):
@@ -98,7 +101,7 @@ class Separatrices(Records, list[Separatrix]):
     def _geometries(self) -> list[dict[str, Any] | None]:
         return [None if line.lonlat is None else _split(line.lonlat) for line in self]
 
-    def to_pyvista(self) -> Any:
+    def to_pyvista(self) -> pv.PolyData:
         """Return lines as a ``pyvista.PolyData``.
 
         Its cell arrays are ``forward``, ``closed``, ``time``, and the saddle's ``strength``.
@@ -180,7 +183,7 @@ def separatrices_between(
 ) -> Separatrices:
     """Follow the lines of a steady field whose critical points are known.
 
-    They have this many points at ``most``; :func:`separatrices` has the other arguments.
+    They have at most ``most`` points; the other arguments are those of :func:`separatrices`.
     """
     saddles = points.of_kind("saddle")
     if strongest is not None:
@@ -203,9 +206,9 @@ def _lines(
 ) -> list[Separatrix]:
     """Return the lines that leave saddles, or those that come to them."""
     cells = np.array([_cell(field, saddle) for saddle in saddles])
-    ways = [saddle.eigenvectors[0 if forward else 1].real for saddle in saddles]
+    directions = [saddle.eigenvectors[0 if forward else 1].real for saddle in saddles]
     centers = np.array([saddle.position for saddle in saddles])
-    offsets = BEGIN_CELLS * cells[:, None] * np.array(ways)
+    offsets = BEGIN_CELLS * cells[:, None] * np.array(directions)
     begin, _ = locator(field).nearest(np.concatenate([centers + offsets, centers - offsets]))
     begin = np.array(begin[:, ::-1], dtype=float)
     spacing = POINT_CELLS * float(np.median(cells))
@@ -285,15 +288,15 @@ def _turned(line: Floats, spacing: float, near: float) -> tuple[int, int] | None
     around = max(0.75 * spacing, 1.25 * near)
     pairs = scipy.spatial.KDTree(line).query_pairs(around, output_type="ndarray")
     pairs = pairs[pairs[:, 1] - pairs[:, 0] > LEAST_TURN]
-    # Points may be dense where the flow is slow, and the line goes straight on.
+    # Points may be dense where the flow is slow, on a straight line.
     along = np.cumsum(np.linalg.norm(np.diff(line, axis=0, prepend=line[:1]), axis=1))
     pairs = pairs[along[pairs[:, 1]] - along[pairs[:, 0]] > 2 * around]
     if not len(pairs):
         return None
     before, after = pairs[np.argsort(pairs[:, 1])].T
-    way = line[np.minimum(before + 1, len(line) - 1)] - line[np.maximum(before - 1, 0)]
-    way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), np.finfo(float).tiny)
+    tangent = line[np.minimum(before + 1, len(line) - 1)] - line[np.maximum(before - 1, 0)]
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), np.finfo(float).tiny)
     gap = line[after] - line[before]
-    beside = np.linalg.norm(gap - np.einsum("nc,nc->n", gap, way)[:, None] * way, axis=1)
+    beside = np.linalg.norm(gap - np.einsum("nc,nc->n", gap, tangent)[:, None] * tangent, axis=1)
     close = np.flatnonzero(beside < near)
     return (int(before[close[0]]), int(after[close[0]])) if len(close) else None

@@ -1,10 +1,11 @@
-"""How strong critical points are: the change of velocity that makes them vanish.
+"""Strength of critical points: the change of velocity that makes them vanish.
 
 Two points of opposite index vanish together once the velocity between them is changed by as much
-as the speed there (their robustness: Wang, Rosen, Skraba, Bhatia and Pascucci, 2013). So a point
-is as strong as the least speed below which a region has it and a partner. Points of noise come in
-pairs that little speed parts. Partners of points at a border may lie beyond it: a point without one
-is as strong as the least speed below which a region has it and any other that is left.
+as the speed there (their robustness: Wang, Rosen, Skraba, Bhatia and Pascucci, 2013). So the
+strength of a point is the least speed below which a region contains it and a partner. Points of
+noise are pairs separated by a low speed. Partners of points at a border may lie beyond it: the
+strength of a point without one is the least speed below which a region contains it and any other
+remaining one.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ SHARES = np.geomspace(1e-3, 1.0, 32)
 def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Floats) -> Floats:
     """Return the strengths of critical points of a steady field as speeds, (K,).
 
-    Of each point there is a node beside it, counted row by row, and its Poincare index, (K,) each.
-    Where several have one partner, the steepest, (K,), are left.
+    ``nodes`` are nodes beside the points, counted row by row, and ``signs`` their Poincare indices.
+    Where several have one partner, the steepest remain.
     """
     speed, valid = field.speed[0].ravel(), field.valid.ravel()
     result = np.full(len(nodes), float(speed[valid].max(initial=0.0)))
@@ -34,24 +35,24 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
     needed = speed[edges].max(axis=1)
     order = np.argsort(needed)
     edges, needed = edges[order], needed[order]
-    left, met = np.argsort(-steepness), np.zeros(len(nodes), dtype=bool)
+    remaining, met = np.argsort(-steepness), np.zeros(len(nodes), dtype=bool)
     for level in np.quantile(speed[valid], SHARES):
-        some = edges[: int(np.searchsorted(needed, level, side="right"))]
+        slower = edges[: int(np.searchsorted(needed, level, side="right"))]
         graph = scipy.sparse.coo_array(
-            (np.ones(len(some), bool), some.T), shape=(speed.size, speed.size)
+            (np.ones(len(slower), bool), slower.T), shape=(speed.size, speed.size)
         )
         region = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
-        here = region[nodes[left]].astype(np.intp)
-        gone = _paired(here, signs[left])
-        result[left[gone]] = level
-        left, here = left[~gone], here[~gone]
-        meets = (np.bincount(here, minlength=1)[here] > 1) & ~met[left]
-        result[left[meets]], met[left[meets]] = level, True
+        regions = region[nodes[remaining]].astype(np.intp)
+        paired = _paired(regions, signs[remaining])
+        result[remaining[paired]] = level
+        remaining, regions = remaining[~paired], regions[~paired]
+        meets = (np.bincount(regions, minlength=1)[regions] > 1) & ~met[remaining]
+        result[remaining[meets]], met[remaining[meets]] = level, True
     return result
 
 
 def _paired(region: Indices, signs: Indices) -> Bools:
-    """Return which points (K,) have a partner in their region, the last ones where not all have."""
+    """Return which points (K,) have a partner in their region; surplus ones are the first."""
     kind = 2 * region + (signs > 0)
     counts = np.bincount(kind, minlength=2 * int(region.max(initial=0)) + 2)
     order = np.argsort(kind, kind="stable")

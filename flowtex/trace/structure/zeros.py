@@ -13,9 +13,9 @@ ROUNDING_CELLS = 1e-9
 def bilinear_zeros(corners: Floats) -> tuple[Indices, Floats]:
     """Find the zeros of a velocity in cells.
 
-    It is known at the corners (j, i), (j, i + 1), (j + 1, i) and (j + 1, i + 1), (N, 4, 2). Returns
-    the number of each cell with a zero, (K,), and where that lies in it, (K, 2) from 0 to 1 as (i,
-    j). A cell may have two.
+    ``corners`` are velocities at (j, i), (j, i + 1), (j + 1, i) and (j + 1, i + 1), (N, 4, 2).
+    Returns the number of each cell with a zero, (K,), and its place in the cell, (K, 2) from 0 to 1
+    as (i, j). A cell may have two.
     """
     near = ROUNDING_CELLS * np.abs(corners).max(axis=(1, 2), initial=0)[:, None]
     crossed = ((corners.max(axis=1) >= -near) & (corners.min(axis=1) <= near)).all(axis=1)
@@ -24,7 +24,7 @@ def bilinear_zeros(corners: Floats) -> tuple[Indices, Floats]:
     v = v / np.maximum(np.abs(v).max(axis=(1, 2), keepdims=True), np.finfo(float).tiny)
     a, b, c = v[:, 0], v[:, 1] - v[:, 0], v[:, 2] - v[:, 0]
     d = v[:, 3] - v[:, 2] - b
-    found, places = [], []
+    numbers, places = [], []
     # v = a + b s + c t + d s t is zero where (a + b s) and (c + d s) are parallel.
     for s in _roots(_cross(b, d), _cross(a, d) + _cross(b, c), _cross(a, c)):
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
@@ -32,9 +32,9 @@ def bilinear_zeros(corners: Floats) -> tuple[Indices, Floats]:
             square = np.einsum("nc,nc->n", slope, slope)
             t = -np.einsum("nc,nc->n", first, slope) / square
         inside = _inside(s) & _inside(t)
-        found.append(cells[inside])
+        numbers.append(cells[inside])
         places.append(np.clip(np.stack([s[inside], t[inside]], axis=-1), 0.0, 1.0))
-    return np.concatenate(found), np.concatenate(places)
+    return np.concatenate(numbers), np.concatenate(places)
 
 
 def linear_zeros(points: Floats, vectors: Floats) -> tuple[Floats, Floats]:

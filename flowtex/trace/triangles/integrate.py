@@ -31,12 +31,12 @@ from flowtex.trace.triangles.motion import (
     dot,
 )
 
-#: Rounds of steps after which paths are ended, for each of the rows that nodes would make, and at
-#: least: a few that turn in one place must not hold up all others.
+#: Rounds of steps after which paths are ended, for each row of a square of as many nodes, and at
+#: least: a few that turn in one place must not delay all others.
 STEPS_PER_ROW, LEAST_STEPS = 30, 3_000
-#: Rounds in one triangle, or from one to the other without a move, after which a path is ended: it
-#: goes round in a spiral, or through a triangle so flat that it is as good as stuck. More triangles
-#: do not meet in a node.
+#: Rounds in one triangle, or from one to the next without a move, after which a path is ended: it
+#: spirals, or crosses a triangle so flat that it is practically stuck. No more triangles meet in a
+#: node.
 MOST_STANDING = 300
 #: Barycentric coordinate that is zero, up to rounding.
 SHARE_ROUNDING = 1e-12
@@ -56,16 +56,16 @@ NEWTON_ROUNDS = 3
 class TrianglePaths:
     """Where N particles are at M lags."""
 
-    #: Triangles (M, N), and the shares of their second and third corners, (M, 2, N). Of a path that
-    #: has ended these are where it did.
+    #: Triangles (M, N), and the shares of their second and third corners, (M, 2, N); those of the
+    #: end where a path has ended.
     triangle: Indices
     shares: Floats
-    further: Floats  #: Lag since then, (M, N), 0 for one that has not ended.
+    further: Floats  #: Lag since the end, (M, N), 0 for a path that has not ended.
     ahead: Floats  #: Velocity at the end, (3, N), by which a path goes straight on.
     reach: Floats  #: Lag at which each path ended, (N,), infinite where it continues.
 
     def positions(self, mesh: TriangleMesh, points: Floats, lag: int) -> Floats:
-        """Positions in space at one of the lags, (N, 3), by the nodes (N, 3) of the surface."""
+        """Return positions in space at one lag, (N, 3), by the nodes (N, 3) of the surface."""
         corners = points[mesh.corners[self.triangle[lag]]]
         one, two = self.shares[lag]
         result = corners[:, 0] * (1 - one - two)[:, None]
@@ -89,9 +89,9 @@ def integrate(
     """Follow particles from shares (2, N) of the corners of triangles (N,), at nodes (N, 3).
 
     Lags (M, N) are positive and increasing for each particle. The tolerance is the error allowed in
-    one step, in sizes of its triangle. What hardly moves until the ``last`` lag (N,) stands still;
-    by default that is the last of these. Paths are ended after ``most_steps``, by default some that
-    grow with the number of nodes.
+    one step, in sizes of its triangle. Particles that hardly move until the ``last`` lag (N,) are
+    at rest; by default that is the last of ``lags``. Paths are ended after ``most_steps``, which by
+    default grow with the number of nodes.
     """
     run = _Run(
         motion, points, triangle, shares, lags, lags[-1] if last is None else last, tolerance
@@ -112,10 +112,10 @@ def _most_steps(points: Floats) -> int:
 
 
 def begin(motion: Motion, nodes: Indices) -> Indices:
-    """Return corners, numbers of triangles times three plus that of the corner, to start at.
+    """Return corners to start at, as three times the triangle plus the corner, (N,).
 
-    Of those around each of the nodes (N,), which have one at least, the one is taken that the
-    velocity there points into most.
+    It is the one around each node (N,), which has at least one, into whose triangle the velocity
+    points most.
     """
     mesh = motion.mesh
     start, count = mesh.first[nodes], mesh.first[nodes + 1] - mesh.first[nodes]
@@ -150,7 +150,7 @@ class _Particles:
 
     which: Indices
     triangle: Indices
-    #: Corner opposite to the edge by which they came into their triangle, -1 for none.
+    #: Corner opposite to the edge by which they entered their triangle, -1 for none.
     edge: Indices
     next: Indices  #: Index of the next lag to record.
     standing: Indices
@@ -165,7 +165,7 @@ class _Particles:
 
 
 class _Run:
-    """Everything about one call of :func:`integrate`."""
+    """State of one call of :func:`integrate`."""
 
     def __init__(
         self,
@@ -181,7 +181,7 @@ class _Run:
         #: Six times the error allowed, squared, as it is compared with third derivatives.
         self.error = (6 * tolerance) ** 2
         count = len(triangle)
-        #: The lags and one that is never reached, for particles that have them all.
+        #: The lags and one that is never reached, for particles that have passed all.
         self.lags = np.concatenate([lags, np.full((1, count), np.inf)])
         self.triangle = np.zeros(lags.shape, dtype=np.intp)
         self.shares = np.zeros((len(lags), 2, count))
@@ -210,13 +210,13 @@ class _Run:
         at[0] += 1
         h, edge = _exit(np.maximum(at, 0.0), rate, bent)
         lag, h = self._limited(now, square, h, edge)
-        here = state.shares + h * (now.first + (0.5 * h) * now.second)
+        shares = state.shares + h * (now.first + (0.5 * h) * now.second)
         resting = square <= now.rest
-        ended = resting | ~np.isfinite(here[0] + here[1] + lag)
+        ended = resting | ~np.isfinite(shares[0] + shares[1] + lag)
         if ended.any():
             # They stay where they are.
             h[ended], edge[ended], lag[ended] = 0.0, -1, state.lag[ended]
-            here[:, ended] = state.shares[:, ended]
+            shares[:, ended] = state.shares[:, ended]
             now.first[:, resting] = 0.0
         self._record(now, h, lag)
         # Three steps in a triangle count as much as a turn about a node of a hundred triangles.
@@ -225,7 +225,7 @@ class _Run:
         if now.until is not None:
             state.standing[lag == now.until] = 0
         ended |= state.standing > MOST_STANDING
-        state.lag, state.shares = lag, here
+        state.lag, state.shares = lag, shares
         crossing = np.flatnonzero((edge >= 0) & ~ended)
         ended[self._cross(now, h, crossing, edge)] = True
         if ended.any():
@@ -244,15 +244,15 @@ class _Run:
     def _limited(
         self, now: Derivatives, square: Floats, h: Floats, edge: Indices
     ) -> tuple[Floats, Floats]:
-        """Lags (N,) after steps that are short enough, and these, (N,).
+        """Return lags (N,) after steps that are short enough, and these steps, (N,).
 
-        Steps that end before the edge lose it.
+        ``edge`` becomes -1 for steps that end before it.
         """
         error = dot(now.metric, now.third, now.third)
         bend = turn = dot(now.metric, now.bend, now.bend)
         if now.bend is not now.second:
             turn = dot(now.metric, now.second, now.second)
-        # Third derivatives begin with nothing where a flow that varies sets in.
+        # Third derivatives are zero where a time-varying flow begins.
         over = (error * (h * h) ** 3 > self.error) | (bend * (h * h) > square)
         far = np.flatnonzero(over | (turn * (h * h) ** 2 > MOST_TURN**2))
         if len(far):
@@ -270,12 +270,12 @@ class _Run:
             cut = after > now.until
             h = np.where(cut, (now.until - lag) / now.pace, h)
             edge[cut] = -1
-            # Written, not added, so that rounding leaves no particle before that moment.
+            # Assigned, not added, so that rounding leaves no particle before that moment.
             after = np.where(cut, now.until, after)
         return after, h
 
     def _keep_to_edges(self, now: Derivatives) -> None:
-        """Lead on the particles that would go back over the edge by which they came."""
+        """Keep particles from going back over the edge by which they entered."""
         state = self.state
         few = EDGE_ROUNDING * (np.abs(now.first[0]) + np.abs(now.first[1]))
         rate = _three(now.first)[state.edge, np.arange(len(few))]
@@ -293,38 +293,38 @@ class _Run:
         if len(inner):
             over = at[inner]
             triangle, edge, shares = self._behind(over, state.edge[over], code[inner])
-            there = self.motion.at(triangle, shares, state.lag[over], state.last[over])
-            leads = _inward(there, np.arange(len(over)), edge)
+            behind = self.motion.at(triangle, shares, state.lag[over], state.last[over])
+            leads = _inward(behind, np.arange(len(over)), edge)
             slides[inner[~leads]] = True
             go = over[leads]
-            now.put(go, there.pick(leads))
+            now.put(go, behind.pick(leads))
             state.triangle[go], state.edge[go] = triangle[leads], edge[leads]
             state.shares[:, go] = shares[:, leads]
         slide = at[slides]
-        # What is this little across an edge is rounding.
+        # A rate this small across an edge is rounding.
         rate = _three(now.first[:, at])[state.edge[at], np.arange(len(at))]
         along = at[slides | (~border & (rate <= EDGE_ROUNDING * np.abs(now.first[:, at]).sum(0)))]
         now.first[:, along] = _along(now.first[:, along], now.metric[:, along], state.edge[along])
         now.second[:, slide] = _along(now.second[:, slide], now.metric[:, slide], state.edge[slide])
 
     def _behind(self, at: Indices, edge: Indices, code: Indices) -> tuple[Indices, Indices, Floats]:
-        """Triangles (n,) behind the edges of some particles, their edges, and shares (2, n)."""
+        """Return triangles (n,) behind the edges of particles, their edges, and shares (2, n)."""
         shares, count = all_shares(self.state.shares[:, at]), np.arange(len(at))
         one, two = (np.maximum(shares[(edge + step) % 3, count], 0.0) for step in (1, 2))
-        share, way = one / (one + two), code & 7
-        beyond = NEXT[:, way] * share + AFTER[:, way] * (1 - share)
-        return code >> 3, BEHIND[way], beyond
+        share, layout = one / (one + two), code & 7
+        beyond = NEXT[:, layout] * share + AFTER[:, layout] * (1 - share)
+        return code >> 3, BEHIND[layout], beyond
 
     def _cross(self, now: Derivatives, h: Floats, at: Indices, edge: Indices) -> Indices:
-        """Take some particles over their edges, and return those for which there is nothing."""
+        """Move particles over their edges, and return those at a border that they leave."""
         state, edge = self.state, edge[at]
         code = self.mesh.across[3 * state.triangle[at] + edge]
         over = code >= 0
         if over.all():
             self._place(at, *self._behind(at, edge, code))
             return at[:0]
-        some = at[over]
-        self._place(some, *self._behind(some, edge[over], code[over]))
+        crossing = at[over]
+        self._place(crossing, *self._behind(crossing, edge[over], code[over]))
         out, edge = at[~over], edge[~over]
         rate = now.first[:, out] + h[out] * now.second[:, out]
         speed = np.sqrt(dot(now.metric[:, out], rate, rate))
@@ -339,7 +339,7 @@ class _Run:
         state.triangle[at], state.edge[at], state.shares[:, at] = triangle, edge, shares
 
     def _record(self, now: Derivatives, h: Floats, lag: Floats) -> None:
-        """Write where particles are at the lags that their steps pass."""
+        """Write the positions of particles at the lags that their steps pass."""
         state = self.state
         due = np.flatnonzero(state.due <= lag * (1 + LAG_ROUNDING))
         speeds = None
@@ -349,8 +349,8 @@ class _Run:
             if self.motion.by_length:
                 if speeds is None:
                     speeds = _speeds(now, h)
-                wanted = (state.due[due] - state.lag[due]) / now.size[due]
-                t = step * _fraction(wanted / step, *(speed[due] for speed in speeds))
+                length = (state.due[due] - state.lag[due]) / now.size[due]
+                t = step * _fraction(length / step, *(speed[due] for speed in speeds))
             else:
                 t = np.minimum((state.due[due] - state.lag[due]) / now.pace[due], step)
             number, which = state.next[due], state.which[due]
@@ -377,26 +377,27 @@ class _Run:
         self.reach[which] = state.lag[at]
         for m in range(int(state.next[at].min()), len(self.triangle)):
             later = at[state.next[at] <= m]
-            some = state.which[later]
-            self.triangle[m, some] = state.triangle[later]
-            self.shares[m][:, some] = state.shares[:, later]
-            self.further[m, some] = self.lags[m, some] - state.lag[later]
+            paths = state.which[later]
+            self.triangle[m, paths] = state.triangle[later]
+            self.shares[m][:, paths] = state.shares[:, later]
+            self.further[m, paths] = self.lags[m, paths] - state.lag[later]
 
 
 def all_shares(two: Floats) -> Floats:
-    """All three shares, (3, N), by the second and third."""
+    """Return all three shares, (3, N), by the second and third."""
     return np.stack([1 - two[0] - two[1], two[0], two[1]])
 
 
 def _exit(at: Floats, rate: Floats, bent: Floats) -> tuple[Floats, Indices]:
-    """When the first of quadratics (3, N) from positive numbers gets below zero, and which, (N,).
+    """Return the time when the first of three quadratics becomes negative, and which one, (N,).
 
-    They are at + rate t + bent t^2. Where none does it is never.
+    They are at + rate t + bent t^2, (3, N), and begin positive. The time is infinite, and the
+    number -1, where none does.
     """
     falls = rate < 0
     square = rate * rate - 4 * at * bent
     root = np.sqrt(np.maximum(square, 0.0))
-    # Of the two ways to write a root, that without a difference of like numbers.
+    # Of the two forms of a root, the one without cancellation.
     t = np.where(falls, 2 * at, rate + root)
     t /= np.where(falls, root - rate, -2 * bent)
     t[np.where(falls, square < 0, bent >= 0)] = np.inf
@@ -409,8 +410,8 @@ def _exit(at: Floats, rate: Floats, bent: Floats) -> tuple[Floats, Indices]:
 
 
 def _speeds(now: Derivatives, h: Floats) -> tuple[Floats, Floats, Floats]:
-    """Speeds at the beginning, in the middle and at the end of steps, (N,)."""
-    # Of the square, which is a quadratic.
+    """Return speeds at the beginning, in the middle and at the end of steps, (N,)."""
+    # By the square of the speed, which is a quadratic.
     square = dot(now.metric, now.first, now.first)
     slope = dot(now.metric, now.first, now.second) * h
     bend = dot(now.metric, now.second, now.second) * (h * h)
@@ -419,27 +420,27 @@ def _speeds(now: Derivatives, h: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _fraction(mean: Floats, begin: Floats, middle: Floats, end: Floats) -> Floats:
-    """Fraction of a step, 0 to 1, after which the length is ``mean`` times that of the step's time.
+    """Return the fraction of a step, 0 to 1, in which the length is ``mean`` times its time.
 
-    Speeds are a quadratic through the three, (N,).
+    The speed is a quadratic through three values, (N,) each.
     """
     one, two = 4 * middle - 3 * begin - end, 2 * (begin + end) - 4 * middle
     fraction = 6 * mean / _sum_of_speeds(begin, middle, end)
     for _ in range(NEWTON_ROUNDS):
         length = fraction * (begin + fraction * (one / 2 + fraction * (two / 3)))
         speed = begin + fraction * (one + fraction * two)
-        # What is no number counts as none.
+        # NaN counts as zero.
         fraction = np.fmin(np.fmax(fraction - (length - mean) / speed, 0.0), 1.0)
     return np.asarray(fraction)
 
 
 def _sum_of_speeds(begin: Floats, middle: Floats, end: Floats) -> Floats:
-    """Six times the mean speed of a step, by Simpson's rule."""
+    """Return six times the mean speed of a step, by Simpson's rule."""
     return begin + 4 * middle + end
 
 
 def _inward(now: Derivatives, at: Indices, edge: Indices) -> Bools:
-    """Whether some particles at edges go into their triangles, or along the edge."""
+    """Return whether particles at edges move into their triangles, or along the edge."""
     count = np.arange(len(at))
     rate, bent = (_three(part[:, at])[edge, count] for part in (now.first, now.second))
     few = EDGE_ROUNDING * np.abs(now.first[:, at]).sum(axis=0)
@@ -447,7 +448,7 @@ def _inward(now: Derivatives, at: Indices, edge: Indices) -> Bools:
 
 
 def _along(change: Floats, metric: Floats, edge: Indices) -> Floats:
-    """Return what of changes (2, N) of shares is along the edges opposite to corners (N,)."""
+    """Return the part of changes (2, N) of shares along the edges opposite to corners (N,)."""
     e, f, g = metric
     first, second = edge == 1, edge == 2
     one = np.where(first, g, np.where(second, -f, f - g))

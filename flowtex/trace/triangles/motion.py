@@ -1,4 +1,4 @@
-"""How particles move inside the triangles of a surface, and where they get on across an edge.
+"""Motion of particles inside the triangles of a surface, and across edges.
 
 A particle is in a triangle, at shares of its corners. The velocity of each corner is turned out of
 the tangent plane of the node into that of the triangle, by the smallest rotation, which keeps its
@@ -25,14 +25,14 @@ from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED
 BLOCK_TRIANGLES = 65536
 #: Columns of the table of a steady motion.
 COLUMNS = 14
-#: How many times as fast particles come near a line in a triangle as they get on along it, for
-#: them to count as on the line, and how far off they are then at most, in sizes of the triangle.
+#: Ratio of the rates at which particles approach a line in a triangle and move along it, from which
+#: on they count as on the line, and their greatest distance from it then, in sizes of the triangle.
 STIFF, OFF_LINE = 4.0, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class TriangleMesh:
-    """The geometry of a surface by its triangles, of which M are."""
+    """The geometry of a surface of M triangles."""
 
     corners: Indices  #: Nodes, (M, 3).
     #: For the edge opposite to each corner, (3 M,): the triangle behind it times eight, plus how
@@ -53,7 +53,7 @@ class TriangleMesh:
 
     @classmethod
     def of(cls, surface: TriangleSurface) -> TriangleMesh:
-        """Return that of a surface, which is made once."""
+        """Return the mesh of a surface, made once."""
         return _meshes.get("mesh", lambda: cls._made(surface), owner=surface)
 
     @classmethod
@@ -62,8 +62,8 @@ class TriangleMesh:
         rates, metric = np.empty((count, 3, 2, 2)), np.empty((count, 3))
         heights, size = np.empty((count, 3)), np.empty(count)
         for start in range(0, count, BLOCK_TRIANGLES):
-            some = slice(start, start + BLOCK_TRIANGLES)
-            _measure(surface, some, rates[some], metric[some], heights[some], size[some])
+            block = slice(start, start + BLOCK_TRIANGLES)
+            _measure(surface, block, rates[block], metric[block], heights[block], size[block])
         shown = np.flatnonzero(surface.cells)
         nodes = surface.triangles[shown].ravel()
         order = np.argsort(nodes, kind="stable")
@@ -84,14 +84,14 @@ _meshes: WeakCache[TriangleMesh] = WeakCache()
 
 def _measure(
     surface: TriangleSurface,
-    some: slice,
+    block: slice,
     rates: Floats,
     metric: Floats,
     heights: Floats,
     size: Floats,
 ) -> None:
-    """Write the values of some triangles."""
-    nodes = surface.triangles[some]
+    """Write the values of a block of triangles."""
+    nodes = surface.triangles[block]
     p = surface.points[0][nodes]
     one, two = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     sides = np.linalg.norm([p[:, 2] - p[:, 1], two, one], axis=-1)
@@ -126,12 +126,12 @@ def _across(surface: TriangleSurface) -> Indices:
     corners, beside = surface.triangles, surface.neighbours
     result = np.full(beside.shape, -1, dtype=np.intp)
     for k in range(3):
-        here = np.flatnonzero((beside[:, k] >= 0) & surface.cells)
-        here = here[surface.cells[beside[here, k]]]
-        there = beside[here, k]
-        ends = [corners[here, (k + step) % 3] for step in (1, 2)]
-        at = [np.argmax(corners[there] == end[:, None], axis=1) for end in ends]
-        result[here, k] = 8 * there + 2 * at[0] + ((at[1] - at[0]) % 3 - 1)
+        near = np.flatnonzero((beside[:, k] >= 0) & surface.cells)
+        near = near[surface.cells[beside[near, k]]]
+        far = beside[near, k]
+        ends = [corners[near, (k + step) % 3] for step in (1, 2)]
+        at = [np.argmax(corners[far] == end[:, None], axis=1) for end in ends]
+        result[near, k] = 8 * far + 2 * at[0] + ((at[1] - at[0]) % 3 - 1)
     return result.ravel()
 
 
@@ -145,37 +145,37 @@ AFTER = np.array([[(m + s) % 3 == k for m in range(3) for s in (1, 2)] for k in 
 
 @dataclass
 class Derivatives:
-    """How particles move at one moment, each in the own time and length of its triangle."""
+    """Motion of particles at one moment, each in time and length units of its triangle."""
 
     first: Floats  #: Derivatives of the second and third share by time, (2, N).
     second: Floats
     third: Floats
-    bend: Floats  #: What of the second derivative is due to the place, (2, N).
+    bend: Floats  #: Part of the second derivative due to the change of place, (2, N).
     metric: Floats  #: As :attr:`TriangleMesh.metric`, (3, N).
-    #: Length of a unit of length, and lag that passes in one of time, by which time counts, (N,).
+    #: Length of a unit of length, and lag of a unit of time, (N,).
     size: Floats
     pace: Floats
     rest: Floats  #: Square of the speed up to which a particle stands still, (N,).
     until: Floats | None = None  #: Lag at which the law becomes another, (N,), or ``None``.
 
     def pick(self, mask: Bools) -> Derivatives:
-        """Return those of some particles."""
-        parts: Iterator[Any] = (getattr(self, part.name) for part in fields(self))
-        some: Iterator[Any] = (None if part is None else part[..., mask] for part in parts)
-        return Derivatives(*some)
+        """Return the derivatives of some particles."""
+        arrays: Iterator[Any] = (getattr(self, part.name) for part in fields(self))
+        picked: Iterator[Any] = (None if a is None else a[..., mask] for a in arrays)
+        return Derivatives(*picked)
 
-    def put(self, at: Indices, some: Derivatives) -> None:
-        """Write those of some particles (n,) in place."""
+    def put(self, at: Indices, values: Derivatives) -> None:
+        """Write the derivatives of some particles (n,) in place."""
         for part in fields(self):
-            mine, other = getattr(self, part.name), getattr(some, part.name)
-            if mine is not None and part.name != "bend":
-                mine[..., at] = other
+            target, source = getattr(self, part.name), getattr(values, part.name)
+            if target is not None and part.name != "bend":
+                target[..., at] = source
         if self.bend is not self.second:
-            self.bend[:, at] = some.bend
+            self.bend[:, at] = values.bend
 
 
 def dot(metric: Floats, one: Floats, two: Floats) -> Floats:
-    """Products of vectors (2, N) that are changes of the second and third share."""
+    """Return products of vectors (2, N) that are changes of the second and third share."""
     across = one[0] * two[1] + one[1] * two[0]
     return np.asarray(
         metric[0] * (one[0] * two[0]) + metric[1] * across + metric[2] * (one[1] * two[1])
@@ -183,7 +183,7 @@ def dot(metric: Floats, one: Floats, two: Floats) -> Floats:
 
 
 class Motion(ABC):
-    """What the integrator asks of a field, for one direction."""
+    """A field as the integrator uses it, in one direction."""
 
     #: Whether lags are lengths of paths.
     by_length = False
@@ -195,7 +195,7 @@ class Motion(ABC):
     def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
         """Return derivatives at shares (2, N) of the second and third corner of triangles (N,).
 
-        The particles have come ``lag`` (N,), and are followed until ``last`` (N,).
+        The particles are at ``lag`` (N,), and are followed until ``last`` (N,).
         """
 
 
@@ -209,13 +209,13 @@ class SteadyMotion(Motion):
         self.floor = floor = speed_floor(flow.speed) if by_length else 0.0
         speed = np.where(flow.speed[0, 0] > floor, flow.speed[0, 0], 0.0)
         self.table = _table(self.mesh, flow.components[0, 0], speed)
-        #: Rates at which particles come near a line in each triangle, and get on along it, (2, T);
-        #: equal ones mean none.
+        #: Rates at which particles approach a line in each triangle, and move along it, (2, T);
+        #: equal ones mean no line.
         self.pulls = _pulls(direction * self.table[:, 2:6].T)
         self._has_line = self.pulls[0] != self.pulls[1]
 
     def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
-        """Return derivatives, as :meth:`Motion.at` says."""
+        """Return derivatives, see :meth:`Motion.at`."""
         part = np.ascontiguousarray(self.table.take(triangle, axis=0, mode="clip").T)
         if self.direction < 0:
             np.negative(part[:6], out=part[:6])
@@ -234,9 +234,9 @@ class SteadyMotion(Motion):
     def _lead_along(
         self, triangle: Indices, metric: Floats, first: Floats, second: Floats, third: Floats
     ) -> None:
-        """Have particles on a line that they were drawn to move along it, in place.
+        """Let particles on an attracting line move along it, in place.
 
-        Steps would be as short as what is left of the way to the line decays quickly.
+        Otherwise steps would be as short as the decay of the distance to the line is fast.
         """
         at = np.flatnonzero(self._has_line[triangle])
         near, along = self.pulls[:, triangle[at]]
@@ -248,7 +248,7 @@ class SteadyMotion(Motion):
 
 
 def _pulls(law: Floats) -> Floats:
-    """Eigenvalues (2, T) of linear laws (4, T), the negative first, of which one is far greater."""
+    """Return eigenvalues (2, T) of laws (4, T), the negative first, if it is far greater."""
     middle = (law[0] + law[3]) / 2
     apart = np.sqrt(np.maximum(middle**2 - law[0] * law[3] + law[1] * law[2], 0.0))
     near, along = middle - apart, middle + apart
@@ -256,54 +256,54 @@ def _pulls(law: Floats) -> Floats:
 
 
 def speed_floor(speed: Floats) -> float:
-    """Speed up to which a particle has stopped."""
+    """Return the speed up to which a particle has stopped."""
     return max(STOPPED_SPEED * float(speed.max()), np.finfo(float).tiny)
 
 
 def _table(mesh: TriangleMesh, components: Floats, speed: Floats) -> Floats:
-    """How shares change in each triangle, (M, COLUMNS), in times and its own lengths.
+    """Return the change of shares in each triangle, (M, COLUMNS), in its time and length units.
 
-    Rates (2) at the first corner, their changes by the second and by the third share (2, 2), metric
-    (3), size, pace, and the speed (3) as the rates, with what counts as none.
+    Columns are rates (2) at the first corner, their changes by the second and by the third share
+    (2, 2), metric (3), size, pace, and the speed (3) as the rates, plus a floor.
     """
     result = np.empty((len(mesh.corners), COLUMNS))
     for start in range(0, len(result), BLOCK_TRIANGLES):
-        some = slice(start, start + BLOCK_TRIANGLES)
-        corners, part = mesh.corners[some], result[some]
-        own = speed[corners]
-        most = own.max(axis=1)
-        pace = mesh.size[some] / np.where(most > 0, most, 1.0)
-        velocity = np.where(own[..., None] > 0, components[corners], 0.0) * pace[:, None, None]
-        rates = np.einsum("mksc,mkc->mks", mesh.rates[some].reshape(-1, 3, 2, 2), velocity)
+        block = slice(start, start + BLOCK_TRIANGLES)
+        corners, part = mesh.corners[block], result[block]
+        speeds = speed[corners]
+        most = speeds.max(axis=1)
+        pace = mesh.size[block] / np.where(most > 0, most, 1.0)
+        velocity = np.where(speeds[..., None] > 0, components[corners], 0.0) * pace[:, None, None]
+        rates = np.einsum("mksc,mkc->mks", mesh.rates[block].reshape(-1, 3, 2, 2), velocity)
         part[:, :2] = rates[:, 0]
         part[:, 2:4], part[:, 4:6] = rates[:, 1] - rates[:, 0], rates[:, 2] - rates[:, 0]
-        part[:, 6:9], part[:, 9], part[:, 10] = mesh.metric[some], mesh.size[some], pace
-        own = own / np.where(most > 0, most, 1.0)[:, None]
-        # A path that comes to where all is at rest gets slower and slower; it ends at the floor.
-        part[:, 11] = own[:, 0] + STOPPED_SPEED / RESTING_CELLS
-        part[:, 12:] = own[:, 1:] - own[:, :1]
+        part[:, 6:9], part[:, 9], part[:, 10] = mesh.metric[block], mesh.size[block], pace
+        speeds = speeds / np.where(most > 0, most, 1.0)[:, None]
+        # A path into a region at rest becomes slower and slower; it ends at the floor.
+        part[:, 11] = speeds[:, 0] + STOPPED_SPEED / RESTING_CELLS
+        part[:, 12:] = speeds[:, 1:] - speeds[:, :1]
     return result
 
 
 class ChangingMotion(Motion):
-    """A field that varies in time, linearly between its steps and not beyond them.
+    """A time-varying field, linear between its steps and constant beyond them.
 
     Lags count from ``destination``, a time; ``components`` (T * N, 2) are those of all steps.
     """
 
     def __init__(
-        self, mesh: TriangleMesh, components: Floats, times: Floats, destination: float, way: float
+        self, mesh: TriangleMesh, components: Floats, times: Floats, destination: float, side: float
     ) -> None:
         super().__init__(mesh)
-        self.components, self.direction = components, way
-        lags = way * (times - destination)
+        self.components, self.direction = components, side
+        lags = side * (times - destination)
         #: Lags of the time steps, increasing, and the first node of each.
-        self.levels = lags if way > 0 else lags[::-1].copy()
+        self.levels = lags if side > 0 else lags[::-1].copy()
         first = np.arange(len(times)) * (len(components) // len(times))
-        self.steps = first if way > 0 else first[::-1].copy()
+        self.steps = first if side > 0 else first[::-1].copy()
 
     def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
-        """Return derivatives, as :meth:`Motion.at` says."""
+        """Return derivatives, see :meth:`Motion.at`."""
         velocity, change, until = self._corners(self.mesh.corners.take(triangle, axis=0), lag)
         rates = np.ascontiguousarray(self.mesh.rates.take(triangle, axis=0).T)
         law, later = (_linear(rates.reshape(3, 2, 2, -1), part) for part in (velocity, change))
@@ -313,29 +313,29 @@ class ChangingMotion(Motion):
         third = law[1] * second[0] + law[2] * second[1]
         third += 2 * (later[1] * first[0] + later[2] * first[1])
         metric, size = self.mesh.metric.take(triangle, axis=0).T, self.mesh.size.take(triangle)
-        # In a flow that varies none stays at rest.
+        # In a time-varying flow no particle stays at rest.
         pace, rest = np.ones(len(lag)), np.full(len(lag), -1.0)
         return Derivatives(
             first, second, third, bend, metric, size, pace, rest, np.minimum(until, last)
         )
 
     def _corners(self, nodes: Indices, lag: Floats) -> tuple[Floats, Floats, Floats]:
-        """Velocity of nodes (N, 3), and its change by lag, (3, 2, N), and until when, (N,)."""
+        """Return velocity of nodes (N, 3), its change by lag, (3, 2, N), and until when, (N,)."""
         after = np.searchsorted(self.levels, lag, side="right")
         early, late = np.maximum(after - 1, 0), np.minimum(after, len(self.levels) - 1)
         begin, end = self.levels[early], self.levels[late]
         span = np.where(end > begin, end - begin, 1.0)
-        one, two = (
+        before, following = (
             self.components.take(nodes + self.steps[at][:, None], axis=0).transpose(1, 2, 0)
             for at in (early, late)
         )
-        change = (two - one) * (self.direction / span)
-        velocity = self.direction * one + change * np.maximum(lag - begin, 0.0)
+        change = (following - before) * (self.direction / span)
+        velocity = self.direction * before + change * np.maximum(lag - begin, 0.0)
         return velocity, change, np.where(end > lag, end, np.inf)
 
 
 def _linear(rates: Floats, corners: Floats) -> Floats:
-    """Rates at the first corner, and their changes by the others' shares, (3, 2, N)."""
+    """Return rates at the first corner, and their changes by the other shares, (3, 2, N)."""
     result = rates[:, :, 0] * corners[:, None, 0] + rates[:, :, 1] * corners[:, None, 1]
     result[1:] -= result[0]
     return np.asarray(result)

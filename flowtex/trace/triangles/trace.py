@@ -15,7 +15,7 @@ from flowtex.trace.compose import Map
 from flowtex.trace.integrate import MOST_CELLS, Paths
 from flowtex.trace.lags import small_cell
 from flowtex.trace.slices import TraceSlices
-from flowtex.trace.triangles.compose import DIRECT_STEPS, Composition, known_lags
+from flowtex.trace.triangles.compose import DIRECT_STEPS, Composition, direct_lags
 from flowtex.trace.triangles.integrate import begin, integrate
 from flowtex.trace.triangles.motion import (
     ChangingMotion,
@@ -45,22 +45,22 @@ def triangle_slices(
 ) -> TraceSlices:
     """Follow the paths through some nodes, ``chosen`` (1, N); others have reach and path 0.
 
-    Paths that are composed are so of those around them: all are followed. Lags (M,) are in
+    Composition needs the paths around them: all are followed then. Lags (M,) are in
     multiples of ``unit`` (1, N), and ``run`` maps a function over blocks.
     """
-    mesh, points, known = _mesh(field), field.points[0], len(lags)
+    mesh, points, direct = _mesh(field), field.points[0], len(lags)
     if compose and len(steps) == 1:
-        known = _known(field, parameter, lags, unit)
-    followed = chosen if known == len(lags) else field.valid
+        direct = _direct_lags(field, parameter, lags, unit)
+    followed = chosen if direct == len(lags) else field.valid
     at = np.flatnonzero(followed[0] & (np.diff(mesh.first) > 0))
     sides = (-1.0, 1.0) if two_sided else (-1.0,)
     displacement = np.zeros((len(sides), len(steps), len(lags), *field.points.shape), np.float32)
     reach = np.zeros((len(sides), len(steps), *field.shape), np.float32)
     motions = [_motions(field, steps, parameter, side) for side in sides]
     compositions: list[Composition] = []
-    if known < len(lags):
+    if direct < len(lags):
         compositions = [
-            Composition(cast("SteadyMotion", motion[0]), points, lags * unit.flat[0], known, moved)
+            Composition(cast("SteadyMotion", motion[0]), points, lags * unit.flat[0], direct, moved)
             for motion, moved in zip(motions, displacement[:, 0, :, 0], strict=True)
         ]
 
@@ -70,14 +70,14 @@ def triangle_slices(
         triangle, corner = np.divmod(begin(motion, nodes), 3)
         shares = np.stack([corner == 1, corner == 2]).astype(float)
         units = unit[0, nodes]
-        due = lags[:known, None] * units
+        due = lags[:direct, None] * units
         options: dict[str, Any] = {"tolerance": tolerance, "last": float(lags[-1]) * units}
         if compositions:
             options["most_steps"] = DIRECT_STEPS
         paths = integrate(motion, points, triangle, shares, due, **options)
-        here = points[nodes]
-        for m in range(known):
-            moved = paths.positions(mesh, points, m) - here
+        start = points[nodes]
+        for m in range(direct):
+            moved = paths.positions(mesh, points, m) - start
             displacement[side, step, m, 0, nodes] = np.clip(moved, -MOST_CELLS, MOST_CELLS)
         reach[side, step, 0, nodes] = paths.reach / units
         if compositions:
@@ -104,14 +104,14 @@ def triangle_slices(
     )
 
 
-def _known(field: FlowField, parameter: str, lags: Floats, unit: Floats) -> int:
-    """How many of the lags are to be integrated, the others being composed."""
+def _direct_lags(field: FlowField, parameter: str, lags: Floats, unit: Floats) -> int:
+    """Return how many of the lags are integrated; the others are composed."""
     if not field.steady or field.sign_free or not np.all(unit == unit.flat[0]):
         return len(lags)
     speed = field.speed[0][field.valid]
     moving = speed[speed > 0]
     pace = float(np.median(moving)) if parameter == "time" and len(moving) else 1.0
-    return known_lags(lags, pace * float(unit.flat[0]) / small_cell(field))
+    return direct_lags(lags, pace * float(unit.flat[0]) / small_cell(field))
 
 
 def triangle_paths(
@@ -124,22 +124,22 @@ def triangle_paths(
     direction: float,
     tolerance: float,
 ) -> Paths:
-    """Do what :func:`flowtex.trace.paths` does; a path that has ended stays where it did."""
+    """Return what :func:`flowtex.trace.paths` does; a path that has ended stays at its end."""
     surface, mesh = _surface(field), _mesh(field)
     motion = _motions(field, [step], parameter, direction)[0]
     triangle = np.clip(np.floor(start[:, 1]).astype(np.intp), 0, len(mesh.corners) - 1)
     second = np.clip(start[:, 1] - triangle, 0.0, 1.0)
     shares = np.stack([second, np.clip(start[:, 0], 0.0, 1.0 - second)])
-    known = surface.cells[triangle]
-    due = np.broadcast_to(lags[:, None], (len(lags), int(known.sum()))).copy()
+    usable = surface.cells[triangle]
+    due = np.broadcast_to(lags[:, None], (len(lags), int(usable.sum()))).copy()
     paths = integrate(
-        motion, field.points[0], triangle[known], shares[:, known], due, tolerance=tolerance
+        motion, field.points[0], triangle[usable], shares[:, usable], due, tolerance=tolerance
     )
     positions, reach = np.repeat(start[None], len(lags), axis=0), np.zeros(len(start))
     two = np.moveaxis(paths.shares, 1, -1)
     weights = np.concatenate([1 - two.sum(axis=-1, keepdims=True), two], axis=-1)
-    positions[:, known] = surface.index_of(paths.triangle, weights)
-    reach[known] = paths.reach
+    positions[:, usable] = surface.index_of(paths.triangle, weights)
+    reach[usable] = paths.reach
     nothing = np.zeros(len(start), dtype=bool)
     return Paths(positions, reach, nothing, nothing)
 
@@ -155,7 +155,7 @@ def _surface(field: FlowField) -> TriangleSurface:
 def _motions(
     field: FlowField, steps: Sequence[int], parameter: str, direction: float
 ) -> list[Motion]:
-    """One motion for each destination time."""
+    """Return one motion for each destination time."""
     if field.steady:
         return [SteadyMotion(field, direction, by_length=parameter == "arclength")] * len(steps)
     components = np.ascontiguousarray(field.index_velocity.components).reshape(-1, 2)
@@ -164,7 +164,7 @@ def _motions(
 
 
 def _rates(field: FlowField, steps: Sequence[int], parameter: str) -> Floats:
-    """Velocities at the nodes, (T, 1, N, 2), by arc length of length one."""
+    """Return velocities at the nodes, (T, 1, N, 2), by arc length of unit length."""
     flow = field.index_velocity
     rate = np.asarray(flow.components[list(steps)])
     if parameter == "arclength":
