@@ -1,4 +1,4 @@
-"""Where arrows stand on a surface: points nested by octaves, at each as even as they can be.
+"""Positions of arrows on a surface: points nested by octaves, as even as possible at each.
 
 An octave halves the area that a seed has to itself. Its candidates are spread over the surface by
 hashed numbers; of these the one farthest from all seeds is taken, then the next, as long as they
@@ -34,18 +34,18 @@ OCTAVE, MOST_OCTAVES = float(np.sqrt(0.5)), 80
 CANDIDATE_AREA = 0.125
 #: Candidates in an octave of the whole surface, at most.
 MOST_CANDIDATES = 50_000
-#: What is seeded beside a view, in heights of it and in distances of seeds; and how much closer
-#: seeds are, so that views hardly nearer find theirs there.
+#: Margin that is seeded beside a view, in heights of it and in distances of seeds; and how much
+#: closer seeds are than requested, so that slightly nearer views need no new ones.
 AROUND, AROUND_RADII, CLOSER = 0.5, 3.0, 0.75
 
 Hashes = NDArray[np.uint32]
 
 
 class _Rows:
-    """Arrays of one length, some of which are taken, or more are added to."""
+    """Arrays of one length, which can be indexed and joined together."""
 
-    def __getitem__(self, some: Indices | Bools) -> Self:
-        return type(self)(*(values[some] for values in vars(self).values()))
+    def __getitem__(self, selection: Indices | Bools) -> Self:
+        return type(self)(*(values[selection] for values in vars(self).values()))
 
     def __add__(self, more: Self) -> Self:
         pairs = zip(vars(self).values(), vars(more).values(), strict=True)
@@ -99,26 +99,26 @@ class ArrowSeeds:
         return self._last[2]
 
     def vertex_data(self, seeds: Seeds) -> dict[str, Floats]:
-        """Return what shaders have of seeds, as :func:`vertex_data` does."""
+        """Return the vertex attributes of seeds, as :func:`vertex_data` does."""
         corners = self.corners[seeds.cell]
         return vertex_data(self._geometry, corners, seeds.place, seeds.radius)
 
     def _covers(self, last: TileView, least: float, view: TileView, spacing: float) -> bool:
-        """Whether the seeds of the last view do for another one."""
+        """Return whether the seeds of the last view are sufficient for another one."""
         points = self._corners_of(view)
-        there = CLOSER * least * _pixel(last, _away(last, points))
-        here = spacing * _pixel(view, _away(view, points))
-        return bool((there <= here).all() and _sees(last, points, 0.0).all())
+        last_distance = CLOSER * least * _pixel(last, _distances(last, points))
+        distance = spacing * _pixel(view, _distances(view, points))
+        return bool((last_distance <= distance).all() and _sees(last, points, 0.0).all())
 
     def _corners_of(self, view: TileView) -> Floats:
-        """Corners of what is in view as far as the surface goes, (8, 3), in mesh coordinates."""
-        away = np.cross(view.planes[0, :3], view.planes[2, :3])
-        center = float(away @ self._geometry.center)
-        reach = 0.5 * self._geometry.extent * float(np.linalg.norm(away))
+        """Return the corners of the visible box around the surface, (8, 3), in mesh coordinates."""
+        ahead = np.cross(view.planes[0, :3], view.planes[2, :3])
+        center = float(ahead @ self._geometry.center)
+        reach = 0.5 * self._geometry.extent * float(np.linalg.norm(ahead))
         return np.array(
             [
                 np.linalg.solve(
-                    [side[:3], end[:3], away], [-side[3], -end[3], center + sign * reach]
+                    [side[:3], end[:3], ahead], [-side[3], -end[3], center + sign * reach]
                 )
                 for side in view.planes[:2]
                 for end in view.planes[2:]
@@ -128,8 +128,8 @@ class ArrowSeeds:
 
     def _make(self, view: TileView, spacing: float) -> Seeds:
         geometry = self._geometry
-        away = np.inf if view.eye is None else norm(geometry.center - view.eye)
-        nearest = max(away - 0.5 * geometry.extent, 0.0) if view.eye is not None else 1.0
+        distance = np.inf if view.eye is None else norm(geometry.center - view.eye)
+        nearest = max(distance - 0.5 * geometry.extent, 0.0) if view.eye is not None else 1.0
         least = CLOSER * spacing * _pixel(view, np.array(nearest))
         radius, parts, seeds = geometry.extent, self._cells, self._whole[0]
         for octave in range(MOST_OCTAVES):
@@ -141,30 +141,30 @@ class ArrowSeeds:
             else:
                 parts = self._divided(self._needed(parts, view, spacing, radius), area)
                 key = _mixed(parts.key + np.uint32(octave))
-                some = _shares(key) * area < self._areas(parts)
-                seeds = self._grown(seeds, self._points(parts[some], key[some]), radius)
+                chosen = _shares(key) * area < self._areas(parts)
+                seeds = self._grown(seeds, self._points(parts[chosen], key[chosen]), radius)
             if radius <= least or not len(parts.cell):
                 break
             radius *= OCTAVE
         points = self._mesh_points(seeds.position)
         near = _sees(view, points, 0.0) & (
-            seeds.radius >= CLOSER * spacing * _pixel(view, _away(view, points))
+            seeds.radius >= CLOSER * spacing * _pixel(view, _distances(view, points))
         )
         return seeds[near]
 
     def _mesh_points(self, position: Floats) -> Floats:
-        """Take positions in the surface's frame (n, 3) to mesh coordinates."""
+        """Transform positions in the surface's frame (n, 3) to mesh coordinates."""
         return position @ self._geometry.frame + self._geometry.center
 
     def _spread(self, octave: int, area: float) -> Seeds:
-        """Candidates of an octave all over the surface, evenly along the row of its cells."""
+        """Return the candidates of an octave, evenly spread over the areas of all cells."""
         number = np.arange(int(self._sums[-1] / area), dtype=np.uint32)
         key = _mixed(_mixed(np.full(1, octave, np.uint32) + OCTAVE_PRIME) + number)
         cell = np.searchsorted(self._sums, (number + _shares(key)) * area, side="right")
         return self._points(self._cells[np.minimum(cell, len(self._sums) - 1)], key)
 
     def _points(self, parts: _Parts, key: Hashes) -> Seeds:
-        """One candidate in each part."""
+        """Return one candidate in each part."""
         first = _mixed(key + OCTAVE_PRIME)
         share = np.stack([_shares(first), _shares(_mixed(first + OCTAVE_PRIME))], axis=-1)
         place = parts.low + parts.size * share
@@ -172,40 +172,40 @@ class ArrowSeeds:
         return Seeds(parts.cell, place, position, np.full(len(place), np.inf))
 
     def _grown(self, seeds: Seeds, candidates: Seeds, least: float) -> Seeds:
-        """Take candidates, the farthest from all others first, that are not too near."""
+        """Add the candidates that are not too near, the farthest from all others first."""
         most = least / OCTAVE
-        away: Floats = np.full(len(candidates.cell), most)
+        distance: Floats = np.full(len(candidates.cell), most)
         if len(seeds.cell):
             found = scipy.spatial.cKDTree(seeds.position).query(
                 candidates.position, distance_upper_bound=most
             )
-            away = np.minimum(found[0], most)
-        order = np.argsort(-away, kind="stable")
-        order = order[away[order] >= least]
-        position, away = candidates.position[order], away[order]
+            distance = np.minimum(found[0], most)
+        order = np.argsort(-distance, kind="stable")
+        order = order[distance[order] >= least]
+        position, distance = candidates.position[order], distance[order]
         taken = []
         if len(order):
-            around: Any = scipy.spatial.cKDTree(position).query_ball_point(position, most)
-            for n, others in enumerate(around):
-                if away[n] < least:
+            neighbours: Any = scipy.spatial.cKDTree(position).query_ball_point(position, most)
+            for n, near in enumerate(neighbours):
+                if distance[n] < least:
                     continue
                 taken.append(n)
-                later = np.array([m for m in others if m > n], dtype=np.intp)
+                later = np.array([m for m in near if m > n], dtype=np.intp)
                 apart = norm(position[later] - position[n])
-                away[later] = np.minimum(away[later], apart)
+                distance[later] = np.minimum(distance[later], apart)
         new = candidates[order[taken]]
-        return seeds + Seeds(new.cell, new.place, new.position, away[taken])
+        return seeds + Seeds(new.cell, new.place, new.position, distance[taken])
 
     def _needed(self, parts: _Parts, view: TileView, spacing: float, radius: float) -> _Parts:
-        """Parts of which something is seen, or near what is, and where the octave is needed."""
+        """Return the parts in view, or near it, where the octave is needed."""
         middle = self._mesh_points(self._positions(parts.cell, parts.low + 0.5 * parts.size))
         reach = 0.5 * norm(self._sides(parts)).sum(axis=0)
-        pixel = _pixel(view, np.maximum(_away(view, middle) - reach, 0.0))
+        pixel = _pixel(view, np.maximum(_distances(view, middle) - reach, 0.0))
         needed = radius >= OCTAVE * CLOSER * spacing * pixel
         return parts[needed & _sees(view, middle, reach + AROUND_RADII * radius)]
 
     def _divided(self, parts: _Parts, area: float) -> _Parts:
-        """Halve parts along their longer sides until none has more than an area."""
+        """Halve parts along their longer sides until none is larger than an area."""
         while (large := self._areas(parts) > area).any():
             whole = parts[large]
             sides = norm(self._sides(whole))
@@ -222,11 +222,11 @@ class ArrowSeeds:
         return parts
 
     def _positions(self, cell: Indices, place: Floats) -> Floats:
-        """Points of cells, (n, 3)."""
+        """Return points of cells, (n, 3)."""
         return _between(self._nodes[self.corners[cell]].astype(float), place)
 
     def _sides(self, parts: _Parts) -> Floats:
-        """Return what leads across parts along i and j, (2, n, 3)."""
+        """Return the vectors across parts along i and j, (2, n, 3)."""
         ends = ([0.0, 0.5], [1.0, 0.5]), ([0.5, 0.0], [0.5, 1.0])
         return np.array(
             [
@@ -241,25 +241,25 @@ class ArrowSeeds:
 
 
 def _between(corners: NDArray[np.floating], place: Floats) -> Floats:
-    """Return what lies between the corners (n, 4, ...) of cells at places (n, 2)."""
+    """Interpolate between the corners (n, 4, ...) of cells at places (n, 2)."""
     (i, j), at = place.T.reshape(2, -1, *[1] * (corners.ndim - 2)), np.moveaxis(corners, 1, 0)
     low, high = (1 - i) * at[0] + i * at[1], (1 - i) * at[2] + i * at[3]
     return np.asarray((1 - j) * low + j * high)
 
 
-def _away(view: TileView, points: Floats) -> Floats:
-    """Distances from the eye, or 1 where rays are parallel, (n,)."""
+def _distances(view: TileView, points: Floats) -> Floats:
+    """Return distances from the eye, or 1 where rays are parallel, (n,)."""
     return np.ones(len(points)) if view.eye is None else norm(points - view.eye)
 
 
 def _pixel(view: TileView, away: Floats) -> Floats:
-    """Length that a pixel covers at distances from the eye."""
+    """Return the length that a pixel covers at distances from the eye."""
     return 2 * view.half_height / view.pixels * away
 
 
 def _sees(view: TileView, points: Floats, reach: Floats | float) -> Bools:
-    """Which points (n, 3) are in view, or beside it as far as that is seeded."""
-    slack = reach + AROUND * view.pixels * _pixel(view, _away(view, points))
+    """Return which points (n, 3) are in view, or in the seeded margin beside it."""
+    slack = reach + AROUND * view.pixels * _pixel(view, _distances(view, points))
     length = norm(view.planes[:, :3])
     inside = points @ view.planes[:, :3].T + view.planes[:, 3] >= -slack[:, None] * length
     return np.asarray(inside.all(axis=-1))
@@ -273,14 +273,14 @@ def _mixed(key: Hashes) -> Hashes:
 
 
 def _shares(key: Hashes) -> Floats:
-    """Numbers from 0 to 1 of hashed ones."""
+    """Return hashes as numbers from 0 to 1."""
     return key / 2.0**32
 
 
 def vertex_data(
     geometry: SurfaceGeometry | TriangleGeometry, corners: Indices, place: Floats, radius: Floats
 ) -> dict[str, Floats]:
-    """Return what shaders have of seeds, by the names of attributes.
+    """Return the vertex attributes of seeds by name.
 
     Seeds lie between the vertices at the ``corners`` (n, 4) of a cell.
     """
@@ -302,32 +302,33 @@ def vertex_data(
 
 
 def in_tile(
-    pyramid: Pyramid, key: TileKey, geometry: SurfaceGeometry, at: Floats
+    pyramid: Pyramid, key: TileKey, geometry: SurfaceGeometry, places: Floats
 ) -> tuple[Bools, Indices, Floats]:
     """Find places (n, 2), (i, j) of the root of a grid, in a tile.
 
-    Returns which are there, and of these the corners of their cells, (m, 4), and places there.
+    Returns a mask of those inside, and of these the corners of their cells, (m, 4), and their
+    places in the cells.
     """
     lines = zip(pyramid.line_numbers(pyramid.depth), pyramid.line_numbers(key.level), strict=True)
-    own = np.stack(
+    position = np.stack(
         [
             np.interp(np.interp(x, np.arange(len(root)), root), fine, np.arange(len(fine)))
-            for x, (root, fine) in zip(at.T, reversed(list(lines)), strict=True)
+            for x, (root, fine) in zip(places.T, reversed(list(lines)), strict=True)
         ],
         axis=-1,
     )
-    own -= np.array([key.column, key.row]) * TILE_CELLS
+    position -= np.array([key.column, key.row]) * TILE_CELLS
     rows, columns = geometry.shape
-    cell = np.clip(np.floor(own), 0, (columns - 2, rows - 2)).astype(int)
-    inside: Bools = (np.abs(own - cell - 0.5) <= 0.5).all(axis=-1)
+    cell = np.clip(np.floor(position), 0, (columns - 2, rows - 2)).astype(int)
+    inside: Bools = (np.abs(position - cell - 0.5) <= 0.5).all(axis=-1)
     inside &= geometry.cells[cell[:, 1], cell[:, 0]]
     first = cell[inside, 1] * columns + cell[inside, 0]
     corners = first[:, None] + np.array([0, 1, columns, columns + 1])
-    return inside, corners, (own - cell)[inside]
+    return inside, corners, (position - cell)[inside]
 
 
 def seed_limits() -> dict[str, float]:
-    """Numbers by which a client finds the same seeds, for JSON."""
+    """Return the numbers by which a client finds the same seeds, for JSON."""
     return {
         "octave": OCTAVE,
         "mostOctaves": MOST_OCTAVES,

@@ -1,8 +1,8 @@
-"""The camera: where a flow is seen from, as plain numbers that every renderer takes.
+"""The camera of a picture, as plain numbers that every renderer takes.
 
-Places in the view are (x, y) from -1 to 1, right and up, so nothing here depends on the size of a
-picture but ``aspect``, its width over its height. A flat surface is seen straight on and without
-perspective, a curved one from above and aside. The numbers of :data:`CAMERA_LIMITS` travel to the
+Positions in the view are (x, y) from -1 to 1, right and up, so only ``aspect``, width over height,
+depends on the size of a picture. A flat surface is seen straight on and without perspective, a
+curved one from above and aside. The numbers of :data:`CAMERA_LIMITS` travel to the
 browser in the header, so that both sides move the camera alike.
 """
 
@@ -13,7 +13,7 @@ import re
 import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
-from typing import Any, Self
+from typing import Any, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,8 +26,10 @@ from flowtex.field import Surface
 from flowtex.field.earth import EARTH_RADIUS
 
 Point = tuple[float, float, float]
+#: Attributes of a camera by name, for JSON: lists of numbers, numbers, and a bool.
+CameraValues: TypeAlias = dict[str, Any]
 
-#: The way from a curved surface to the camera, and what is up there.
+#: Direction from a curved surface to the camera, and the direction up.
 ASIDE, UP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
 #: The same for all of a globe: above longitude 0 and 20 degrees north.
 WHOLE_GLOBE = (math.cos(math.radians(20)), 0.0, math.sin(math.radians(20)))
@@ -161,7 +163,7 @@ class Camera:
         Parameters
         ----------
         surface
-            What to look at.
+            Surface to look at.
         aspect
             Width of the picture over its height.
         zoom
@@ -233,7 +235,7 @@ class Camera:
         half = np.tan(np.radians(CAMERA_LIMITS.view_angle / 2))
         axes = np.stack([right, np.cross(ahead, right), ahead])
         x, y, z = axes @ (surface.points[surface.valid] - surface.center).T
-        # What is near is seen larger.
+        # Near points are seen larger.
         beside = np.maximum(np.abs(x) / aspect, np.abs(y)) / (half * share)
         distance = float(np.max(z + beside))
         closer = min(zoom, closest)
@@ -311,8 +313,8 @@ class Camera:
         words = map(repr, (*numbers, self.parallel_scale, self.view_angle))
         return ",".join(["parallel" if self.parallel else "perspective", *words])
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the attributes by name: lists of numbers, numbers, and a bool, for JSON."""
+    def to_dict(self) -> CameraValues:
+        """Return the attributes by name, for JSON."""
         return {k: list(v) if isinstance(v, tuple) else v for k, v in asdict(self).items()}
 
     @property
@@ -344,7 +346,7 @@ class Camera:
         return np.array([*self.position, 1.0])
 
     def matrix(self, aspect: float, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
-        """Matrix that takes (x, y, z, 1) to clip space (x, y, z, w), (4, 4).
+        """Return the matrix that takes (x, y, z, 1) to clip space (x, y, z, w), (4, 4).
 
         x / w and y / w run from -1 to 1 across the picture, to the right and up, as in VTK. The
         matrix has no near or far plane: w is the distance in perspective and 1 otherwise, and z / w
@@ -381,22 +383,22 @@ class Camera:
 
         They are NaN for points behind the camera.
         """
-        # Counted from the focal point, the digits are those of the view.
+        # Relative to the focal point the digits are those of the view.
         offset = np.asarray(points, dtype=float) - np.asarray(self.focal_point)
         right, up, depth = (offset @ axis for axis in self.axes)
-        places = np.asarray(np.stack([right / aspect, up], axis=-1) / self.height)
+        positions = np.asarray(np.stack([right / aspect, up], axis=-1) / self.height)
         if self.parallel:
-            return places
-        # What is as far away as the focal point is seen as if there were no perspective.
+            return positions
+        # At the distance of the focal point the projection is as without perspective.
         scale: Floats = np.asarray(1.0 + depth / self.distance)[..., None]
-        return np.where(scale > 0, places / np.where(scale > 0, scale, 1.0), np.nan)
+        return np.where(scale > 0, positions / np.where(scale > 0, scale, 1.0), np.nan)
 
     def ray(self, x: float, y: float, aspect: float) -> tuple[Floats, Floats]:
         """Return the origin and the unit direction of the ray through a point of the view."""
         right, up, ahead = self.axes
-        at = np.asarray(self.focal_point) + (right * x * aspect + up * y) * self.height
-        start = at - ahead * self.distance if self.parallel else np.asarray(self.position)
-        return start, (at - start) / np.linalg.norm(at - start)
+        target = np.asarray(self.focal_point) + (right * x * aspect + up * y) * self.height
+        start = target - ahead * self.distance if self.parallel else np.asarray(self.position)
+        return start, (target - start) / np.linalg.norm(target - start)
 
     def shift(self, offset: ArrayLike) -> Self:
         """Return the camera moved by a vector, (3,)."""
@@ -496,17 +498,17 @@ class Camera:
         )
 
 
-def can_share_camera(one: Surface, other: Surface) -> bool:
+def can_share_camera(first: Surface, second: Surface) -> bool:
     """Return whether a camera that shows one surface shows the other one as well."""
-    smaller, larger = sorted((one.extent, other.extent))
-    apart = float(np.linalg.norm(one.center - other.center))
-    is_flat = one.frame is not None
-    near = apart <= MOST_APART * larger <= MOST_APART * MOST_LARGER * smaller
-    return near and is_flat == (other.frame is not None)
+    smaller, larger = sorted((first.extent, second.extent))
+    distance = float(np.linalg.norm(first.center - second.center))
+    is_flat = first.frame is not None
+    near = distance <= MOST_APART * larger <= MOST_APART * MOST_LARGER * smaller
+    return near and is_flat == (second.frame is not None)
 
 
 def _side(center: Floats) -> tuple[Point, Point]:
-    """From where a point of a globe is seen from above, and the way northward there."""
+    """Return the directions upward and northward at a point of a globe."""
     if float(np.linalg.norm(center)) < LEAST_ASIDE * EARTH_RADIUS:
         return WHOLE_GLOBE, UP
     ahead = center / np.linalg.norm(center)

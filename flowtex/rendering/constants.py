@@ -1,6 +1,6 @@
 """The numbers of the method, as ``shaders/common/constants.glsl`` has them by the same names.
 
-What each is for stands there.
+That file explains each.
 """
 
 from __future__ import annotations

@@ -117,7 +117,7 @@ def prefer_headless() -> None:
 
 
 def begin_trial() -> Future[OpenGLReport]:
-    """Begin to try OpenGL in a second process, beside what else there is to do before drawing."""
+    """Start the trial of OpenGL in a second process, and return its future report."""
     # A forked process lacks the thread that waits for the report.
     trial = _trials.get(os.getpid())
     if trial is None:
@@ -130,7 +130,7 @@ def begin_trial() -> Future[OpenGLReport]:
 
 
 def take_report(report: OpenGLReport) -> None:
-    """Take the report of another process in place of a trial."""
+    """Use the report of another process in place of a trial."""
     prefer_headless()
     _trials[os.getpid()] = trial = Future[OpenGLReport]()
     trial.set_result(report)
@@ -158,7 +158,7 @@ def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenG
             command,
             capture_output=True,
             encoding="utf-8",
-            errors="replace",  # drivers speak as they like
+            errors="replace",  # drivers print in any encoding
             timeout=timeout,
             check=False,
         )
@@ -218,7 +218,7 @@ def _ending(code: int) -> str:
 
 
 def _remedy() -> str:
-    """Name what installs an OpenGL that VTK can use in the present environment."""
+    """Return how to install an OpenGL that VTK can use in the present environment."""
     chosen = os.environ.get(WINDOW_VARIABLE, "")
     if importlib.util.find_spec("vtkmodules") is None:
         return "python -m pip install vtk"

@@ -1,4 +1,4 @@
-"""What is drawn of the Earth with a field that has a projection: lines, land, the globe below."""
+"""The Earth behind a field that has a projection: lines, land, and the globe below."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ USUAL_HEIGHT_PX, WIDTH_RANGE = 600, (0.6, 2.0)
 SPACINGS, SPACING_PX = (200e3, 80e3, 20e3, 0.0), 2.0
 #: Share of the extent by which the box of a map is wider than its surface.
 WIDER = 1e-3
-#: How much lower than the surface the globe lies, in radii, beside what its cells are flatter.
+#: Distance of the globe below the surface, in radii, in addition to the sagitta of its cells.
 LOWER = 1e-5
 
 
 def map_box(field: FlowField) -> Floats:
-    """Return the least and the greatest position of nodes, also of those on land, a bit widened."""
+    """Return the slightly widened bounds of the nodes, also of those on land, (2, 3)."""
     surface = field.surface
     box = bounds(surface.points[surface.has_position])
     margin = WIDER * np.ptp(box, axis=0).max()
@@ -54,19 +54,19 @@ def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
     projection, box = field.projection, map_box(field)
     if projection is None:
         return {}
-    if field.surface.is_closed:  # of which nothing ends
+    if field.surface.is_closed:  # which has no border
         return {"coastlines": coastlines(projection), "graticule": graticule(projection, box)}
     middles, reach = _cells(field)
     tree = scipy.spatial.cKDTree(middles)
 
-    def there(lines: MapLines) -> MapLines:
+    def in_cells(lines: MapLines) -> MapLines:
         distances, nearest = tree.query(lines.points)
         # A point of the graticule may be a node, which is as far as that up to rounding.
         return lines.within(distances <= (1 + 1e-6) * reach[nearest])
 
-    meshes = there(graticule(projection, box))
+    meshes = in_cells(graticule(projection, box))
     if not has_globe:
-        return {"coastlines": there(coastlines(projection, box)), "graticule": meshes}
+        return {"coastlines": in_cells(coastlines(projection, box)), "graticule": meshes}
     return {"coastlines": coastlines(projection), "graticule": graticule(projection).and_(meshes)}
 
 
@@ -97,7 +97,7 @@ def globe_radius(field: FlowField) -> float | None:
 
 
 def _cells(field: FlowField) -> tuple[Floats, Floats]:
-    """Middles (N, 3) of the cells that are drawn and of those on land, and how far corners are."""
+    """Return the middles (N, 3) of the cells drawn and on land, and their radii, (N,)."""
     surface = field.surface
     corners = surface.points.reshape(-1, 3)[surface.nodes_of(surface.cells | land_cells(field))]
     middles = corners.mean(axis=1)

@@ -1,4 +1,4 @@
-"""Triangles of a structured surface, as many as a view needs.
+"""Triangles of a structured surface, in the number that a view needs.
 
 A surface is cut into blocks of :data:`BLOCK_CELLS` cells a side. Each block is drawn with every
 node, every second, every fourth, ..., up to one cell a block: with as few as keep the error on the
@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from flowtex.textures.tiles import BLOCK_CELLS, block_places
 
 #: Distance on the screen between a node and the triangle that replaces it.
 MAX_ERROR_PIXELS = 0.05
-#: What counts of an error of the outline, a quarter of a pixel across it; and of one along the
+#: Weight of an error of the outline, a quarter of a pixel across it; and of one along the
 #: surface, half a pixel: noise is looked up where a point lies, and only paths belong to a
 #: place that is off by this error. Where fragments correct their place it may be four pixels along
 #: the surface and half of one across it, which the outline of a curved one is off by at most.
@@ -53,8 +53,8 @@ class MeshLevels:
     """The levels of a surface's mesh, and the triangles that a view needs.
 
     Nodes are (J, I, 3), and cells that are drawn (J - 1, I - 1); along a periodic axis, j or i, the
-    first line of nodes lies where the last one does. ``slide`` and ``height`` are what counts of an
-    error along the surface and across it, from 0 to 1.
+    first line of nodes lies where the last one does. ``slide`` and ``height`` are the weights of
+    errors along the surface and across it, from 0 to 1.
     """
 
     def __init__(
@@ -80,7 +80,10 @@ class MeshLevels:
 
     @classmethod
     def of(cls, textures: TextureSet, *, placed: bool = False) -> MeshLevels:
-        """Return the levels of what a texture set draws, by fragments that correct their place."""
+        """Return the levels of a texture set's surface.
+
+        ``placed`` says that fragments correct their place between the nodes.
+        """
         geometry = textures.grid
         # A noise that lies on the nodes moves with them.
         shares = (SLIDE_SHARE if textures.paper is None else 1.0, 1.0)
@@ -90,7 +93,7 @@ class MeshLevels:
 
     @property
     def records(self) -> Floats:
-        """What levels are chosen by, for a client: errors and places of blocks."""
+        """Errors and places of blocks, by which a client chooses levels."""
         return np.concatenate([np.moveaxis(self.error, 0, -1), self.blocks], axis=-1)
 
     def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
@@ -109,7 +112,7 @@ class MeshLevels:
             scale = 0.5 * pixels / (half_height * distance)
             side = cell_size * scale * 2.0 ** np.arange(len(self.error))[:, None, None]
             exact = self.error * scale <= MAX_ERROR_PIXELS
-        # What lies within a pixel may be left out, however rough it is.
+        # Cells within a pixel may be left out, however rough they are.
         fits = exact | (np.isfinite(self.error) & (side <= 1.0))
         fits &= side <= MAX_SIDE_HEIGHTS * pixels
         fits[0] = True
@@ -162,11 +165,11 @@ class MeshLevels:
         return triangles
 
     def _errors(self, values: Floats, directions: Floats | None = None) -> Floats:
-        """Greatest error of the values (J, I, C) in each block at each level, (L, ., .).
+        """Return the greatest error of the values (J, I, C) in each block at each level, (L, ., .).
 
-        A level leaves out every second line of the one before. Its error is at most that one's
-        and what the lines that are left out deviate from their neighbours. Where there are
-        directions, most counts what is along the normals; the outline is apart, across it.
+        A level leaves out every second line of the one before. Its error is at most that of the
+        one before plus the deviation of the omitted lines from their neighbours. With directions,
+        errors along the normals have the greatest weight, and the outline is separate.
         """
         count = BLOCK_CELLS.bit_length()
         errors = np.zeros((2, count, len(self._rows.first), len(self._columns.first)))
@@ -175,42 +178,46 @@ class MeshLevels:
             errors[:, level] = errors[:, level - 1]
             for axis in (0, 1):
                 # Only lines that are left out have an error.
-                left = slice(1, len(lines[axis]) - 1, 2)
-                at = (slice(None),) * axis + (left,)
-                here = None if directions is None else directions[:, *at]
-                size = self._size(_deviation(values, lines[axis], axis), here, border=1 - axis)
-                some = [own[left] if a == axis else own for a, own in enumerate(lines)]
-                errors[:, level] += self._greatest(size, *some)
-                at = (slice(None),) * axis + (_every_second(len(lines[axis])),)
-                values, lines[axis] = values[at], lines[axis][at[-1]]
-                directions = None if directions is None else directions[:, *at]
+                omitted = slice(1, len(lines[axis]) - 1, 2)
+                index = (slice(None), *(slice(None),) * axis, omitted)
+                block_directions = None if directions is None else directions[index]
+                size = self._size(
+                    _deviation(values, lines[axis], axis), block_directions, border=1 - axis
+                )
+                omitted_lines = [n[omitted] if a == axis else n for a, n in enumerate(lines)]
+                errors[:, level] += self._greatest(size, *omitted_lines)
+                kept = _every_second(len(lines[axis]))
+                values, lines[axis] = values.take(kept, axis), lines[axis][kept]
+                directions = None if directions is None else directions.take(kept, axis + 1)
             twist = values[1:, 1:] + values[:-1, :-1] - values[1:, :-1] - values[:-1, 1:]
-            here = None if directions is None else directions[:, :-1, :-1]
-            size = self._size(twist / 4, here)
+            block_directions = None if directions is None else directions[:, :-1, :-1]
+            size = self._size(twist / 4, block_directions)
             errors[:, level] += self._greatest(size, lines[0][:-1], lines[1][:-1])
         return np.asarray(errors.max(axis=0))
 
-    def _size(self, off: Floats, directions: Floats | None, *, border: int | None = None) -> Floats:
-        """Size of errors (J, I, C) and of the outline, (2, J, I), at nodes with some directions.
+    def _size(
+        self, error: Floats, directions: Floats | None, *, border: int | None = None
+    ) -> Floats:
+        """Return the weighted sizes of errors (J, I, C) and of the outline, (2, J, I).
 
-        Those along the surface count less. ``border`` is the axis whose first and last nodes are on
-        the outline. Without directions the outline is not told apart, (1, J, I).
+        Those along the surface have less weight. ``border`` is the axis whose first and last nodes
+        are on the outline. Without directions the outline is not separate, (1, J, I).
         """
-        size = norm(off)
+        size = norm(error)
         if directions is None or not size.size:
             return size[None]
-        both = np.zeros((2, *size.shape))
-        height = self._height * np.abs(dot(off, directions[0]))
-        np.maximum(height, self._slide * size, out=both[0])
+        weighted = np.zeros((2, *size.shape))
+        height = self._height * np.abs(dot(error, directions[0]))
+        np.maximum(height, self._slide * size, out=weighted[0])
         if border is not None:
             ends = (slice(None),) * border + ([0, -1],)
-            along = dot(off[ends], directions[1 + border][ends])
+            along = dot(error[ends], directions[1 + border][ends])
             aside = np.sqrt(np.maximum(size[ends] ** 2 - along**2, 0))
-            both[1][ends] = OUTLINE_SHARE * aside
-        return both
+            weighted[1][ends] = OUTLINE_SHARE * aside
+        return weighted
 
     def _greatest(self, values: Floats, rows: Indices, columns: Indices) -> Floats:
-        """Greatest value in each block, of values on lines of nodes; a border counts for both."""
+        """Return the greatest value in each block, of lines of nodes; borders belong to both."""
         if not values.size:
             return np.zeros((len(self._rows.first), len(self._columns.first)))
         for axis, lines, blocks in ((-2, rows, self._rows), (-1, columns, self._columns)):
@@ -226,7 +233,7 @@ class MeshLevels:
         return values
 
     def _mixed_levels(self) -> Bools:
-        """Levels at which a cell of a block would cover blanked cells and others."""
+        """Return the levels at which a cell of a block would cover blanked and other cells."""
         shape = (BLOCK_CELLS.bit_length(), len(self._rows.first), len(self._columns.first))
         mixed = np.zeros(shape, dtype=bool)
         if self._cells.all() or not self._cells.size:
@@ -237,18 +244,20 @@ class MeshLevels:
             whole = np.outer(
                 np.diff([*rows, self._shape[0] - 1]), np.diff([*columns, self._shape[1] - 1])
             )
-            some = ((drawn > 0) & (drawn < whole)).astype(float)
+            mixed_cells = ((drawn > 0) & (drawn < whole)).astype(float)
             first = (
                 np.searchsorted(rows, self._rows.first),
                 np.searchsorted(columns, self._columns.first),
             )
-            reduced = np.maximum.reduceat(np.maximum.reduceat(some, first[0], 0), first[1], 1)
+            reduced = np.maximum.reduceat(
+                np.maximum.reduceat(mixed_cells, first[0], 0), first[1], 1
+            )
             mixed[level] = mixed[level - 1] | (reduced > 0)
         return mixed
 
 
 def mesh_limits() -> dict[str, float]:
-    """Numbers by which a client chooses the levels itself, for JSON."""
+    """Return the numbers by which a client chooses the levels itself, for JSON."""
     return {
         "tileCells": BLOCK_CELLS,
         "maxErrorPixels": MAX_ERROR_PIXELS,
@@ -267,27 +276,27 @@ def _directions(points: Floats) -> Floats:
     # Only directions count, so no number is too large to be squared.
     points = points / max(float(np.abs(points).max()), np.finfo(float).tiny)
     along_i, along_j = np.gradient(points, axis=1), np.gradient(points, axis=0)
-    found = np.stack([np.cross(along_i, along_j), along_i, along_j])
-    length = norm(found)[..., None]
-    return np.asarray(found / np.where(length > 0, length, 1.0))
+    directions = np.stack([np.cross(along_i, along_j), along_i, along_j])
+    length = norm(directions)[..., None]
+    return np.asarray(directions / np.where(length > 0, length, 1.0))
 
 
 def _deviation(values: Floats, lines: Indices, axis: int) -> Floats:
-    """How every second line of values differs from those beside it, but the first and the last."""
+    """Return how every second line of values, except the ends, differs from its neighbours."""
     count = (len(lines) - 1) // 2
     pick = [slice(first, first + 2 * count - 1, 2) for first in (0, 1, 2)]
-    numbers = [lines[some] for some in pick]
+    numbers = [lines[part] for part in pick]
     share = (numbers[1] - numbers[0]) / (numbers[2] - numbers[0])
-    low, left, high = (values[(slice(None),) * axis + (some,)] for some in pick)
+    low, left, high = (values[(slice(None),) * axis + (part,)] for part in pick)
     return np.asarray(left - low - np.expand_dims(share, (1 - axis, 2)) * (high - low))
 
 
-def _every_second(count: int) -> Any:
-    """Index every second of this many lines, and the last one."""
-    return slice(None, None, 2) if count % 2 else np.append(np.arange(0, count, 2), count - 1)
+def _every_second(count: int) -> Indices:
+    """Return the index of every second of this many lines, and the last one."""
+    return np.append(np.arange(0, count - 1, 2), count - 1)
 
 
-#: More doublings than there are.
+#: Marks blocks that are not drawn: more doublings than any block has.
 NOT_DRAWN = 99
 
 
@@ -309,17 +318,17 @@ def join(
     would lie inside of a side. ``blocks`` are rows and columns of blocks of the finest nodes; along
     a periodic axis, j or i, the first line of blocks follows on the last one.
     """
-    # Doublings from the finest nodes to those here; what is not drawn is not a neighbour.
+    # Doublings from the finest nodes to those of each block; blocks not drawn are no neighbours.
     nodes = np.full(blocks, NOT_DRAWN)
     for part in parts:
         _put(nodes, part, np.full_like(part.levels, part.step))
     finest = nodes.copy()
     for axis in (0, 1):
-        near = np.pad(nodes, [(int(a == axis),) * 2 for a in (0, 1)], mode="edge")
+        padded = np.pad(nodes, [(int(a == axis),) * 2 for a in (0, 1)], mode="edge")
         if periodic[axis]:
-            near = np.pad(nodes, [(int(a == axis),) * 2 for a in (0, 1)], mode="wrap")
-        for by in (0, 2):
-            beside = np.take(near, range(by, by + blocks[axis]), axis=axis)
+            padded = np.pad(nodes, [(int(a == axis),) * 2 for a in (0, 1)], mode="wrap")
+        for offset in (0, 2):
+            beside = np.take(padded, range(offset, offset + blocks[axis]), axis=axis)
             finest = np.minimum(finest, beside)
     strides = np.zeros(blocks, dtype=np.int64)  # doublings to the nodes that are drawn
     for part in parts:
@@ -334,9 +343,9 @@ def join(
         for axis in (0, 1):
             ends = [lines[axis].take(k, axis=axis) for k in (0, -1)]
             if periodic[axis]:
-                both = np.maximum(*ends)
-                lines[axis][(slice(None),) * axis + (0,)] = both
-                lines[axis][(slice(None),) * axis + (-1,)] = both
+                coarsest = np.maximum(*ends)
+                lines[axis][(slice(None),) * axis + (0,)] = coarsest
+                lines[axis][(slice(None),) * axis + (-1,)] = coarsest
         joins, before = [], [line.copy() for line in lines]
         for part in parts:
             joins.append(_joined(part, lines))
@@ -350,45 +359,45 @@ def _joined(part: Region, lines: list[Ints]) -> Ints:
     drawn = part.levels >= 0
     result = np.empty((4, rows, columns), dtype=np.int64)
     for side in range(4):
-        axis, far = divmod(side, 2)
+        axis, is_far = divmod(side, 2)
         line = lines[axis] if axis == 0 else lines[axis].T
         counts = (rows, columns) if axis == 0 else (columns, rows)
         first = (part.row, part.column) if axis == 0 else (part.column, part.row)
-        picks = np.minimum(first[0] + (np.arange(counts[0]) + far) * size, len(line) - 1)
+        picks = np.minimum(first[0] + (np.arange(counts[0]) + is_far) * size, len(line) - 1)
         width = line.shape[1]
         along = first[1] + np.arange(counts[1] * size)
         values = line[np.ix_(picks, np.minimum(along, width - 1))]
-        most = values.reshape(counts[0], counts[1], size).max(axis=2)
+        coarsest = values.reshape(counts[0], counts[1], size).max(axis=2)
         shown = drawn if axis == 0 else drawn.T
-        spread = np.where(np.repeat(shown, size, axis=1), np.repeat(most, size, axis=1), values)
+        spread = np.where(np.repeat(shown, size, axis=1), np.repeat(coarsest, size, axis=1), values)
         inside = along < width
         line[np.ix_(picks, along[inside])] = spread[:, inside]
-        result[side] = (most if axis == 0 else most.T) - part.step
+        result[side] = (coarsest if axis == 0 else coarsest.T) - part.step
     return result
 
 
 def _put(blocks: Ints, part: Region, values: Ints) -> None:
-    """Write values of a part's own blocks to those that they cover, where they are drawn."""
+    """Write values of a part's blocks to the finest blocks below them, where they are drawn."""
     size = 1 << part.step
     spread, drawn = (
         np.repeat(np.repeat(a, size, axis=0), size, axis=1) for a in (values, part.levels >= 0)
     )
-    there = blocks[part.row : part.row + len(spread), part.column : part.column + spread.shape[1]]
-    rows, columns = there.shape
-    np.copyto(there, spread[:rows, :columns], where=drawn[:rows, :columns])
+    covered = blocks[part.row : part.row + len(spread), part.column : part.column + spread.shape[1]]
+    rows, columns = covered.shape
+    np.copyto(covered, spread[:rows, :columns], where=drawn[:rows, :columns])
 
 
 def _over(blocks: Ints, part: Region, reduce: np.ufunc) -> Ints:
-    """Reduce values of blocks over those that a part's own ones cover."""
+    """Reduce values of the finest blocks over each block of a part."""
     size, (rows, columns) = 1 << part.step, part.levels.shape
     j = np.arange(part.row, min(part.row + rows * size, len(blocks)))
     i = np.arange(part.column, min(part.column + columns * size, blocks.shape[1]))
-    some = reduce.reduceat(blocks[np.ix_(j, i)], np.arange(0, len(j), size), axis=0)
-    result: Ints = reduce.reduceat(some, np.arange(0, len(i), size), axis=1)
+    row_values = reduce.reduceat(blocks[np.ix_(j, i)], np.arange(0, len(j), size), axis=0)
+    result: Ints = reduce.reduceat(row_values, np.arange(0, len(i), size), axis=1)
     return result
 
 
 def _snapped(places: Ints, level: Ints) -> Ints:
-    """Places along borders, (N, M), moved to those of their levels, (N,); the ends stay."""
+    """Move places along borders, (N, M), to those of their levels, (N,); the ends stay."""
     step = (1 << level)[:, None]
     return np.where(places == places[:, -1:], places, places // step * step)

@@ -1,4 +1,4 @@
-"""Which tiles a view asks for.
+"""Choice of the tiles that a view needs.
 
 From the root down, a block is replaced by finer ones where its cells cover too many pixels, and
 where it is in view.
@@ -21,7 +21,7 @@ CELL_PIXELS = 3.0
 
 @dataclass(frozen=True)
 class TileView:
-    """What decides on tiles."""
+    """The numbers of a view by which tiles are chosen."""
 
     #: Where the camera is, (3,), in the coordinates of the mesh; ``None`` where rays are parallel.
     eye: Floats | None
@@ -33,14 +33,14 @@ class TileView:
     cell_pixels: float = CELL_PIXELS  #: Pixels of a cell above which the next level is drawn.
 
     def sees(self, blocks: Floats) -> Bools:
-        """Which blocks (J, I, 5) of a mesh may be in view."""
+        """Return which blocks (J, I, 5) of a mesh may be in view."""
         center, radius = blocks[..., :3], blocks[..., 3]
         length = np.linalg.norm(self.planes[:, :3], axis=1)
         inside = center @ self.planes[:, :3].T + self.planes[:, 3] >= -radius[..., None] * length
         return np.asarray(inside.all(axis=-1))
 
     def cell_sizes(self, blocks: Floats) -> Floats:
-        """Greatest size of the cells of blocks (J, I, 5) in pixels."""
+        """Return the greatest size of the cells of blocks (J, I, 5), in pixels."""
         center, radius, size = blocks[..., :3], blocks[..., 3], blocks[..., 4]
         distance = np.ones(radius.shape)
         if self.eye is not None:
@@ -50,14 +50,14 @@ class TileView:
 
 
 def cell_pixels(settings: Settings) -> float:
-    """Pixels of a cell above which the next level is drawn, where streaks are no longer cut."""
+    """Return the pixels of a cell above which the next level is drawn; it cuts no streaks."""
     streak = 0.5 * settings.samples * settings.spacing * settings.grain
     return CELL_PIXELS * max(1.0, 2 * streak / (CELL_PIXELS * PATH_CELLS))
 
 
 @dataclass
 class Choice:
-    """What a view asks of a tile, or of the root."""
+    """The cells of a tile, or of the root, that a view needs."""
 
     needed: bool  #: Whether some of its own cells are to be shown.
     pixels: float  #: Size of the largest of those cells in pixels.
@@ -69,7 +69,7 @@ Choices = dict[TileKey | None, Choice]
 
 
 def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
-    """Return what a view asks of each tile of which it shows something."""
+    """Return the choice of a view for each tile that is in it."""
     chosen: Choices = {}
     waiting: list[TileKey | None] = [None]
     while waiting:
@@ -79,7 +79,7 @@ def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
         places = pyramid.places(level)[rows, columns]
         seen, pixels = view.sees(places), view.cell_sizes(places)
         coarse = seen & (pixels > view.cell_pixels) if level else np.zeros_like(seen)
-        own = seen & ~coarse
+        shown = seen & ~coarse
         finer = (
             [
                 child
@@ -89,7 +89,7 @@ def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
             if coarse.any()
             else []
         )
-        chosen[key] = Choice(bool(own.any()), float(pixels[own].max(initial=0.0)), finer)
+        chosen[key] = Choice(bool(shown.any()), float(pixels[shown].max(initial=0.0)), finer)
         waiting += finer
     return chosen
 
@@ -98,14 +98,14 @@ def finer_part(pyramid: Pyramid, child: TileKey, above: TileKey | None) -> tuple
     """Return the blocks of a tile, or of the root, that a tile of the next level covers."""
     half = pyramid.tile_blocks // 2
     row, column = (
-        half * at - pyramid.tile_blocks * place
-        for at, place in zip(child[1:], above[1:] if above else (0, 0), strict=True)
+        half * index - pyramid.tile_blocks * place
+        for index, place in zip(child[1:], above[1:] if above else (0, 0), strict=True)
     )
     return slice(row, row + half), slice(column, column + half)
 
 
 def wanted_tiles(chosen: Choices) -> list[TileKey]:
-    """Return the tiles of which something is to be shown, those of the largest cells first."""
+    """Return the tiles that have cells to show, those of the largest cells first."""
     wanted = [key for key, choice in chosen.items() if key is not None and choice.needed]
     return sorted(wanted, key=lambda key: -chosen[key].pixels)
 
@@ -119,16 +119,16 @@ def cover(chosen: Choices, ready: Callable[[TileKey], bool]) -> dict[TileKey | N
     shown: dict[TileKey | None, list[TileKey]] = {}
 
     def covered(key: TileKey | None) -> bool:
-        """Have a tile shown, by itself or by finer ones, if it can be."""
+        """Show a tile, by itself or by finer ones, and return whether that is possible."""
         choice = chosen[key]
-        done = [child for child in choice.finer if covered(child)]
-        if key is not None and not choice.needed and len(done) == len(choice.finer):
+        ready_children = [child for child in choice.finer if covered(child)]
+        if key is not None and not choice.needed and len(ready_children) == len(choice.finer):
             return True
         if key is not None and not ready(key):
-            for child in done:
+            for child in ready_children:
                 _hide(child)
             return False
-        shown[key] = done
+        shown[key] = ready_children
         return True
 
     def _hide(key: TileKey) -> None:

@@ -22,7 +22,7 @@ class TriangleBlocks:
 
     @property
     def records(self) -> Floats:
-        """What a client chooses by, (rows, columns, 5): the places of blocks."""
+        """The places of blocks, by which a client chooses, (rows, columns, 5)."""
         return self.blocks
 
     def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
@@ -39,7 +39,7 @@ class TriangleBlocks:
 
 
 def mesh_levels_of(textures: TextureSet, *, placed: bool = False) -> MeshLevels | TriangleBlocks:
-    """Return the triangles of what a texture set draws, by level and block.
+    """Return the triangles of a texture set's surface, by level and block.
 
     ``placed`` says that fragments correct their place between the nodes.
     """

@@ -6,8 +6,9 @@ One function turns a texture set, the settings and the state of the view into th
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from flowtex.rendering.arrow_seeds import seed_limits
 from flowtex.rendering.constants import FAR_CELLS, KERNELS, UNCERTAIN_LAYER
 from flowtex.settings import Settings
 from flowtex.textures import PaperTextures, TextureSet
+
+#: Uniforms by name: bool, int, float, tuples of float, or lists for arrays.
+Values: TypeAlias = Mapping[str, Any]
 
 #: Doublings from the finest cell of the noise to the extent of the surface.
 NOISE_DOUBLINGS = 30
@@ -45,14 +49,14 @@ ANCHOR_RANGE = 8.0
 
 @dataclass
 class ViewState:
-    """What changes from frame to frame."""
+    """State of the view, which changes from frame to frame."""
 
     #: Point of the mesh that the view looks at, (3,), in the mesh's own coordinates.
     focus: Floats = field(default_factory=lambda: np.zeros(3))
     #: Point of the surface's frame that positions are counted from, (3,).
     anchor: Floats = field(default_factory=lambda: np.zeros(3))
-    #: The eye in the mesh's own coordinates and 1, or the way to it and 0 where all rays are
-    #: parallel, (4,).
+    #: The eye in the mesh's own coordinates and 1, or the direction to it and 0 where all rays
+    #: are parallel, (4,).
     eye: Floats = field(default_factory=lambda: np.array([0.0, 0.0, 1.0, 0.0]))
     #: How far the time has come from one destination time of the slices to the next, 0 to 1.
     between: float = 0.0
@@ -79,7 +83,7 @@ def variants(
     near: bool = False,
     sparse: bool = False,
 ) -> frozenset[str]:
-    """Names of the shader's variant for a texture set.
+    """Return the names of the shader's variant for a texture set.
 
     The grains may change in time and be sparse, and the view may be so near that paths stay in
     their cells.
@@ -109,7 +113,7 @@ def variants(
 
 
 def client_constants() -> dict[str, Any]:
-    """Numbers by which a client computes the uniforms itself, for JSON."""
+    """Return the numbers by which a client computes the uniforms itself, for JSON."""
     return {
         "noiseDoublings": NOISE_DOUBLINGS,
         "clearDoublings": CLEAR_DOUBLINGS,
@@ -129,8 +133,8 @@ def client_constants() -> dict[str, Any]:
     }
 
 
-def _shading() -> dict[str, Any]:
-    """Numbers by which a client computes the mean colours of a picture."""
+def _shading() -> dict[str, list[float]]:
+    """Return the numbers by which a client computes the mean colours of a picture."""
     matrices = {
         "toCones": const.TO_CONES,
         "toLab": const.TO_LAB,
@@ -146,7 +150,7 @@ def _shading() -> dict[str, Any]:
 
 
 def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
-    """Values by name: bool, int, float, tuples of float, or lists for arrays.
+    """Return the uniforms by name.
 
     ``moving``, ``near`` and ``sparse`` are not uniforms: shaders have variants for them.
     """
@@ -222,7 +226,7 @@ def has_arrows(textures: TextureSet, settings: Settings) -> bool:
 
 
 def arrow_distance(settings: Settings) -> float:
-    """Pixels, as the settings count them, from an arrow to the next at least."""
+    """Return the least distance of arrows, in pixels of the settings."""
     return ARROW_LEAST * max(settings.arrows, ARROW_MOST_DENSE)
 
 
@@ -242,8 +246,8 @@ def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> in
     It is for paths by length on a plane that is seen along parallel rays, as pixels are alike.
     """
     store, geometry = textures.store, textures.geometry
-    known = store.steps == 1 and store.parameter == "arclength" and textures.paper is None
-    if not known or not geometry.planar or view.eye[3]:
+    is_known = store.steps == 1 and store.parameter == "arclength" and textures.paper is None
+    if not is_known or not geometry.planar or view.eye[3]:
         return None
     facing = abs(geometry.frame[2] @ view.eye[:3]) / np.linalg.norm(view.eye[:3])
     pixel = view.pixel / max(float(facing), 1e-30)
@@ -258,7 +262,7 @@ def needed_lags(textures: TextureSet, settings: Settings, view: ViewState) -> in
 
 
 def needed_levels(textures: TextureSet, settings: Settings, view: ViewState) -> int | None:
-    """Return 0 where the finest mip level of the slices does for a view; ``None`` elsewhere.
+    """Return 0 where a view needs only the finest mip level of slices; ``None`` elsewhere.
 
     As paths are smooth in space, a level too fine does no harm while the shorter side of a pixel,
     the farthest one, skips no texel, but of a few cells.
@@ -270,12 +274,12 @@ def needed_levels(textures: TextureSet, settings: Settings, view: ViewState) -> 
 
 
 def _pixel_at(textures: TextureSet, view: ViewState, extents: float) -> float:
-    """Length that a pixel covers so much farther away than the middle of the surface."""
+    """Return the length of a pixel, ``extents`` farther away than the surface's middle."""
     if not view.eye[3]:
         return view.pixel
-    away, focus = view.eye[:3] - textures.geometry.center, view.eye[:3] - view.focus
-    gap = max(float(np.linalg.norm(away)) + extents * textures.geometry.extent, 0.0)
-    return view.pixel * gap / float(np.linalg.norm(focus))
+    from_center, from_focus = view.eye[:3] - textures.geometry.center, view.eye[:3] - view.focus
+    distance = max(float(np.linalg.norm(from_center)) + extents * textures.geometry.extent, 0.0)
+    return view.pixel * distance / float(np.linalg.norm(from_focus))
 
 
 def _samples(textures: TextureSet, settings: Settings, view: ViewState) -> int:
@@ -284,17 +288,17 @@ def _samples(textures: TextureSet, settings: Settings, view: ViewState) -> int:
 
 
 def _distance(textures: TextureSet, settings: Settings, view: ViewState, pixel: float) -> float:
-    """Length between two samples where a pixel covers so much."""
-    grain, fixed = pixel * settings.grain * view.density, textures.geometry.extent
+    """Return the length between two samples where a pixel covers this length."""
+    grain, extent = pixel * settings.grain * view.density, textures.geometry.extent
     if not settings.lod:
-        grain = fixed / settings.resolution
+        grain = extent / settings.resolution
     elif settings.fixed_grain:
-        grain = max(grain, fixed / settings.resolution)
+        grain = max(grain, extent / settings.resolution)
     return grain * settings.spacing
 
 
 def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str]:
-    """Sides of the paths, and kernel.
+    """Return the sides of the paths, and the kernel.
 
     A sign-free field has no forward: it has both sides, and no kernel that falls towards one.
     Streaklets have the kernel that makes a head and a tail.
@@ -306,8 +310,8 @@ def _direction(textures: TextureSet, settings: Settings) -> tuple[int, str]:
     return textures.sides if settings.two_sided else 1, settings.kernel
 
 
-def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[str, Any]:
-    """How the grains change: with the time of a field that varies, by the clock of a steady one.
+def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values:
+    """Return the motion of grains: by the time of a field that varies, or by the clock.
 
     Grains that change shorten the streaks. Twice as many samples make up for it, and let the eye
     follow a streak before it has changed.
@@ -333,8 +337,8 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> dict[s
     }
 
 
-def _noise_origin(even: Ints, finest: float, anchor: Floats) -> dict[str, Any]:
-    """Give the noise's origin in space and in the finest cells of both families of lattices."""
+def _noise_origin(even: Ints, finest: float, anchor: Floats) -> Values:
+    """Return the noise's origin in space and in the finest cells of both families of lattices."""
     odd = even / np.sqrt(2.0)
     whole = np.floor(odd / 2**CLEAR_DOUBLINGS) * 2**CLEAR_DOUBLINGS
     return {
@@ -345,10 +349,10 @@ def _noise_origin(even: Ints, finest: float, anchor: Floats) -> dict[str, Any]:
     }
 
 
-def _paper(paper: PaperTextures, settings: Settings, density: float) -> dict[str, Any]:
-    """Sizes of the noise texture, or of the picture that lies in its place.
+def _paper(paper: PaperTextures, settings: Settings, density: float) -> Values:
+    """Return the sizes of the noise texture, or of the picture in its place.
 
-    What is drawn more densely takes its level from so many times more texels.
+    Sizes grow with the density of pixels, so that the mip level stays the same.
     """
     height, width = (n * density for n in paper.step.shape)
     rows, columns = (n * density for n in paper.noise.shape[:2])
@@ -366,7 +370,7 @@ def _paper(paper: PaperTextures, settings: Settings, density: float) -> dict[str
 
 
 def _origin_cell(focus: Floats, finest: float) -> Ints:
-    """Lattice point near the focus, in cells of the finest octave, that a float holds exactly."""
+    """Return a lattice point near the focus, in finest cells, that a float holds exactly."""
     coarse = 2**CLEAR_DOUBLINGS
     limit = 2 ** (NOISE_DOUBLINGS - CLEAR_DOUBLINGS) - 1
     cell = np.clip(np.rint(focus / finest / coarse), -limit, limit)

@@ -41,7 +41,7 @@ class _LocalStep(PaperNoise):
 
     def __init__(self, noise: Any, images: PaperImages, values: Values) -> None:
         super().__init__(noise, images, values)
-        finest = images.step.at(self._here, np.zeros(len(self._here)))[:, 0]
+        finest = images.step.at(self._start, np.zeros(len(self._start)))[:, 0]
         self.spacing = finest * values["u_spacing"]
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.rendering import constants as const
 from flowtex.rendering.cpu.path import Slices, TriangleSlices
 from flowtex.rendering.cpu.places import Places, TrianglePlaces
+from flowtex.rendering.uniforms import Values
 
 
 class CellPath:
@@ -20,41 +20,40 @@ class CellPath:
     of the paths, (N,), and ``values`` are the uniforms.
     """
 
-    def __init__(
-        self, slices: Slices, coordinate: Places, reach: Floats, values: Mapping[str, Any]
-    ) -> None:
+    def __init__(self, slices: Slices, coordinate: Places, reach: Floats, values: Values) -> None:
         if isinstance(coordinate, TrianglePlaces):
             assert isinstance(slices, TriangleSlices)
-            about, nodes = _triangle(slices, coordinate, values)
+            factors, nodes = _triangle(slices, coordinate, values)
         else:
-            about, nodes = _square(slices, coordinate, values)
-        both = np.zeros((len(reach), 5, len(about)))
-        speed, rate, off = np.zeros((3, len(reach)))
-        for weights, (moved, by, lengths, sine) in zip(about, nodes, strict=True):
-            both += np.concatenate([moved, by], axis=1)[:, :, None] * weights.T[:, None]
+            factors, nodes = _square(slices, coordinate, values)
+        coefficients = np.zeros((len(reach), 5, len(factors)))
+        speed, rate, sine_off = np.zeros((3, len(reach)))
+        for weights, (in_space, in_cells, lengths, sine) in zip(factors, nodes, strict=True):
+            coefficients += (
+                np.concatenate([in_space, in_cells], axis=1)[:, :, None] * weights.T[:, None]
+            )
             speed += weights[0] * lengths[0]
             rate += weights[0] * lengths[1]
-            off = np.maximum(off, sine)
+            sine_off = np.maximum(sine_off, sine)
         speed = np.maximum(speed, const.LEAST_SPEED)
-        agreed = np.linalg.norm(both[:, :3, 0], axis=1) / speed
-        edge = _smoothstep(const.ALONG_PLANE, const.OFF_PLANE, off)
+        agreed = np.linalg.norm(coefficients[:, :3, 0], axis=1) / speed
+        edge = _smoothstep(const.ALONG_PLANE, const.OFF_PLANE, sine_off)
         cells = reach * rate / speed / (1 + (const.EDGE_CELLS - 1) * edge)
         far = _smoothstep(const.NEAR_CELLS, const.FAR_CELLS, cells)
         #: Share of these paths in those of the fragments, (N,).
         self.share = np.maximum(1 - _smoothstep(const.PARTING, const.AGREED, agreed), edge)
         self.share *= 1 - far
-        # Only where it is wanted.
-        self._some = np.flatnonzero(self.share)
-        self._both = both[self._some] / speed[self._some, None, None]
+        self._near = np.flatnonzero(self.share)
+        self._coefficients = coefficients[self._near] / speed[self._near, None, None]
         self.leave()
 
     def leave(self) -> None:
-        """Begin a side of the paths."""
-        self._at, self._alive = np.zeros((len(self._some), 5)), np.ones(len(self._some))
+        """Return to the fragments, to follow a side of the paths."""
+        self._at, self._alive = np.zeros((len(self._near), 5)), np.ones(len(self._near))
 
     def go_on(self, length: Floats, alive: Floats) -> Floats:
-        """Go on by lengths (N,); return what is left of the weights (N,)."""
-        step = length[self._some]
+        """Follow the paths by lengths (N,); return the weights (N,) that remain."""
+        step = length[self._near]
         first = self._velocity(self._at)
         square = np.maximum(_dot(first, first), const.LEAST_SQUARE)
         middle = self._velocity(self._at + (0.5 * step / np.sqrt(square))[:, None] * first)
@@ -68,22 +67,22 @@ class CellPath:
         """Displacements (N, 3) with those of these paths mixed in."""
         return self._mix(displacement, self._at[:, :3])
 
-    def way(self, way: Floats, to: Floats) -> Floats:
-        """Ways (N, 3) with those of these paths, cells (N, 2) from the fragments, mixed in."""
+    def direction(self, direction: Floats, offset: Floats) -> Floats:
+        """Directions (N, 3) with those of these paths, ``offset`` cells (N, 2) away, mixed in."""
         at = np.zeros_like(self._at)
-        at[:, 3:] = to[self._some]
-        return self._mix(way, unit(self._velocity(at)[:, :3]))
+        at[:, 3:] = offset[self._near]
+        return self._mix(direction, unit(self._velocity(at)[:, :3]))
 
-    def _mix(self, values: Floats, own: Floats) -> Floats:
-        result, share = values.copy(), self.share[self._some]
-        result[self._some] += (share * (own - result[self._some]).T).T
+    def _mix(self, values: Floats, cell_values: Floats) -> Floats:
+        result, share = values.copy(), self.share[self._near]
+        result[self._near] += (share * (cell_values - result[self._near]).T).T
         return np.asarray(result)
 
     def _velocity(self, at: Floats) -> Floats:
         """Velocity in space and in cells, (n, 5), at points given as both."""
         x, y = at[:, 3:].T
-        factors = np.stack([np.ones_like(x), x, y, x * y])[: self._both.shape[2]]
-        return np.asarray(np.einsum("nck,kn->nc", self._both, factors))
+        factors = np.stack([np.ones_like(x), x, y, x * y])[: self._coefficients.shape[2]]
+        return np.asarray(np.einsum("nck,kn->nc", self._coefficients, factors))
 
 
 #: A node's velocity in space, (N, 3), in cells, (N, 2), its lengths in both, (N,) each, and the
@@ -91,15 +90,13 @@ class CellPath:
 _Node = tuple[Floats, Floats, tuple[Floats, Floats], Floats]
 
 
-def _square(
-    slices: Slices, coordinate: Floats, values: Mapping[str, Any]
-) -> tuple[Floats, Iterator[_Node]]:
+def _square(slices: Slices, coordinate: Floats, values: Values) -> tuple[Floats, Iterator[_Node]]:
     """Return the factors (4, 4, N) of 1, x, y and x y of each of four nodes, and the nodes."""
     size = np.array(values["u_slicesSize"])
-    at = coordinate * size - 0.5
-    f, finest = at - np.floor(at), np.zeros(len(at))
-    (x, y), one = f.T, np.ones(len(at))
-    about = np.array(
+    texel = coordinate * size - 0.5
+    f, finest = texel - np.floor(texel), np.zeros(len(texel))
+    (x, y), one = f.T, np.ones(len(texel))
+    factors = np.array(
         [
             [(1 - x) * (1 - y), y - 1, x - 1, one],
             [x * (1 - y), 1 - y, -x, -one],
@@ -109,24 +106,24 @@ def _square(
     )
 
     def node(right: tuple[int, int]) -> _Node:
-        there = (np.floor(at) + right + 0.5) / size
-        tangent, turn = (slices.layer(there, n, finest) for n in (0, values["u_rateLayer"]))
+        position = (np.floor(texel) + right + 0.5) / size
+        tangent, turn = (slices.layer(position, n, finest) for n in (0, values["u_rateLayer"]))
         by = turn[:, :2] * (turn[:, 3:] / (tangent[:, 3:] * values["u_cell"]))
         moved = tangent[:, :3] * turn[:, 3:]
         return moved, by, (np.linalg.norm(moved, axis=1), np.linalg.norm(by, axis=1)), 0 * one
 
-    return about, map(node, ((0, 0), (1, 0), (0, 1), (1, 1)))
+    return factors, map(node, ((0, 0), (1, 0), (0, 1), (1, 1)))
 
 
 def _triangle(
-    slices: TriangleSlices, places: TrianglePlaces, values: Mapping[str, Any]
+    slices: TriangleSlices, places: TrianglePlaces, values: Values
 ) -> tuple[Floats, Iterator[_Node]]:
     """Return the factors (3, 3, N) of 1, x and y of each of three nodes, and the nodes."""
     one, none = np.ones(len(places)), np.zeros(len(places))
     normal = np.cross(places.by[:, 0], places.by[:, 1])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), np.finfo(float).tiny)
     a, b, c = places.shares.T
-    about = np.array([[a, -one, -one], [b, one, none], [c, none, one]])
+    factors = np.array([[a, -one, -one], [b, one, none], [c, none, one]])
 
     def node(number: Indices) -> _Node:
         tangent, turn = (slices.at_node(number, n) for n in (0, values["u_rateLayer"]))
@@ -141,16 +138,16 @@ def _triangle(
             off = np.maximum(off, np.abs(np.einsum("nc,nc->n", normal, slope)) / length)
         return moved - height[:, None] * normal, by, lengths, off
 
-    return about, map(node, places.nodes.T)
+    return factors, map(node, places.nodes.T)
 
 
 def _dot(a: Floats, b: Floats) -> Floats:
-    """Products of velocities in space, (n,)."""
+    """Return dot products of velocities in space, (n,)."""
     return np.asarray(np.einsum("nc,nc->n", a[:, :3], b[:, :3]))
 
 
 def unit(vector: Floats) -> Floats:
-    """Vectors (n, 3) of length 1, or of none."""
+    """Normalise vectors (n, 3); zero vectors stay zero."""
     return np.asarray(
         vector / np.sqrt(np.maximum(_dot(vector, vector), const.LEAST_SQUARE))[:, None]
     )

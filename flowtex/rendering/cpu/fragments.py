@@ -23,9 +23,9 @@ class Varying:
     dx: Floats
     dy: Floats
 
-    def __getitem__(self, some: slice) -> Varying:
-        """Take some of the fragments."""
-        return Varying(self.value[some], self.dx[some], self.dy[some])
+    def __getitem__(self, selection: slice) -> Varying:
+        """Return a part of the fragments."""
+        return Varying(self.value[selection], self.dx[selection], self.dy[selection])
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,7 @@ class Fragments:
 
     @classmethod
     def of(cls, textures: TextureSet, coverage: Coverage) -> Fragments:
-        """Interpolate what the nodes have to the pixels of a coverage."""
+        """Interpolate the values of the nodes to the pixels of a coverage."""
         geometry, paper = textures.geometry, textures.paper
 
         def varying(nodal: NDArray[np.floating]) -> Varying:
@@ -67,7 +67,7 @@ class Fragments:
 
     @property
     def place(self) -> Places:
-        """Where the slices are looked up."""
+        """Places at which the slices are looked up."""
         at = self.coordinate.value
         if self.nodes is None:
             return at
@@ -85,19 +85,25 @@ class Fragments:
         return len(self.position.value)
 
     def parts(self, count: int) -> Iterator[tuple[slice, Fragments]]:
-        """Cut into parts of at most ``count`` fragments."""
+        """Yield parts of at most ``count`` fragments, with their slices."""
         for start in range(0, len(self), count):
-            some = slice(start, start + count)
-            noise, normal = (None if v is None else v[some] for v in (self.noise, self.normal))
-            nodes = None if self.nodes is None else self.nodes[some]
-            yield some, Fragments(self.position[some], self.coordinate[some], noise, normal, nodes)
+            selection = slice(start, start + count)
+            noise, normal = (None if v is None else v[selection] for v in (self.noise, self.normal))
+            nodes = None if self.nodes is None else self.nodes[selection]
+            yield (
+                selection,
+                Fragments(
+                    self.position[selection], self.coordinate[selection], noise, normal, nodes
+                ),
+            )
 
 
 def _normals(geometry: TriangleGeometry, coverage: Coverage) -> Varying:
     """Interpolate normals as the vertices of triangles have them, which no two triangles share."""
     corners = coverage.corners
-    at = normals_at_corners(geometry.points[0][corners], geometry.normal[0][corners])
+    normals = normals_at_corners(geometry.points[0][corners], geometry.normal[0][corners])
     value, dx, dy = (
-        np.einsum("nk,nkc->nc", share, at) for share in (coverage.weights, coverage.dx, coverage.dy)
+        np.einsum("nk,nkc->nc", share, normals)
+        for share in (coverage.weights, coverage.dx, coverage.dy)
     )
     return Varying(value, dx, dy)

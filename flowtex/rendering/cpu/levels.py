@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
 from flowtex._util.array_types import Floats
@@ -18,10 +15,14 @@ from flowtex.rendering.constants import (
     PI,
 )
 from flowtex.rendering.cpu.fragments import Varying
+from flowtex.rendering.uniforms import Values
 
 
 def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
-    """Longest and shortest side of what a pixel covers, from derivatives (N, C), (N,) each."""
+    """Return the longest and the shortest side of a pixel's footprint, (N,) each.
+
+    They follow from derivatives, (N, C).
+    """
     aa, bb, ab = (np.einsum("nc,nc->n", p, q) for p, q in ((dx, dx), (dy, dy), (dx, dy)))
     # |dx x dy|^2, whatever the number of channels is.
     square = np.maximum(aa * bb - ab * ab, 0.0)
@@ -32,7 +33,7 @@ def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
 
 
 def on_surface(position: Varying, normal: Varying, eye: Floats) -> Varying:
-    """Positions with their derivatives as they are on the smooth surface, not on its facets.
+    """Return positions with derivatives on the smooth surface instead of its facets.
 
     Positions and normals have three channels; ``eye`` is ``u_eye``, (4,).
     """
@@ -42,8 +43,8 @@ def on_surface(position: Varying, normal: Varying, eye: Floats) -> Varying:
     facing = np.where(facing < 0, -1.0, 1.0) * np.maximum(np.abs(facing), LEAST_FACING)
 
     def moved(derivative: Floats) -> Floats:
-        off = np.einsum("nc,nc->n", toward, derivative) / facing
-        return np.asarray(derivative - ray * off[:, None])
+        slope = np.einsum("nc,nc->n", toward, derivative) / facing
+        return np.asarray(derivative - ray * slope[:, None])
 
     return Varying(position.value, moved(position.dx), moved(position.dy))
 
@@ -53,8 +54,8 @@ def _unit(vector: Floats) -> Floats:
     return np.asarray(vector / np.maximum(length, np.finfo(float).tiny))
 
 
-def slice_level(coordinate: Varying, values: Mapping[str, Any]) -> Floats:
-    """Mip level of the slice texture, (N,): the shorter side of the footprint decides."""
+def slice_level(coordinate: Varying, values: Values) -> Floats:
+    """Return the mip level of the slice texture, (N,), for the shorter side of the footprint."""
     if not values["u_lod"]:
         return np.zeros(len(coordinate.value))
     size = np.asarray(values["u_slicesSize"])
@@ -63,7 +64,7 @@ def slice_level(coordinate: Varying, values: Mapping[str, Any]) -> Floats:
 
 
 def level_colour(level: Floats) -> Floats:
-    """Colours (..., 3) for levels of detail (...): one hue for each doubling, six in a round."""
+    """Return colours (..., 3) for levels of detail (...): one hue per doubling, six in a cycle."""
     turn = level[..., None] / LEVELS_AROUND + HUE_SHIFT * np.array([0.0, -1.0, 1.0])
     hue = 0.5 + 0.5 * np.cos(2 * PI * turn)
     return np.asarray(LEVEL_DARKEST + (1.0 - LEVEL_DARKEST) * hue)

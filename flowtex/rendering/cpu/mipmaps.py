@@ -12,9 +12,9 @@ class Mips:
 
     The texels are (layers, H, W, C). A coarser level is the finer one, filtered linearly down to
     half its size: the mean of blocks of two by two texels where sizes are even. Every level is
-    rounded to half precision, as a graphics card stores it. There are so many besides the finest,
-    or all of them. The texture goes around along (v, u) where ``repeat`` says so, and is clamped at
-    its edges otherwise.
+    rounded to half precision, as a graphics card stores it. There are ``levels`` besides the
+    finest, by default all. The texture is periodic along (v, u) where ``repeat`` is true, and
+    otherwise clamped at its edges.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Mips:
 def _neighbours(
     coordinate: Floats, count: Indices, *, repeat: bool
 ) -> tuple[Indices, Indices, Floats]:
-    """Texels on both sides of a coordinate, and how far it is from one to the other, (N, 1)."""
+    """Return the texels on both sides of a coordinate, and its share of the second, (N, 1)."""
     x = coordinate * count - 0.5
     base = np.floor(x)
     before = base.astype(np.intp)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +14,7 @@ from flowtex.rendering.cpu.fragments import Fragments, Varying
 from flowtex.rendering.cpu.levels import footprint, on_surface
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
+from flowtex.rendering.uniforms import Values
 from flowtex.textures import PaperTextures
 
 Hashes = NDArray[np.uint32]
@@ -23,35 +22,36 @@ Hashes = NDArray[np.uint32]
 
 @dataclass(frozen=True, eq=False)
 class NoiseLattice:
-    """What is the same for every point of the paths of N fragments."""
+    """Lattice of one octave, the same for every point of the paths of N fragments."""
 
-    here: Floats  #: The fragments, (N, 3), in cells from the lattice point nearest to the origin.
+    start: Floats  #: The fragments, (N, 3), in cells from the lattice point nearest to the origin.
     inverse: Floats  #: Cells by length, (N,).
     key: Hashes  #: Hash of that lattice point, the octave and the seed, by axis, (N, 3).
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Motion of the grains at N fragments: two rates, and how far it is between them."""
+    """Motion of the grains at N fragments, interpolated between two rates."""
 
     clock: Floats  #: The moment in turns, (N, 2).
     turns: Floats  #: Turns by length of path, (N, 2).
-    #: Turns by the values of grains that stand, which say where those in motion begin, (N, 2).
+    #: Turns per value of a grain at rest, which set the phase of a grain in motion, (N, 2).
     phases: Floats
     shares: Floats  #: Of the two rates in a grain, (N, 2).
 
     def after(self, length: Floats) -> Motion:
-        """Return the motion a length (N,) along the paths."""
+        """Return the motion at lengths (N,) along the paths."""
         clock = self.clock + self.turns * length[:, None]
         return Motion(clock, self.turns, self.phases, self.shares)
 
 
-def noise_lattice(position: Floats, octave: Ints, values: Mapping[str, Any]) -> NoiseLattice:
+def noise_lattice(position: Floats, octave: Ints, values: Values) -> NoiseLattice:
     """Lattice of an octave (N,) at positions (N, 3) relative to the origin of the noise."""
     odd, doublings = (octave & 1 == 1)[:, None], (octave >> 1)[:, None]
     shrink = np.exp2(-doublings.astype(float))
     inverse = shrink / values["u_noiseFinest"] * np.where(odd, const.SQRT_HALF, 1.0)
-    finest = np.where(odd, values["u_noiseOriginOdd"], values["u_noiseOriginEven"]).astype(np.int64)
+    cells = np.where(odd, values["u_noiseOriginOdd"], values["u_noiseOriginEven"])
+    finest = np.asarray(cells, dtype=np.int64)
     origin = finest >> doublings
     rest = (finest - (origin << doublings) + np.where(odd, values["u_noiseRestOdd"], 0.0)) * shrink
     key = origin.astype(np.uint32) * const.AXIS_PRIMES
@@ -106,7 +106,7 @@ def octave(
     sparse: bool = False,
 ) -> Floats:
     """One octave at displacements (N, 3), of variance 1 everywhere between the lattice points."""
-    q = lattice.here + displacement * lattice.inverse[:, None]
+    q = lattice.start + displacement * lattice.inverse[:, None]
     base = np.floor(q)
     w = q - base
     spread = 1.0 - 2.0 * w * (1.0 - w)
@@ -126,14 +126,14 @@ def octave(
 
 
 def mix(a: Floats, b: Floats, share: Floats | float) -> Floats:
-    """Linear between a and b."""
+    """Interpolate linearly from a to b."""
     return np.asarray(a + share * (b - a))
 
 
 class SpaceNoise(Lookup):
-    """Two octaves of noise along the paths of some fragments."""
+    """Two octaves of noise along the paths of fragments."""
 
-    def __init__(self, fragments: Fragments, values: Mapping[str, Any], *, planar: bool) -> None:
+    def __init__(self, fragments: Fragments, values: Values, *, planar: bool) -> None:
         self._values, self._planar = values, planar
         self._motion: Motion | None = None
         position = fragments.position
@@ -151,8 +151,10 @@ class SpaceNoise(Lookup):
         octaves = np.clip(2.0 * np.log2(grain / values["u_noiseFinest"]), 0.0, const.LAST_OCTAVE)
         whole = octaves.astype(np.int64)
         self._late = octaves - whole
-        here = position.value - np.asarray(values["u_noiseOrigin"])
-        self._fine, self._coarse = (noise_lattice(here, whole + k, values) for k in range(2))
+        position_from_origin = position.value - np.asarray(values["u_noiseOrigin"])
+        self._fine, self._coarse = (
+            noise_lattice(position_from_origin, whole + k, values) for k in range(2)
+        )
 
     def move(self, slope: Floats, speed: Floats) -> None:
         """Choose the two rates between which the motion of each fragment lies."""
@@ -181,25 +183,24 @@ class SpaceNoise(Lookup):
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
         """Both octaves, (N, 2)."""
         motion = None if self._motion is None else self._motion.after(length)
-        two = (
-            octave(at, displacement, motion, planar=self._planar, sparse=self._values["sparse"])
-            for at in (self._fine, self._coarse)
+        octaves = (
+            octave(
+                lattice, displacement, motion, planar=self._planar, sparse=self._values["sparse"]
+            )
+            for lattice in (self._fine, self._coarse)
         )
-        return np.stack(list(two), axis=-1)
+        return np.stack(list(octaves), axis=-1)
 
     def blend(self, sums: Sums) -> Floats:
         """Mix the octaves by the level, and bring the mixture to unit variance."""
-        near = sums.neighbours / sums.squares
-        apart = self._values["u_spacing"] * np.exp2(0.5 * self._late)
-        mixed = np.zeros(len(near))
-        variance = np.zeros(len(near))
+        correlation = sums.neighbours / sums.squares
+        spacing = self._values["u_spacing"] * np.exp2(0.5 * self._late)
+        mixed = np.zeros(len(correlation))
+        variance = np.zeros(len(correlation))
         for k, w in enumerate((1.0 - self._late, self._late)):
             mixed += w * sums.values[:, k]
-            variance += w * w * shared(apart * 0.5 ** (k / 2), near)
+            variance += w * w * shared(spacing * 0.5 ** (k / 2), correlation)
         return np.asarray(mixed / np.sqrt(sums.squares * variance))
-
-
-Values = Mapping[str, Any]
 
 
 class PaperImages:
@@ -211,10 +212,10 @@ class PaperImages:
 
 
 class PaperNoise(Lookup):
-    """The noise texture along the paths of fragments with some noise coordinates."""
+    """The noise texture along the paths of fragments that have noise coordinates."""
 
     def __init__(self, noise: Varying, images: PaperImages, values: Values) -> None:
-        self._images, self._values, self._here = images, values, noise.value
+        self._images, self._values, self._start = images, values, noise.value
         texels = _covered(noise, "u_noiseSize", values)
         self._mip = _level(texels, values)
         self.level = self._mip
@@ -224,19 +225,19 @@ class PaperNoise(Lookup):
             np.minimum(2.0 * self._mip, LAST_HALF_LEVEL), np.arange(len(halves)), halves
         )
         self._grains = width / np.sqrt(values["u_noiseGrain"] ** 2 + width**2 - 1.0)
-        step = images.step.at(self._here, self._mip)[:, 0]
+        step = images.step.at(self._start, self._mip)[:, 0]
         self.spacing = step * self._width(noise, width, texels) * values["u_spacing"]
 
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
         """Noise, (N, 1)."""
         del length
-        at = self._here + displacement[:, :2]
-        return np.asarray(self._images.noise.at(at, self._mip) * self._gain[:, None])
+        coordinate = self._start + displacement[:, :2]
+        return np.asarray(self._images.noise.at(coordinate, self._mip) * self._gain[:, None])
 
     def blend(self, sums: Sums) -> Floats:
         """Bring the sum to unit variance."""
-        apart = self._values["u_spacing"] * self._grains
-        variance = sums.squares * shared(apart, sums.neighbours / sums.squares)
+        spacing = self._values["u_spacing"] * self._grains
+        variance = sums.squares * shared(spacing, sums.neighbours / sums.squares)
         return np.asarray(sums.values[:, 0] / np.sqrt(variance))
 
     def _width(self, noise: Varying, width: Floats, texels: Floats) -> Floats:
@@ -252,15 +253,15 @@ class PaperPicture(PaperNoise):
         """Red, green and blue times opacity, opacity, and one, (N, 5)."""
         del length
         values = self._values
-        at = self._here + displacement[:, :2]
-        # Beyond its edge the picture is repeated, which must not be seen where the surface ends.
-        inside = np.clip(at, self._inset, 1.0 - self._inset)
-        at = mix(inside, at, np.asarray(values["u_pictureRound"]))
-        seen = self._images.noise.at(at * values["u_tiles"], self._picture_mip)
-        one = np.ones((len(at), 1))
+        coordinate = self._start + displacement[:, :2]
+        # The repetition beyond the picture's edge must not be visible where the surface ends.
+        inside = np.clip(coordinate, self._inset, 1.0 - self._inset)
+        coordinate = mix(inside, coordinate, np.asarray(values["u_pictureRound"]))
+        channels = self._images.noise.at(coordinate * values["u_tiles"], self._picture_mip)
+        one = np.ones((len(coordinate), 1))
         if values["u_pictureGrey"]:
-            return np.concatenate([seen, seen, seen, one, one], axis=-1)
-        return np.concatenate([seen, one], axis=-1)
+            return np.concatenate([channels, channels, channels, one, one], axis=-1)
+        return np.concatenate([channels, one], axis=-1)
 
     def blend(self, sums: Sums) -> Floats:
         """Mean colours times opacity, and opacity, (N, 4)."""

@@ -44,7 +44,7 @@ class TriangleSlices(Slices):
         return np.asarray(sum(fetched))
 
     def at_node(self, node: Indices, layer: int | Indices) -> Floats:
-        """Channels of one layer, (N, 4), at nodes (N,)."""
+        """Return the channels of one layer, (N, 4), at nodes (N,)."""
         value = self.before.fetch(node, layer)
         if self.after is None:
             return value
@@ -73,13 +73,13 @@ class AxisSlices(Slices):
         # The other side, from which a reversed texel is taken.
         other = np.asarray(layer) + np.where(np.asarray(layer) > self.lags, -1, 1) * self.lags
         other = np.where(np.asarray(layer) == 0, 0, other)
-        together, result = np.zeros((len(s), 3)), np.zeros((len(s), 4))
+        mean, result = np.zeros((len(s), 3)), np.zeros((len(s), 4))
         for weight, right in zip(weights, ((0, 0), (1, 0), (0, 1), (1, 1)), strict=True):
             place, finest = (base + right + 0.5) / self.size, np.zeros(len(s))
             tangent = self.before.at(place, finest, 0)[:, :3]
-            turned = np.einsum("nc,nc->n", together, tangent) < 0
+            turned = np.einsum("nc,nc->n", mean, tangent) < 0
             sign = np.where(turned, -1.0, 1.0)[:, None]
-            together += sign * tangent
+            mean += sign * tangent
             texel = self.before.at(place, finest, np.where(turned, other, layer))
             texel[:, :3] *= sign
             result += weight[:, None] * texel
@@ -111,7 +111,7 @@ class Path:
         self._to = np.full(len(coordinate), lags[0])
 
     def follow(self, lag: Floats) -> Floats:
-        """Displacements (N, 3) at lags (N,) that are not smaller than those of the call before."""
+        """Return displacements (N, 3) at lags (N,) not smaller than those of the previous call."""
         while True:
             on = np.flatnonzero((lag > self._to) & (self._segment < len(self._lags) - 1))
             if not len(on):

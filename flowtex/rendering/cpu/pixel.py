@@ -20,7 +20,7 @@ from flowtex.textures import TextureSet
 def cover_place(
     surface: Surface, place: SurfacePoint, camera: Camera, size: tuple[int, int]
 ) -> Coverage:
-    """Return the coverage of one place, whether or not something stands before it.
+    """Return the coverage of one place, also where it is hidden.
 
     The pixel is one of a picture of some width and height in pixels. Raises a FieldError when the
     place is behind the camera, or its triangle is seen edge on.
@@ -40,8 +40,8 @@ def cover_place(
     if not abs(np.linalg.det(free)) > 1e-12 * np.abs(free).max() ** 2:
         msg = f"the triangle at (j, i) = {place.index} is seen edge-on; expected a visible triangle"
         raise FieldError(msg)
-    two = np.linalg.inv(free)
-    shares = np.concatenate([-two.sum(axis=1, keepdims=True), two], axis=1)
+    inverse = np.linalg.inv(free)
+    shares = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
     first = np.zeros(1, dtype=np.intp)
     return Coverage(first, place.nodes[None], place.weights[None], shares[:1], shares[1:])
 
@@ -56,8 +56,8 @@ def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera
         msg = f"pixel is {pixel!r}; expected a positive length in the mesh's units, or a Camera"
         raise FieldError(msg)
     a, b, c = surface.points.reshape(-1, 3)[place.nodes]
-    across = np.cross(b - a, c - a)
-    length = float(np.linalg.norm(across))
+    normal = np.cross(b - a, c - a)
+    length = float(np.linalg.norm(normal))
     if not length > 0:
         msg = (
             f"the triangle at (j, i) = {place.index} has no area; expected a point in another "
@@ -67,7 +67,7 @@ def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera
     focus = place.weights @ np.stack([a, b, c])
     up = max((b - a, c - a), key=lambda side: float(np.linalg.norm(side)))
     return Camera(
-        position=tuple(focus + across / length * surface.extent),
+        position=tuple(focus + normal / length * surface.extent),
         focal_point=tuple(focus),
         up=tuple(up),
         parallel=True,
@@ -76,7 +76,7 @@ def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera
 
 
 class Recorder(Lookup):
-    """Records where another look-up is used for one fragment, and the values that it returns.
+    """Records the arguments and the values of another look-up, for one fragment.
 
     In place of the values it returns rows of zeros with a one at the number of the sample, of at
     most so many, so that their weighted sums are the weights: shares of the samples in the mean,
@@ -109,11 +109,11 @@ class Recorder(Lookup):
         count, weights = len(values), sums.values[:, : len(values)]
         total = float(weights.sum())
         self.weights = weights[0] / total
-        # A sample alone is a sum of one, and a sum of ones shows the factor of sums.
+        # A single sample is a sum of one; a sum of ones has the factor of the mean.
         self.noise = blend(Sums(values, np.ones(count), np.zeros(count)))
         ones = np.ones_like(values[:1])
-        all_ = blend(Sums(total * ones, sums.squares, sums.neighbours))
-        self.gain = float(all_.flat[0] / blend(Sums(ones, np.ones(1), np.zeros(1))).flat[0])
+        mean = blend(Sums(total * ones, sums.squares, sums.neighbours))
+        self.gain = float(mean.flat[0] / blend(Sums(ones, np.ones(1), np.zeros(1))).flat[0])
         return np.asarray(blend(Sums(weights @ values, sums.squares, sums.neighbours)))
 
 
@@ -136,9 +136,9 @@ class Window(Mips):
         """Look up texels less than a block from each other, as :meth:`Mips.at` does."""
         size = np.array(self._texture.shape[2:0:-1])
         # Filtering reaches one block of the coarsest level far.
-        here = np.floor(coordinate[0] * size / self._block).astype(int)
-        low = np.clip(here - 1, 0, size // self._block - 1) * self._block
-        high = np.clip(here + 2, 1, size // self._block) * self._block
+        block = np.floor(coordinate[0] * size / self._block).astype(int)
+        low = np.clip(block - 1, 0, size // self._block - 1) * self._block
+        high = np.clip(block + 2, 1, size // self._block) * self._block
         if self._window != (*low, *high):
             part = self._texture[:, low[1] : high[1], low[0] : high[0]]
             super().__init__(part, levels=self._last)

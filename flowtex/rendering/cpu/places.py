@@ -1,4 +1,4 @@
-"""Where fragments look the slices up on a surface of triangles."""
+"""Places at which fragments look the slices up, on a grid and on triangles."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ class TrianglePlaces:
     #: (N, 2, 3).
     by: Floats
 
-    def __getitem__(self, some: slice | Indices) -> TrianglePlaces:
-        """Take some of the fragments."""
-        return TrianglePlaces(self.shares[some], self.nodes[some], self.by[some])
+    def __getitem__(self, selection: slice | Indices) -> TrianglePlaces:
+        """Return a part of the fragments."""
+        return TrianglePlaces(self.shares[selection], self.nodes[selection], self.by[selection])
 
     def __len__(self) -> int:
         """Count the fragments."""
         return len(self.shares)
 
 
-#: Where fragments look the slices up: at texture coordinates (N, 2), or in triangles.
+#: Places of N fragments: at texture coordinates (N, 2), or in triangles.
 Places: TypeAlias = Floats | TrianglePlaces
 
 
 def moved(places: Places, by: Floats) -> Places:
-    """Return the places where coordinates, or the last two shares, are larger by (N, 2)."""
+    """Return places whose coordinates, or last two shares, are larger by (N, 2)."""
     if not isinstance(places, TrianglePlaces):
         return np.asarray(places + by)
     shares = places.shares + np.concatenate([-by.sum(axis=1, keepdims=True), by], axis=1)

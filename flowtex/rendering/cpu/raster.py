@@ -1,4 +1,4 @@
-"""Which triangle each pixel shows, and how its corners mix there.
+"""The triangle that each pixel shows, and the weights of its corners.
 
 Triangles are drawn in homogeneous coordinates of two dimensions (Olano and Greer 1997, *Triangle
 scan conversion using 2D homogeneous coordinates*). The columns (x, y, w) of the corners make a
@@ -22,7 +22,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import Surface
 from flowtex.rendering.camera import Camera
 
-#: Pixels, or rows of pixels, that are looked at together.
+#: Pixels, or rows of pixels, that are tested together.
 CHUNK = 1 << 20
 #: Pixels by which the rows and columns of a triangle may be off from rounding.
 ROUNDING = 1e-6
@@ -47,7 +47,7 @@ class Coverage:
         return np.take_along_axis(self.corners, greatest, axis=1)[:, 0]
 
     def mix(self, data: NDArray[np.floating]) -> tuple[Floats, Floats, Floats]:
-        """Values at the pixels of data at the points, (P, C), and both derivatives, (N, C)."""
+        """Interpolate data of points, (P, C), to the pixels: values and derivatives, (N, C)."""
         at = data.astype(float)[self.corners]
         value, dx, dy = (
             np.einsum("nk,nkc->nc", share, at) for share in (self.weights, self.dx, self.dy)
@@ -100,7 +100,7 @@ def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Covera
 def _prepare(
     flat: Floats, triangles: Indices, size: tuple[int, int]
 ) -> tuple[Indices, Floats, Floats, Indices]:
-    """Triangles that may be seen, their edges, determinants and first and last rows.
+    """Return the triangles that may be seen, their edges, determinants and first and last rows.
 
     The edges are the rows of M^-1 times the determinant's absolute value, (M, 3, 3).
     """
@@ -122,12 +122,12 @@ def _slack(flat: Floats, triangles: Indices, size: tuple[int, int]) -> Floats:
 
 
 def _rows(flat: Floats, triangles: Indices, size: tuple[int, int]) -> tuple[Indices, Bools]:
-    """First and last row of pixels of each triangle, (M, 2), and whether it has any, (M,)."""
+    """Return the first and last row of pixels of triangles, (M, 2), and a mask of those seen."""
     w = flat[:, 2]
     ahead = w > 0
     # A point behind the camera has no place in the picture; its triangle may be anywhere.
-    at = np.divide(flat[:, :2], w[:, None], out=np.zeros((len(w), 2)), where=ahead[:, None])
-    low, high = (np.where(ahead[:, None], at, far)[triangles] for far in (-np.inf, np.inf))
+    position = np.divide(flat[:, :2], w[:, None], out=np.zeros((len(w), 2)), where=ahead[:, None])
+    low, high = (np.where(ahead[:, None], position, far)[triangles] for far in (-np.inf, np.inf))
     low, high = low.min(axis=1), high.max(axis=1)
     first = np.ceil(np.clip(low - (0.5 + ROUNDING), 0, size))
     last = np.floor(np.clip(high - (0.5 - ROUNDING), -1, np.subtract(size, 1)))
@@ -138,9 +138,9 @@ def _rows(flat: Floats, triangles: Indices, size: tuple[int, int]) -> tuple[Indi
 def _candidates(
     edges: Floats, rows: Indices, width: int
 ) -> Iterator[tuple[Indices, Indices, Indices]]:
-    """Triangles with the rows and columns of pixels that may lie in them, some at a time."""
-    for some in _chunks(rows[:, 1] - rows[:, 0] + 1):
-        triangle, row = _spread(some.start, rows[some, 0], rows[some, 1])
+    """Yield triangles with the rows and columns of pixels that may lie in them, in chunks."""
+    for chunk in _chunks(rows[:, 1] - rows[:, 0] + 1):
+        triangle, row = _spread(chunk.start, rows[chunk, 0], rows[chunk, 1])
         first, last = _columns(edges[triangle], row, width)
         for part in _chunks(np.maximum(last - first + 1, 0)):
             span, column = _spread(part.start, first[part], last[part])
@@ -167,7 +167,7 @@ def _spread(start: int, first: Indices, last: Indices) -> tuple[Indices, Indices
 
 
 def _columns(edges: Floats, row: Indices, width: int) -> tuple[Indices, Indices]:
-    """First and last column in each row that no edge rules out, and one more on both sides."""
+    """Return the first and last column in each row within all edges, one more on both sides."""
     slope = edges[..., 0]
     level = edges[..., 1] * (row + 0.5)[:, None] + edges[..., 2]
     with np.errstate(over="ignore"):
@@ -180,13 +180,13 @@ def _columns(edges: Floats, row: Indices, width: int) -> tuple[Indices, Indices]
 
 
 def _at_pixels(edges: Floats, row: Indices, column: Indices) -> Floats:
-    """Values of the edges at the middle of pixels, (N, 3)."""
+    """Return the edges' values at the middle of pixels, (N, 3)."""
     x, y = (column + 0.5)[:, None], (row + 0.5)[:, None]
     return np.asarray(edges[..., 0] * x + edges[..., 1] * y + edges[..., 2])
 
 
 def _coverage(pixel: Indices, corners: Indices, edges: Floats, width: int) -> Coverage:
-    """Shares of the corners with their derivatives."""
+    """Return the shares of the corners with their derivatives."""
     row, column = np.divmod(pixel, width)
     shares = _at_pixels(edges, row, column)
     total = shares.sum(axis=-1, keepdims=True)

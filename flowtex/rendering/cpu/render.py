@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,11 +20,11 @@ from flowtex.rendering.cpu.path import AxisSlices, Slices, TriangleSlices
 from flowtex.rendering.cpu.raster import cover
 from flowtex.rendering.cpu.shade import paint, shade
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Summing
-from flowtex.rendering.uniforms import ViewState, uniforms
+from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.settings import Settings
 from flowtex.textures import TextureSet
 
-#: Fragments that are followed together: what a sample needs of them stays in the cache.
+#: Fragments that are drawn together, so few that their arrays stay in the cache.
 PART = 1 << 14
 
 
@@ -46,12 +45,12 @@ class Picture:
     position: Floats  #: Points of the mesh, in its own coordinates, (H, W, 3).
     slice_level: Floats  #: Mip level of the slices, and level of detail of the noise, (H, W).
     noise_level: Floats
-    settings: Settings  #: What it was drawn with.
+    settings: Settings  #: Settings of the picture.
 
     def rgb(
         self, colour: ArrayLike = (0.627, 0.627, 0.627), background: ArrayLike = (1.0, 1.0, 1.0)
     ) -> Bytes:
-        """Colour the picture, without lights: those are the business of the other renderers.
+        """Colour the picture, without lights, which only the other renderers have.
 
         The colour of the surface is one, (3,), or one for each pixel, (H, W, 3), from 0 to 1.
         Raises a FieldError when a colour has another shape or lies outside 0 to 1.
@@ -93,10 +92,10 @@ def render(
     slices = slices_at(textures, steps, values)
     make = lookup or lookup_maker(textures)
     value, noise_level = [np.zeros((0,))], [np.zeros(0)]
-    for some, part in fragments.parts(PART):
+    for selection, part in fragments.parts(PART):
         part_lookup = make(part, values)
         summing = Summing(slices, values, part_lookup, paper=textures.paper is not None)
-        value.append(summing.texture(part.place, level[some], part.by))
+        value.append(summing.texture(part.place, level[selection], part.by))
         noise_level.append(part_lookup.level)
     image = partial(_image, pixel=coverage.pixel, size=size)
     geometry = textures.geometry
@@ -116,7 +115,7 @@ def render(
 def view_state(
     textures: TextureSet, camera: Camera, view: ViewState, steps: tuple[int, int]
 ) -> ViewState:
-    """State of the view, with what the camera and the steps decide."""
+    """Return the state of the view with the focus, eye and time of a camera and steps."""
     first, last = textures.store.field.times[list(steps)]
     time = float(first + view.between * (last - first))
     focus = np.asarray(camera.focal_point, dtype=float)
@@ -124,17 +123,17 @@ def view_state(
 
 
 def slice_mips(textures: TextureSet, step: int) -> Mips:
-    """Slice texture of one destination time, with its mip levels."""
+    """Return the slice texture of one destination time, with its mip levels."""
     return Mips(textures.layers(step), levels=textures.geometry.levels)
 
 
 def slices_at(
     textures: TextureSet,
     steps: tuple[int, int],
-    values: Mapping[str, Any],
+    values: Values,
     mips: Callable[[TextureSet, int], Mips] = slice_mips,
 ) -> Slices:
-    """Slice texture between two destination times; ``mips`` may cache them."""
+    """Return the slice texture between two destination times; ``mips`` may cache them."""
     before, uncertain = mips(textures, steps[0]), bool(textures.geometry.field.uncertainty)
     if textures.geometry.field.sign_free:
         size, lags = values["u_slicesSize"], values["u_lagCount"]
@@ -145,14 +144,14 @@ def slices_at(
 
 
 def lookup_maker(textures: TextureSet) -> LookupMaker:
-    """Look-up of the noise, or of the picture, that belongs to the textures."""
+    """Return the look-up of the textures' noise or picture."""
     paper, planar = textures.paper, textures.geometry.planar
     if paper is None:
         return lambda fragments, values: SpaceNoise(fragments, values, planar=planar)
     images = PaperImages(paper)
     kind = PaperPicture if paper.picture else PaperNoise
 
-    def make(fragments: Fragments, values: Mapping[str, Any]) -> Lookup:
+    def make(fragments: Fragments, values: Values) -> Lookup:
         if fragments.noise is None:
             msg = "the fragments have no noise coordinates; expected those of a noise texture"
             raise FieldError(msg)

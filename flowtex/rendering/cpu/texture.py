@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -14,8 +14,7 @@ from flowtex.rendering.cpu.cell import CellPath, unit
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import AxisSlices, Path, Slices
 from flowtex.rendering.cpu.places import Places, TrianglePlaces, moved
-
-Values = Mapping[str, Any]
+from flowtex.rendering.uniforms import Values
 
 
 @dataclass
@@ -28,15 +27,15 @@ class Sums:
 
 
 class Lookup(Protocol):
-    """What is summed along the paths of N fragments, and how the sums become the texture."""
+    """Values that are summed along the paths of N fragments, and how sums become the texture."""
 
     #: Distance between two samples of each fragment, (N,), as a length; with the paper's textures
     #: in units of lag at unit speed.
     spacing: Floats
-    level: Floats  #: Level of detail of what is summed, (N,), to be shown.
+    level: Floats  #: Level of detail of the values, (N,), to be shown.
 
     def move(self, slope: Floats, speed: Floats) -> None:
-        """Set the slopes at lag zero and the speeds, (N,), before anything is looked up."""
+        """Take the slopes at lag zero and the speeds, (N,), before the first look-up."""
         return
 
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
@@ -67,7 +66,7 @@ class Side:
         return np.asarray(step / np.maximum(self.path.speed(lag), least))
 
 
-#: Makes the look-up of some fragments from the uniforms.
+#: Makes the look-up of fragments from the uniforms.
 LookupMaker = Callable[[Fragments, Values], Lookup]
 
 
@@ -146,18 +145,18 @@ class Summing:
         whole = isinstance(coordinate, TrianglePlaces)
         cells = np.ones(2) if whole else np.asarray(self._values["u_slicesSize"])
 
-        def way(to: Floats) -> Floats:
-            found = unit(self._slices.layer(moved(coordinate, to), 0, level)[:, :3])
-            return found if cell is None else cell.way(found, to * cells)
+        def direction(offset: Floats) -> Floats:
+            tangent = unit(self._slices.layer(moved(coordinate, offset), 0, level)[:, :3])
+            return tangent if cell is None else cell.direction(tangent, offset * cells)
 
         normal = unit(np.cross(*np.moveaxis(by, 1, 0)))
-        across = unit(np.cross(normal, way(np.zeros((len(level), 2)))))
-        to = np.einsum("nkc,nc->nk", by, half[:, None] * across)
-        change = np.einsum("nc,nc->n", across, way(to) - way(-to))
+        across = unit(np.cross(normal, direction(np.zeros((len(level), 2)))))
+        offset = np.einsum("nkc,nc->nk", by, half[:, None] * across)
+        change = np.einsum("nc,nc->n", across, direction(offset) - direction(-offset))
         return np.asarray(0.5 * change)
 
     def faded(self, coordinate: Places, level: Floats, known: Floats) -> Floats:
-        """Share of the texture where its direction is not known or the flow is slow, (N,)."""
+        """Return the factor of the texture, (N,), less than 1 for uncertain or slow flow."""
         share = const.FADED + (1 - const.FADED) * known
         if self._values["u_fade"] > 0:
             speed = self._slices.layer(coordinate, 2, level)[:, 3]
@@ -207,35 +206,35 @@ class Summing:
         samples: int = self._values["u_samples"]
         return samples // 2 if self._values["u_sides"] == 2 else samples - 1
 
-    def _add(self, sums: Sums, one: Side, cell: CellPath | None, count: Floats) -> None:
+    def _add(self, sums: Sums, side: Side, cell: CellPath | None, count: Floats) -> None:
         """Add one side of the paths, of this many samples (N,), and where it stays in its cell."""
-        values, path, side, scale = self._values, one.path, one.sign, one.scale
-        last = np.minimum(one.reach, self._lags[-1])
-        lag, live = np.zeros(len(scale)), np.isfinite(one.reach)
+        values, path, sign, scale = self._values, side.path, side.sign, side.scale
+        last = np.minimum(side.reach, self._lags[-1])
+        lag, live = np.zeros(len(scale)), np.isfinite(side.reach)
         if cell is not None:
             cell.leave()
-        step = one.step(lag)
-        before = weight(side, 0.0, self._parting, values)
+        step = side.step(lag)
+        before = weight(sign, 0.0, self._parting, values)
         for k in range(1, int(np.ceil(count.max(initial=0))) + 1):
             lag = np.where(live, lag + step, lag)
             alive = np.clip((last - lag) / step + 1.0, 0.0, 1.0)
             if cell is not None:
-                alive = cell.go_on(side * one.spacing, alive)
+                alive = cell.go_on(sign * side.spacing, alive)
             # The last sample counts in part where there is no whole number of them.
             alive = live * alive * np.clip(count - k + 1, 0.0, 1.0)
             live = alive > 0
             if not live.any():
                 break
-            # What has ended stays at its end, where its weight is zero.
+            # Paths that have ended stay at their end, where the weight is zero.
             lag = np.where(live, lag, np.maximum(last, 0.0))
-            displacement = path.follow(lag) * (side * scale)[:, None]
+            displacement = path.follow(lag) * (sign * scale)[:, None]
             if cell is not None:
                 displacement = cell.mixed(displacement)
-            weights = alive * weight(side, k / (count + 1), self._parting, values)
-            sums.values += weights[:, None] * self._lookup.lookup(displacement, side * lag * scale)
+            weights = alive * weight(sign, k / (count + 1), self._parting, values)
+            sums.values += weights[:, None] * self._lookup.lookup(displacement, sign * lag * scale)
             sums.squares += weights**2
             sums.neighbours += weights * before
             before = weights
             if not self._paper:
-                # At every point: evenly spaced where the speed differs from here.
-                step = one.step(lag)
+                # From the speed at this point, so that samples are evenly spaced in length.
+                step = side.step(lag)

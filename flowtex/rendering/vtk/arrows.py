@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkDataObject
+from vtkmodules.vtkRenderingOpenGL2 import vtkShaderProgram
 
 from flowtex._util.array_types import Floats
 from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds, in_tile, vertex_data
@@ -40,7 +41,7 @@ RIBBON = "flowtexRibbon"
 class SurfaceArrows:
     """The arrows of one surface, in its renderer while the settings ask for them."""
 
-    def __init__(self, renderer: Any, settings: Settings) -> None:
+    def __init__(self, renderer: pv.Renderer, settings: Settings) -> None:
         self._renderer, self._settings = weakref.ref(renderer), settings
         self._seeds: ArrowSeeds | None = None
         self._drawn: tuple[Any, ...] = ()
@@ -53,7 +54,7 @@ class SurfaceArrows:
         view: TileView,
         place: Floats,
     ) -> None:
-        """Have the arrows of a view on the layers of a surface at a place (4, 4)."""
+        """Show the arrows of a view on the layers of a surface at a place (4, 4)."""
         renderer, base = self._renderer(), layers[None]
         if renderer is None or not has_arrows(base.textures, self._settings):
             self.close()
@@ -76,7 +77,7 @@ class SurfaceArrows:
             part.look(place)
 
     def close(self) -> None:
-        """Take the arrows out of the renderer."""
+        """Remove the arrows from the renderer."""
         for part in self._parts.values():
             if (renderer := self._renderer()) is not None:
                 renderer.RemoveActor(part.actor)
@@ -96,8 +97,8 @@ class SurfaceArrows:
             row, column = np.divmod(
                 self._seeds.corners[seeds.cell, 0], pyramid.shape(pyramid.depth)[1]
             )
-            at = np.stack([column, row], axis=-1) + seeds.place
-            inside, corners, place = in_tile(pyramid, key, geometry, at)
+            root_place = np.stack([column, row], axis=-1) + seeds.place
+            inside, corners, place = in_tile(pyramid, key, geometry, root_place)
             result[key] = vertex_data(geometry, corners, place, seeds.radius[inside])
             seeds = seeds[~inside]
         result[None] = self._seeds.vertex_data(seeds)
@@ -107,7 +108,7 @@ class SurfaceArrows:
 class _Arrows:
     """The arrows of one layer, as an actor."""
 
-    def __init__(self, layer: FlowLayer, renderer: Any, settings: Settings) -> None:
+    def __init__(self, layer: FlowLayer, renderer: pv.Renderer, settings: Settings) -> None:
         self.layer, self._renderer, self._settings = layer, weakref.ref(renderer), settings
         self._data: dict[str, Floats] = {}
         self._anchor: Floats | None = None
@@ -122,7 +123,7 @@ class _Arrows:
         observe_draws(self.actor.mapper, self._before_draw)
 
     def set_data(self, data: dict[str, Floats]) -> None:
-        """Draw other seeds, of which shaders have this."""
+        """Draw other seeds, given by their vertex attributes."""
         self._data, self._anchor = data, None
 
     def look(self, place: Floats) -> None:
@@ -138,7 +139,7 @@ class _Arrows:
         self._write_text()
 
     def _mesh(self, anchor: Floats) -> pv.PolyData:
-        """Ribbons of the seeds: two vertices at each end of a piece."""
+        """Return the ribbons of the seeds: two vertices at each end of a piece."""
         position, count = self._data["flowtexPosition"], 2 * (ARROW_PIECES + 1)
         number = np.arange(count)
         ribbon = np.stack([number // 2, 2 * (number % 2) - 1], axis=-1)
@@ -154,7 +155,7 @@ class _Arrows:
 
     @property
     def _read(self) -> list[str]:
-        """Names of what the shader reads beside positions."""
+        """Names of the attributes that the shader reads beside positions."""
         unread = {"flowtexPosition"}
         if self.layer.textures.geometry.planar:
             unread.add("flowtexNormal")
@@ -163,7 +164,7 @@ class _Arrows:
     def _write_text(self) -> None:
         textures = self.layer.textures
         near = is_near(textures, self._settings, self.layer.view)
-        # In triangles the shader needs what only fragments have, to follow the velocity in a cell.
+        # In triangles only fragments have the data to follow the velocity in a cell.
         near = near and textures.geometry.corners is None
         variant = variants(textures, unsteady=textures.store.steps > 1, near=near)
         if variant == self._variant:
@@ -174,7 +175,7 @@ class _Arrows:
             text = f"{mark}\n{shader_text(name, variant)}"
             self.actor.add_shader_replacement(shader, mark, text, _feature_name=OWNER)
 
-    def _before_draw(self, program: Any) -> None:
+    def _before_draw(self, program: vtkShaderProgram) -> None:
         self.layer.before_draw(program)
         if (renderer := self._renderer()) is not None and program.IsUniformUsed("u_picture"):
             write_uniform(program, "u_picture", tuple(map(float, renderer.GetSize())))

@@ -6,10 +6,14 @@ triangles of a few pixels are shaded several times over.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import pyvista as pv
+from numpy.typing import ArrayLike
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDataArray
+from vtkmodules.vtkRenderingCore import vtkMapper
 
 from flowtex._util.array_types import Floats, Floats32
 from flowtex.textures import SurfaceGeometry, TriangleGeometry
@@ -19,22 +23,22 @@ MOST_RANGES = 1e3
 
 
 class MappedColours(NamedTuple):
-    """What maps the point array of a mesh to colours."""
+    """The colour map of a point array of a mesh."""
 
-    values: Any  #: VTK's array of a value for each node.
-    table: Any  #: VTK's lookup table.
+    values: vtkDataArray  #: A value for each node.
+    table: pv.LookupTable  #: The colour map.
     low: float  #: Range of the table.
     high: float
-    state: tuple[Any, ...]  #: Another one where any of these is.
+    state: tuple[object, ...]  #: Equal as long as the colours are the same.
 
     @classmethod
-    def of(cls, mapper: Any, mesh: Any) -> MappedColours | None:
-        """Return what a mapper does, or None where its mesh is not coloured by a table."""
+    def of(cls, mapper: vtkMapper, mesh: pv.PolyData) -> MappedColours | None:
+        """Return the colours of a mapper, or None where its mesh is not coloured by a table."""
         name = mapper.GetArrayName() if mapper.GetScalarVisibility() else None
         values = mesh.GetPointData().GetArray(name) if name else None
         table = mapper.GetLookupTable()
-        own = mapper.GetUseLookupTableScalarRange()
-        low, high = table.GetRange() if own else mapper.GetScalarRange()
+        uses_table_range = mapper.GetUseLookupTableScalarRange()
+        low, high = table.GetRange() if uses_table_range else mapper.GetScalarRange()
         if values is None or values.GetNumberOfComponents() != 1 or not high > low:
             return None
         if table.UsingLogScale() and not low > 0:
@@ -53,9 +57,9 @@ class MappedColours(NamedTuple):
             shares = (self._scaled(values) - self._scaled(self.low)) / (
                 self._scaled(self.high) - self._scaled(self.low)
             )
-        known = ~np.isnan(shares)
-        shares = np.clip(np.where(known, shares, 0.0), -MOST_RANGES, MOST_RANGES)
-        return np.stack([shares, known], axis=-1).astype(np.float32)[None]
+        has_value = ~np.isnan(shares)
+        shares = np.clip(np.where(has_value, shares, 0.0), -MOST_RANGES, MOST_RANGES)
+        return np.stack([shares, has_value], axis=-1).astype(np.float32)[None]
 
     def colours(self) -> Floats32:
         """Return texels (1, 1, N + 3, 4): below the range, its N colours, above, without value."""
@@ -68,5 +72,5 @@ class MappedColours(NamedTuple):
         mapped = vtk_to_numpy(self.table.MapScalars(values, 0, 0))
         return np.asarray(mapped[None, None] / 255, dtype=np.float32)
 
-    def _scaled(self, values: Any) -> Floats:
+    def _scaled(self, values: ArrayLike) -> Floats:
         return np.asarray(np.log10(values) if self.table.UsingLogScale() else values)

@@ -21,8 +21,14 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_FLOAT, VTK_OBJECT
+from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkCommonDataModel import vtkDataObject
-from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkTextureObject
+from vtkmodules.vtkRenderingCore import vtkCamera, vtkMapper
+from vtkmodules.vtkRenderingOpenGL2 import (
+    vtkOpenGLRenderWindow,
+    vtkShaderProgram,
+    vtkTextureObject,
+)
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32, Halves, Ints
 from flowtex.rendering.mesh_levels import MeshLevels
@@ -48,7 +54,7 @@ from flowtex.textures import LayerPrefetch, SurfaceGeometry, TextureSet
 
 #: OpenGL's numbers of internal formats by channels, in half precision and in single.
 FORMATS, SINGLE = {1: 0x822D, 2: 0x822F, 4: 0x881A}, {2: 0x8230, 3: 0x8815}
-#: OpenGL's number of numbers in half precision.
+#: OpenGL's number of the type of half precision.
 HALF_FLOAT = 0x140B
 
 
@@ -58,9 +64,9 @@ class GPUTexture:
     It belongs to one render window, uses a texture unit while a frame is drawn, and is released
     with the window at the latest. ``vtkTexture`` has neither arrays nor half precision, and of
     VTK's textures from memory the arrays alone get mip levels. The texels (layers, H, W, channels),
-    with 1, 2 or 4 channels, are stored in half precision; 2 or 3 may be in ``single``. There are so
-    many mip levels besides the finest, or all of them; ``repeat`` says whether the texture goes
-    around along (v, u).
+    with 1, 2 or 4 channels, are stored in half precision; 2 or 3 may be in ``single``. There are
+    ``levels`` mip levels besides the finest, by default all; ``repeat`` says whether the texture
+    is periodic along (v, u).
     """
 
     def __init__(
@@ -80,7 +86,7 @@ class GPUTexture:
         self._object: vtkTextureObject | None = None
 
     def bind(self, window: vtkOpenGLRenderWindow) -> int:
-        """Return the texture unit in which the texture lies, sending it first if need be."""
+        """Return the unit of the texture, which is sent first if necessary."""
         if self._object is None:
             self._object = self._send(window)
             self._texels = None
@@ -89,7 +95,7 @@ class GPUTexture:
         return int(self._object.GetTextureUnit())
 
     def unbind(self) -> None:
-        """Give the texture unit back."""
+        """Release the texture unit."""
         if self._object is not None and self._object.GetTextureUnit() >= 0:
             self._object.Deactivate()
 
@@ -121,7 +127,7 @@ class GPUTexture:
             target.SetInternalFormat(SINGLE[channels])
         else:
             target.SetInternalFormat(FORMATS[channels])
-            # VTK has no name for half precision, and takes what was set for that of its own names.
+            # VTK has no name for half precision; a type that is set has precedence over its names.
             target.SetDataType(HALF_FLOAT)
         target.Create2DArrayFromRaw(width, height, channels, VTK_FLOAT, layers, texels)
         return target
@@ -164,7 +170,7 @@ class FlowLayer:
         self._textures = textures
         self._settings = settings
         self._prefetch = LayerPrefetch(textures)
-        self._take = layers
+        self._layers = layers
         self._steps = (0, 0)
         self._height = 1.0
         self._drawn = False
@@ -178,12 +184,13 @@ class FlowLayer:
         self._observed = observe_draws(self._mapper, self.before_draw)
 
     @property
-    def _mesh(self) -> Any:
-        return self._mapper.dataset
+    def _mesh(self) -> pv.PolyData:
+        mesh: pv.PolyData = self._mapper.dataset
+        return mesh
 
     @property
     def textures(self) -> TextureSet:
-        """What is drawn."""
+        """The texture set that is drawn."""
         return self._textures
 
     @property
@@ -211,23 +218,25 @@ class FlowLayer:
         Once something has been drawn, the slices that come next in the direction in which the
         time has moved are prepared.
         """
-        was = self.view.time
+        old_time = self.view.time
         if (before, after) != self._steps:
-            old = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
-            reused = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
+            names = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
+            reused = {
+                names[s]: self._gpu.pop(names[s], None) for s in (before, after) if s in names
+            }
             self._retire("u_slices", "u_slicesNext")
             for step, name in ((before, "u_slices"), (after, "u_slicesNext")):
-                texture = reused.get(old.get(step, ""))
+                texture = reused.get(names.get(step, ""))
                 if texture is not None:
                     self._gpu[name] = texture
             self._steps = (before, after)
         first, last = self._textures.store.field.times[[before, after]]
         self.view.between, self.view.time = between, float(first + between * (last - first))
-        if self._drawn and self.view.time != was:
-            self._prefetch.prepare(after + 1 if self.view.time > was else before - 1)
+        if self._drawn and self.view.time != old_time:
+            self._prefetch.prepare(after + 1 if self.view.time > old_time else before - 1)
 
     def close(self) -> None:
-        """Take everything out of the actor again and free the graphics card's memory."""
+        """Restore the actor and free the graphics card's memory."""
         self._mapper.RemoveObserver(self._observed)
         self._prefetch.close()
         self._actor.clear_shader_replacements(_feature_name=OWNER)
@@ -259,13 +268,13 @@ class FlowLayer:
             text = f"{shader_text(name, variant)}\n{mark}\n"
             self._actor.add_shader_replacement(shader, mark, text, _feature_name=OWNER)
 
-    def before_draw(self, program: Any) -> None:
+    def before_draw(self, program: vtkShaderProgram | None) -> None:
         """Write uniforms and texture units to the program that is about to draw."""
         window = self._window()
         if program is None or window is None:
             return
         self._free(window)
-        # What was drawn just before is done with its texture units, of which there are few.
+        # The layer drawn just before no longer needs its texture units, of which there are few.
         if (last := _last.get(window)) is not None and (layer := last()) not in (None, self):
             layer.after_frame()
         _last[window] = weakref.ref(self)
@@ -288,13 +297,13 @@ class FlowLayer:
                 program.SetUniformi(name, self._gpu[name].bind(window))
 
     def after_frame(self) -> None:
-        """Give the texture units back."""
+        """Release the texture units."""
         self._drawn = True
         for texture in self._gpu.values():
             texture.unbind()
 
     def _loaders(self) -> dict[str, Callable[[], GPUTexture]]:
-        """How to load the texture of each sampler of the shader."""
+        """Return the function that loads the texture of each sampler of the shader."""
         paper = self._textures.paper
         loaders: dict[str, Callable[[], GPUTexture]] = {"u_slices": partial(self._slices, 0)}
         if self._textures.store.steps > 1:
@@ -315,14 +324,14 @@ class FlowLayer:
         return loaders
 
     def _slices(self, number: int) -> GPUTexture:
-        """Slices of the first or the second of the two steps."""
+        """Return the slices of the first or the second of the two steps."""
         step = self._steps[number]
-        layers = self._take(step) if self._take else self._prefetch.take(step, self.view.lags)
+        layers = self._layers(step) if self._layers else self._prefetch.take(step, self.view.lags)
         levels = self._textures.geometry.levels if self.view.levels is None else self.view.levels
         return GPUTexture(layers, levels=levels)
 
     def look(self) -> None:
-        """Choose the shader, and take the camera and the anchor into the mesh's own coordinates."""
+        """Choose the shader, and transform the camera and the anchor to the mesh's coordinates."""
         renderer = self._renderer()
         if renderer is None:
             return
@@ -345,7 +354,7 @@ class FlowLayer:
     def _choose_slices(self) -> None:
         """Draw with the lags and mip levels that the first view needs, later perhaps with all."""
         lags = levels = None
-        if not self._take:
+        if not self._layers:
             lags = needed_lags(self._textures, self._settings, self.view)
             levels = needed_levels(self._textures, self._settings, self.view)
         if "u_slices" not in self._gpu:
@@ -353,22 +362,22 @@ class FlowLayer:
         elif _is_more(lags, self.view.lags) or _is_more(levels, self.view.levels):
             self.view.lags = self.view.levels = None
             self._retire("u_slices")
-        if "u_slices" not in self._gpu and not self._take:
+        if "u_slices" not in self._gpu and not self._layers:
             # A separate thread traces while this one continues with meshes and shaders.
             self._prefetch.prepare(self._steps[0], self.view.lags)
 
-    def _move_anchor(self, seen: float) -> None:
-        """Count positions from near the focus once their digits do not do from elsewhere."""
+    def _move_anchor(self, height: float) -> None:
+        """Move the origin of positions near the focus where precision needs it."""
         geometry = self._textures.geometry
-        there = geometry.local(self.view.focus)
-        if np.abs(there - self.view.anchor).max() <= ANCHOR_RANGE * seen:
+        focus = geometry.local(self.view.focus)
+        if np.abs(focus - self.view.anchor).max() <= ANCHOR_RANGE * height:
             return
-        near_middle = np.abs(there).max() <= ANCHOR_RANGE * seen
-        self.view.anchor = np.zeros(3) if near_middle else there
+        near_middle = np.abs(focus).max() <= ANCHOR_RANGE * height
+        self.view.anchor = np.zeros(3) if near_middle else focus
         position = geometry.position_from(self.view.anchor)
         set_position(self._mesh, geometry.at_vertices(position))
 
-    def eye_and_half_height(self, camera: Any) -> tuple[Floats | None, float]:
+    def eye_and_half_height(self, camera: vtkCamera) -> tuple[Floats | None, float]:
         """Return the eye in the mesh's own coordinates, and half the height of what is seen.
 
         Where rays are parallel there is no eye; else the height is that for a distance of one.
@@ -378,7 +387,7 @@ class FlowLayer:
         return self.view.eye[:3], float(np.tan(np.radians(camera.GetViewAngle() / 2)))
 
     def choose_levels(self, renderer: Any, view: TileView) -> Ints:
-        """Return the coarsest levels of the mesh that do for the view, (block rows, columns).
+        """Return the coarsest levels of the mesh that the view allows, (block rows, columns).
 
         Blocks that are out of view have -1.
         """
@@ -399,18 +408,18 @@ class FlowLayer:
             triangles = np.concatenate([triangles, np.repeat(outermost[:, None], 3, axis=1)])
         set_triangles(self._mesh, triangles)
 
-    def follow(self, mapper: Any) -> None:
+    def follow(self, mapper: vtkMapper) -> None:
         """Take the colours of another mapper, by the same point array."""
-        mine = self._mapper
-        mine.SetScalarVisibility(mapper.GetScalarVisibility())
-        mine.SetLookupTable(mapper.GetLookupTable())
-        mine.SetScalarRange(*mapper.GetScalarRange())
-        mine.SetUseLookupTableScalarRange(mapper.GetUseLookupTableScalarRange())
-        mine.SetInterpolateScalarsBeforeMapping(mapper.GetInterpolateScalarsBeforeMapping())
-        mine.SetColorMode(mapper.GetColorMode())
-        mine.SetScalarMode(mapper.GetScalarMode())
+        target = self._mapper
+        target.SetScalarVisibility(mapper.GetScalarVisibility())
+        target.SetLookupTable(mapper.GetLookupTable())
+        target.SetScalarRange(*mapper.GetScalarRange())
+        target.SetUseLookupTableScalarRange(mapper.GetUseLookupTableScalarRange())
+        target.SetInterpolateScalarsBeforeMapping(mapper.GetInterpolateScalarsBeforeMapping())
+        target.SetColorMode(mapper.GetColorMode())
+        target.SetScalarMode(mapper.GetScalarMode())
         if (name := mapper.GetArrayName()) is not None:
-            mine.SelectColorArray(name)
+            target.SelectColorArray(name)
 
     def _follow_colours(self) -> None:
         """Use the colours of the mapper, which users may have changed."""
@@ -418,7 +427,7 @@ class FlowLayer:
         if (before and before.state) != (self._colours and self._colours.state):
             self._retire("u_shares", "u_colours")
 
-    def _window(self) -> Any:
+    def _window(self) -> vtkOpenGLRenderWindow | None:
         renderer = self._renderer()
         return None if renderer is None else renderer.GetRenderWindow()
 
@@ -426,54 +435,56 @@ class FlowLayer:
         """Release textures when their window's context is current."""
         self._retired += [t for n in names if (t := self._gpu.pop(n, None)) is not None]
 
-    def _free(self, window: Any) -> None:
+    def _free(self, window: vtkOpenGLRenderWindow | None) -> None:
         for texture in self._retired:
             texture.release(window)
         self._retired.clear()
 
 
 #: The layer that each window has drawn last.
-_last: weakref.WeakKeyDictionary[Any, weakref.ref[FlowLayer]] = weakref.WeakKeyDictionary()
+_last: weakref.WeakKeyDictionary[vtkOpenGLRenderWindow, weakref.ref[FlowLayer]] = (
+    weakref.WeakKeyDictionary()
+)
 
 
 def corrects_places(textures: TextureSet) -> bool:
-    """Whether the shader of a texture set corrects the places of fragments between the nodes."""
+    """Return whether the shader corrects the places of fragments between the nodes."""
     return isinstance(textures.geometry, SurfaceGeometry) and textures.paper is None
 
 
 def _nodes(geometry: SurfaceGeometry) -> Floats32:
-    """Positions of the nodes and normals, (2, J, I, 3), or positions in a plane, (1, J, I, 2)."""
+    """Return nodal positions and normals, (2, J, I, 3), or positions in a plane, (1, J, I, 2)."""
     if geometry.planar:
         return np.nan_to_num(geometry.position[None, ..., :2])
     return np.nan_to_num(np.stack([geometry.position, geometry.normal]))
 
 
-def _is_more(needed: int | None, there: int | None) -> bool:
-    """Whether more is needed than is there, where ``None`` stands for all."""
-    return there is not None and (needed is None or needed > there)
+def _is_more(needed: int | None, present: int | None) -> bool:
+    """Return whether more is needed than present, where ``None`` means all."""
+    return present is not None and (needed is None or needed > present)
 
 
-def _window_height(camera: Any) -> float:
-    """Height of what the camera sees at its focal point."""
+def _window_height(camera: vtkCamera) -> float:
+    """Return the height of the view at the focal point."""
     if camera.GetParallelProjection():
         return float(2 * camera.GetParallelScale())
     return float(2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2)))
 
 
-def observe_draws(mapper: Any, method: Callable[[Any], None]) -> int:
-    """Call a method with the program before each draw; that does not keep its object alive."""
-    this = weakref.WeakMethod(method)
+def observe_draws(mapper: Any, method: Callable[[vtkShaderProgram], None]) -> int:
+    """Call a method with the program before each draw, without keeping its object alive."""
+    reference = weakref.WeakMethod(method)
 
-    def call(caller: Any, event: str, program: Any = None) -> None:
+    def call(caller: vtkObject, event: str, program: vtkShaderProgram | None = None) -> None:
         del caller, event
-        if (alive := this()) is not None and program is not None:
-            alive(program)
+        if (bound := reference()) is not None and program is not None:
+            bound(program)
 
     call.CallDataType = VTK_OBJECT  # type: ignore[attr-defined]
     return int(mapper.AddObserver("UpdateShaderEvent", call))
 
 
-def write_uniform(program: Any, name: str, value: Any) -> None:
+def write_uniform(program: vtkShaderProgram, name: str, value: Any) -> None:
     """Set one uniform, by the type of its value."""
     if isinstance(value, (bool, int)):
         program.SetUniformi(name, int(value))

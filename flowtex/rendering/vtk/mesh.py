@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from pyvista.plotting.mapper import _BaseDataSetMapper
+from pyvista.plotting.themes import Theme
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.util.vtkConstants import VTK_ID_TYPE
 from vtkmodules.vtkCommonDataModel import vtkCellArray
@@ -89,7 +90,7 @@ class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):
     vertex attributes nor the event before a draw can be reached.
     """
 
-    def __init__(self, dataset: pv.PolyData, theme: Any = None) -> None:
+    def __init__(self, dataset: pv.PolyData, theme: Theme | None = None) -> None:
         super().__init__(theme=theme)
         self.SetInputData(dataset)
 

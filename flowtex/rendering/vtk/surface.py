@@ -8,14 +8,16 @@ position; they come and go with the view.
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkObject
+from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Floats, Ints
 from flowtex._util.notices import notify
 from flowtex.field import FlowField
 from flowtex.field.earth import EARTH_RADIUS
@@ -78,7 +80,7 @@ class FlowSurface:
         self.whole_height: int | None = None
         self._culling = "none"
         self._notify: Callable[[], None] | None = None
-        self._told: set[TileKey] = set()
+        self._reported: set[TileKey] = set()
         self._observed = [
             (event, renderer.AddObserver(event, self._observer(name)))
             for event, name in (("StartEvent", "_before_frame"), ("EndEvent", "_after_frame"))
@@ -97,8 +99,8 @@ class FlowSurface:
         self._notify = notify
 
     @property
-    def meshes(self) -> list[Any]:
-        """What the last frame has drawn: the surface's own mesh, and those of tiles."""
+    def meshes(self) -> list[pv.PolyData]:
+        """Meshes that the last frame has drawn: the surface's own mesh, and those of tiles."""
         shown = [drawn.mesh for drawn in self._tiles.values() if drawn.actor.GetNumberOfConsumers()]
         return [self._actor.mapper.dataset, *shown]
 
@@ -110,7 +112,7 @@ class FlowSurface:
     def show(
         self, textures: TextureSet, pyramid: Pyramid | None, moment: tuple[int, int, float]
     ) -> None:
-        """Draw another flow from now on, at a moment of it; what colours it is to be set anew."""
+        """Draw another flow from now on, at a moment of it, without scalars."""
         self._moment, self._scalars = moment, None
         self.set_textures(textures, pyramid)
 
@@ -126,7 +128,7 @@ class FlowSurface:
             set_attributes(self._actor.mapper.dataset, textures)
             self._base.set_textures(textures)
             return
-        # Another surface, or another level is the whole of it now: there are other nodes.
+        # Another surface, or another level of it as the whole, has other nodes.
         view = self._base.view
         self._base.close()
         self._actor.mapper.SetInputData(surface_mesh(textures))
@@ -141,18 +143,18 @@ class FlowSurface:
         self._base.set_moment(before, after, between)
 
     def set_scalars(self, name: str, values: Callable[[FlowField], Floats]) -> None:
-        """Have the values that a function gives for a field (J, I) as a point array."""
+        """Write the values that a function returns for a field, (J, I), as a point array."""
         self._scalars = (name, values)
         self.write_scalars()
 
     def write_scalars(self) -> None:
-        """Ask for the values again, since they have changed."""
+        """Write the values again after they have changed."""
         self._write_scalars(self._base, self._actor.mapper.dataset)
         for drawn in self._tiles.values():
             self._write_scalars(drawn.layer, drawn.mesh)
 
     def close(self) -> None:
-        """Take everything out of the renderer again, and free the graphics card's memory."""
+        """Remove everything from the renderer, and free the graphics card's memory."""
         renderer = self._renderer()
         if renderer is not None:
             for _, tag in self._observed:
@@ -163,13 +165,13 @@ class FlowSurface:
             self._loader.close()
         self._base.close()
 
-    def _observer(self, name: str) -> Any:
+    def _observer(self, name: str) -> Callable[[vtkObject, str], None]:
         """Return a callback that does not keep this surface alive."""
-        this = weakref.WeakMethod(getattr(self, name))
+        reference = weakref.WeakMethod(getattr(self, name))
 
-        def call(caller: Any, event: str) -> None:
+        def call(caller: vtkObject, event: str) -> None:
             del caller, event
-            method = this()
+            method = reference()
             if method is not None:
                 method()
 
@@ -213,7 +215,7 @@ class FlowSurface:
     def _cull(self) -> None:
         """Leave out the far side of a whole globe, which is hidden but would be shaded as well.
 
-        Whoever has chosen which faces are drawn keeps the choice.
+        A user's own choice of the faces that are drawn stays.
         """
         prop, eye, surface = self._actor.prop, self.view.eye, self._base.textures.geometry.whole
         culling = "none"
@@ -240,7 +242,7 @@ class FlowSurface:
             layer.after_frame()
 
     def _choose(self, view: TileView) -> dict[TileKey | None, list[TileKey]]:
-        """Return the tiles to draw and what of them finer ones cover, and ask for others."""
+        """Return the tiles to draw with the finer ones that cover parts, and request others."""
         loader = self._loader
         if loader is None:
             return {None: []}
@@ -249,14 +251,14 @@ class FlowSurface:
         loader.request(wanted_tiles(choices), steps)
         if not self._goes_on():
             loader.wait()
-        self._tell(loader.errors)
+        self._report(loader.errors)
         self._drop([key for key in self._tiles if not loader.keeps(key)])
         return cover(choices, lambda key: self._ready(key, steps))
 
-    def _tell(self, errors: Mapping[TileKey, Exception]) -> None:
+    def _report(self, errors: Mapping[TileKey, Exception]) -> None:
         """Warn, once each, of tiles that could not be made; coarser ones are in their place."""
-        for key in errors.keys() - self._told:
-            self._told.add(key)
+        for key in errors.keys() - self._reported:
+            self._reported.add(key)
             error = errors[key]
             notify(
                 f"a part of the surface is shown coarse, because tile {tuple(key)} could not be "
@@ -265,7 +267,7 @@ class FlowSurface:
             )
 
     def _goes_on(self) -> bool:
-        """Whether another frame follows by itself when tiles are ready."""
+        """Return whether another frame follows by itself when tiles are ready."""
         if self._notify is not None:
             return True
         renderer = self._renderer()
@@ -279,22 +281,22 @@ class FlowSurface:
             # VTK draws in the window's thread, which checks at intervals.
             observers: list[int] = []
 
-            def look(caller: Any, event: str) -> None:
+            def draw(caller: vtkRenderWindowInteractor, event: str) -> None:
                 del event
                 caller.RemoveObserver(observers[0])
                 caller.Render()
 
-            observers.append(interactor.AddObserver("TimerEvent", look))
+            observers.append(interactor.AddObserver("TimerEvent", draw))
             interactor.CreateOneShotTimer(LOOK_INTERVAL_MS)
         return True
 
-    def _tile_view(self, renderer: Any) -> TileView:
-        """Return what of the camera decides on tiles, in the mesh's coordinates."""
+    def _tile_view(self, renderer: pv.Renderer) -> TileView:
+        """Return the view for which tiles are chosen, in the mesh's coordinates."""
         eye, half = self._base.eye_and_half_height(renderer.GetActiveCamera())
         width, height = renderer.GetSize()
         planes = [0.0] * 24
         renderer.GetActiveCamera().GetFrustumPlanes(width / max(height, 1), planes)
-        sides = np.reshape(planes, (6, 4))[:4] @ self._place  # not those before and behind
+        sides = np.reshape(planes, (6, 4))[:4] @ self._place  # without near and far
         pixels = (self.full_height or height) / self.view.density
         return TileView(eye, half, pixels, sides, cell_pixels(self._settings))
 
@@ -304,7 +306,7 @@ class FlowSurface:
         return np.asarray(pv.array_from_vtkmatrix(self._actor.GetMatrix()))
 
     def _ready(self, key: TileKey, steps: list[int]) -> bool:
-        """Whether a tile can be drawn, making its actor first."""
+        """Return whether a tile can be drawn, and make its actor first."""
         tile = None if self._loader is None else self._loader.get(key, steps)
         if tile is None:
             return False
@@ -314,18 +316,18 @@ class FlowSurface:
 
     def _loader_of(self, pyramid: Pyramid) -> TileLoader:
         """Return a loader that does not keep this surface alive."""
-        this = weakref.ref(self)
+        reference = weakref.ref(self)
 
         def prepare(textures: TextureSet) -> tuple[pv.PolyData, MeshLevels | TriangleBlocks]:
-            surface = this()
+            surface = reference()
             if surface is not None and surface._scalars is not None:
-                surface._scalars[1](textures.geometry.field)  # which keeps the values available
-            _ = textures.unit, textures.cell, textures.critical_cell  # which are kept as well
+                surface._scalars[1](textures.geometry.field)  # which caches the values
+            _ = textures.unit, textures.cell, textures.critical_cell  # which are cached as well
             placed = corrects_places(textures)
             return surface_mesh(textures), mesh_levels_of(textures, placed=placed)
 
         def notify() -> None:
-            surface = this()
+            surface = reference()
             if surface is not None and surface._notify is not None:
                 surface._notify()
 
@@ -344,7 +346,7 @@ class FlowSurface:
         return _TileActor(tile, actor, mesh, layer)
 
     def _show(self, keys: list[TileKey | None]) -> None:
-        """Have these tiles in the renderer and no others."""
+        """Show exactly these tiles in the renderer."""
         renderer, base = self._renderer(), self._actor
         if renderer is None:
             return
@@ -382,13 +384,13 @@ class FlowSurface:
             if pyramid is not None:
                 for child in shown[key]:
                     levels[finer_part(pyramid, child, key)] = -1
-            at = TileKey(depth, 0, 0) if key is None else key
-            row, column = (TILE_BLOCKS * place << at.level for place in at[1:])
-            regions[key] = Region(at.level, row, column, levels)
+            place = TileKey(depth, 0, 0) if key is None else key
+            row, column = (TILE_BLOCKS * index << place.level for index in place[1:])
+            regions[key] = Region(place.level, row, column, levels)
         drawn = tuple((key, region.levels.tobytes()) for key, region in regions.items())
         if drawn == self._drawn:
             return
-        joins: list[Any] = [None] * len(regions)
+        joins: Sequence[Ints | None] = [None] * len(regions)
         if isinstance(self._base.mesh_levels, MeshLevels):
             joins = join(list(regions.values()), (blocks[0], blocks[1]), geometry.periodic)
         for (key, region), borders in zip(regions.items(), joins, strict=True):

@@ -1,4 +1,4 @@
-"""What stands beside a flow: meshes, lines, points and labels in their own colours.
+"""Other objects of a scene: meshes, lines, points and labels in their own colours.
 
 A client draws them with the flow, and hides each behind what lies before it. All meshes are in a
 few parts together; the header says which triangles and pieces of lines belong to which body.
@@ -18,7 +18,7 @@ from flowtex.textures.geometry import DrawnSurface
 MOST_VERTICES, MOST_LABELS = 500_000, 500
 #: Greatest component of a normal in eight bits.
 NORMAL_MAX = 127
-#: By how much the depths that are seen reach beyond the farthest vertex.
+#: Factor by which the depths in view reach beyond the farthest vertex.
 BEYOND = 1.01
 
 
@@ -34,7 +34,7 @@ class Body:
     #: Unit normals of smooth faces, (N, 3); those of flat ones are found when they are drawn.
     normals: Floats | None = None
     width: float = 1.0  #: Width of lines and points in pixels.
-    #: How much light there is everywhere, and how much faces have of the lights.
+    #: Shares of ambient light and of diffuse light.
     ambient: float = 1.0
     diffuse: float = 0.0
 
@@ -64,7 +64,7 @@ class Light:
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """All that stands beside a flow."""
+    """All other objects of a scene."""
 
     meshes: tuple[Body, ...] = ()
     labels: tuple[Label, ...] = ()

@@ -11,11 +11,10 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from dataclasses import field as data_field
 from functools import cache, cached_property
-from typing import Any
 
 import numpy as np
 
@@ -25,7 +24,7 @@ from flowtex.field import FlowField
 from flowtex.field.derived import speed_unit
 from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
-from flowtex.rendering.camera import CAMERA_LIMITS, Camera
+from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraValues
 from flowtex.rendering.mesh_levels import mesh_limits
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
@@ -94,9 +93,9 @@ class Colours:
     #: Numbers and values of other scalars, sent as well where nobody can be asked later.
     others: tuple[tuple[int, Floats], ...] = ()
     number: int = 0  #: Number of the scalar among those of the field.
-    #: What a person may choose to colour by: name, label, unit, automatic range, and whether it
-    #: varies.
-    choices: tuple[Mapping[str, Any], ...] = ()
+    #: Scalars that a user may choose for the colours: name, label, unit, automatic range, and
+    #: whether it varies.
+    choices: tuple[Header, ...] = ()
     #: Name of the colour map, empty if it has no name, and whether its range is automatic.
     cmap: str = ""
     auto: bool = True
@@ -107,7 +106,7 @@ class Colours:
     land: tuple[float, float, float] | None = None
 
     def shares(self, values: Floats) -> Floats:
-        """Places of values on the colour map, from 0 to 1."""
+        """Return the places of values on the colour map, from 0 to 1."""
         return colour_shares(values, self.low, self.high, log_scale=self.log_scale)
 
 
@@ -187,7 +186,7 @@ class ClientData:
         self,
         settings: Settings,
         *,
-        camera: Mapping[str, Any] | None = None,
+        camera: CameraValues | None = None,
         time: float | None = None,
         clock: float = 0.0,
     ) -> Header:
@@ -205,7 +204,7 @@ class ClientData:
         }
 
     def constants(self) -> Header:
-        """Return what of the header changes only with the textures or the colours."""
+        """Return the part of the header that changes only with the textures or the colours."""
         textures, colours = self.textures, self.colours
         variant = sorted(variants(textures, unsteady=self.steps > 1))
         return {
@@ -284,7 +283,7 @@ class ClientData:
     def step(self, step: int) -> Parts:
         """Return the arrays of one destination time, the smallest first.
 
-        What is not yet traced is traced. Raises an IndexError when the step does not exist.
+        Traces are made if necessary. Raises an IndexError when the step does not exist.
         """
         if not 0 <= step < self.steps:
             msg = f"time step {step} does not exist: expected 0 to {self.steps - 1}"
@@ -324,7 +323,7 @@ class ClientData:
         return parts
 
     def tile(self, textures: TextureSet, values: Callable[[str], Floats]) -> ClientData:
-        """Return what is sent of a tile; ``values`` gives those of a scalar at its nodes."""
+        """Return the data of a tile; ``values`` returns those of a scalar at its nodes."""
         colours = self.colours
         colours = replace(
             colours,
@@ -335,7 +334,7 @@ class ClientData:
 
     @cached_property
     def tile_header(self) -> Header:
-        """What of the header of a tile differs from that of the root."""
+        """Part of a tile's header that differs from that of the root."""
         return {"geometry": self._geometry(), "slices": self._slices()}
 
     def source(self, step: int) -> int:
@@ -376,16 +375,16 @@ class ClientData:
         rows, columns = self.textures.geometry.drawn
         steps = list(self.chosen) or slice(None)
         return {
-            number: each[steps if len(each) > 1 else slice(None)][:, rows, columns]
-            for number, each in values.items()
+            number: nodal[steps if len(nodal) > 1 else slice(None)][:, rows, columns]
+            for number, nodal in values.items()
         }
 
     @cached_property
     def _mesh(self) -> Floats32:
-        """Return what the client chooses its triangles by, of each tile."""
+        """Records by which the client chooses triangles."""
         return mesh_levels_of(self.textures).records.astype("<f4")
 
-    def _geometry(self) -> dict[str, Any]:
+    def _geometry(self) -> Header:
         geometry = self.textures.geometry
         rows, columns = (
             {"before": int(b), "size": int(n)}
@@ -405,7 +404,7 @@ class ClientData:
             "reach": 0.0 if self.bodies is None else self.bodies.reach(geometry),
         }
 
-    def _speed(self) -> dict[str, Any]:
+    def _speed(self) -> Header:
         field = self.field
         return {
             "label": field.speed_label,
@@ -425,7 +424,7 @@ class ClientData:
             "land": None if colours.land is None else plain_list(colours.land),
         }
 
-    def _slices(self) -> dict[str, Any]:
+    def _slices(self) -> Header:
         textures = self.textures
         return {
             "count": int(textures.count),
@@ -446,7 +445,7 @@ class ClientData:
 
 
 def single(values: Floats) -> Floats32:
-    """Return values in single precision; what is greater than its greatest number becomes that."""
+    """Return values in single precision, clipped to its greatest number."""
     return np.ascontiguousarray(np.clip(values, -SINGLE_MAX, SINGLE_MAX), "<f4")
 
 
@@ -467,8 +466,8 @@ def tile_parts(key: TileKey, tile: ClientData | None, *steps: int) -> Parts:
     return {f"{prefix}/{name}": part for name, part in parts.items()}
 
 
-def _pyramid(pyramid: Pyramid, finest: int) -> dict[str, Any]:
-    """Return what a client chooses the tiles by, beside the places of their blocks."""
+def _pyramid(pyramid: Pyramid, finest: int) -> Header:
+    """Return the numbers by which a client chooses tiles, beside the places of their blocks."""
     levels = range(pyramid.depth + 1)
     return {
         "depth": pyramid.depth,
@@ -481,8 +480,8 @@ def _pyramid(pyramid: Pyramid, finest: int) -> dict[str, Any]:
     }
 
 
-def _paper(paper: PaperTextures) -> dict[str, Any]:
-    """Return what is to be known of the noise texture, or of the picture in its place."""
+def _paper(paper: PaperTextures) -> Header:
+    """Return the header of the noise texture, or of the picture in its place."""
     height, width = paper.step.shape
     return {
         "size": [int(width), int(height)],
@@ -509,7 +508,7 @@ def _shaders(variant: tuple[str, ...], *, traces: bool) -> dict[str, str]:
     return {key: _COMMENTS.sub("", text) for key, text in texts.items()}
 
 
-def _table() -> list[dict[str, Any]]:
+def _table() -> list[Header]:
     names = (
         *("name", "label", "default", "affects", "text", "low", "high", "logarithmic"),
         "condition",

@@ -1,4 +1,4 @@
-"""What a client needs of the Earth below a flow: lines, land, longitude and latitude, and dates."""
+"""The Earth below a flow for a client: lines, land, longitude and latitude, and dates."""
 
 from __future__ import annotations
 
@@ -133,27 +133,27 @@ def _packed(lines: MapLines, shares: Floats) -> AnyArray:
 
 @lru_cache(maxsize=8)
 def _lonlat(projection: Projection, box: bytes) -> Floats32:
-    """Return the way to places of a map from the middle of the Earth, unit vectors (M, N, 3).
+    """Return the directions of places of a map from the Earth's centre, unit vectors (M, N, 3).
 
     The places are spread evenly over the box. Beside the map the places around it are continued.
     """
     low, high = np.frombuffer(box).reshape(2, 3)[:, :2]
-    apart = max(float((high - low).max()) / (LONLAT_PLACES - 1), NEAREST_PLACES_M)
-    counts = np.maximum(np.rint((high - low) / apart).astype(int) + 1, FEWEST_PLACES)
+    spacing = max(float((high - low).max()) / (LONLAT_PLACES - 1), NEAREST_PLACES_M)
+    counts = np.maximum(np.rint((high - low) / spacing).astype(int) + 1, FEWEST_PLACES)
     x, y = (np.linspace(low[k], high[k], counts[k]) for k in range(2))
     points = np.stack([*np.meshgrid(x, y), np.zeros((counts[1], counts[0]))], axis=-1)
     a, b = np.radians(projection.lonlat(points))
-    ways = np.stack([np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b)], axis=-1)
+    directions = np.stack([np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b)], axis=-1)
     for _ in range(MOST_ONWARD):
         for axis in (1, 0):
             for side in (1, -1):
-                _continue(ways, axis, side)
-    return ways.astype("<f4")
+                _continue(directions, axis, side)
+    return directions.astype("<f4")
 
 
-def _continue(ways: Floats, axis: int, side: int) -> None:
-    """Fill places that are not known beside four in a row that are."""
-    lines = np.moveaxis(ways, axis, 0)[::side]
+def _continue(directions: Floats, axis: int, side: int) -> None:
+    """Extrapolate to unknown places next to four known ones in a row."""
+    lines = np.moveaxis(directions, axis, 0)[::side]
     before = [lines[3 - n : len(lines) - 1 - n] for n in range(len(ONWARD))]
     onward = np.tensordot(ONWARD, before, axes=1)
     empty = np.isnan(lines[4:]) & np.isfinite(onward)

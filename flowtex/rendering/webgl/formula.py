@@ -6,8 +6,6 @@ finest one. ``client/src/formula.ts`` is the other side.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from flowtex.field.formula import Formula
@@ -35,17 +33,17 @@ def client_formula(textures: TextureSet) -> Formula | None:
     if any(each.tree is None for each in formula.expressions):
         return None
     u, v = formula.coordinates(field.shape)
-    made = [(field.points, formula.points(u, v))]
-    made += [
+    pairs = [(field.points, formula.points(u, v))]
+    pairs += [
         (field.velocity[n], formula.velocity(u, v, float(field.times[n])))
         for n in {0, len(field.times) - 1}
     ]
-    same = all(np.allclose(has[..., :2], own) and not has[..., 2].any() for has, own in made)
+    same = all(np.allclose(a[..., :2], b) and not a[..., 2].any() for a, b in pairs)
     return formula if same else None
 
 
 def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:
-    """Return what of a header is a formula's, for a root of this many nodes (J, I)."""
+    """Return a formula's part of the header, for a root of this many nodes (J, I)."""
     shapes = [[(n - 1) * 2 ** (DEPTH - level) + 1 for n in shape] for level in range(DEPTH + 1)]
     return {
         "formula": {
@@ -65,7 +63,7 @@ def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:
     }
 
 
-def parameter_rows(formula: Formula) -> list[dict[str, Any]]:
+def parameter_rows(formula: Formula) -> list[Header]:
     """Return the parameters as rows of the table of settings."""
     return [
         {

@@ -36,16 +36,16 @@ MARK_PARTS = {
     "separatrices": "separatrices",
     "nullclines": "nullclines",
 }
-#: The number of a line is this many times that of its saddle, and the sum of what else it tells.
+#: The number of a line is SADDLE times that of its saddle, plus a sum of flags.
 SADDLE, ORBIT, LEAVING, SIDE = 8, 4, 2, 1
 
 
 @dataclass(frozen=True, eq=False)
 class Marks:
-    """What there is of the structure of a flow."""
+    """The structure of a flow, as parts for a client."""
 
     structure: Structure
-    kinds: tuple[str, ...] = tuple(MARK_PARTS.values())  #: Parts that can be had.
+    kinds: tuple[str, ...] = tuple(MARK_PARTS.values())  #: Parts that are available.
     carried: bool = False  #: Whether they come with each step, or when requested.
 
     def header(self) -> Header:

@@ -1,4 +1,4 @@
-"""Slices in half precision as the client takes them, packed once for all views of some textures."""
+"""Slices in half precision for the client, packed once for all views of the same textures."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class PackedStep:
 
 
 class Packing:
-    """Packed slices of some textures; those requested last are cached.
+    """Packed slices of a texture set; those requested last are cached.
 
     A slope has so many ``channels``, two in a plane and in noise coordinates. ``extra`` are the
     layers whose fourth channel says something: unit, reach, speed, how far the direction is not
@@ -48,7 +48,7 @@ class Packing:
         self._steps: ByteCache[int, PackedStep] = ByteCache(CACHE_BYTES, min_count=LEAST_STEPS)
 
     def step(self, step: int) -> PackedStep:
-        """Return a step; what is not yet traced is traced."""
+        """Return a step, which is traced if necessary."""
         return self._steps.get(step, lambda: self._packed(step))
 
     @property
@@ -66,11 +66,11 @@ _packings: WeakCache[Packing] = WeakCache()
 
 
 def packing_of(textures: TextureSet) -> Packing:
-    """Return the packing of some textures, one for all who draw with them."""
+    """Return the packing of a texture set, shared by all views that draw it."""
     # A packing keeps its textures alive, so their number is its own while it lives.
     return _packings.get(id(textures), lambda: Packing(textures))
 
 
 def half(values: AnyArray) -> Halves:
-    """Round to half precision; what is greater than its greatest number becomes that."""
+    """Round to half precision, clipped to its greatest number."""
     return np.ascontiguousarray(np.clip(values, -HALF_MAX, HALF_MAX), dtype="<f2")

@@ -20,25 +20,28 @@ from collections.abc import Mapping
 from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import digest
 
 #: Number of the form of header and parts; a client refuses one that it does not know.
 FORMAT = 6
-#: Of gzip, for the parts of a page.
+#: Level of gzip for the parts of a page.
 COMPRESSION_LEVEL = 6
-#: How often numbers of a part are taken from each other along an axis at most, and how many, and
-#: how many rows, tell what is best.
+#: Highest order of differences of a part along an axis; numbers, and rows at least, of the sample
+#: from which the best order is chosen.
 MOST_DIFFERENCES, SAMPLE, LEAST_ROWS = 2, 20_000, 4
 #: Types of the whole numbers of which floats may be multiples, their bits, and exponents of a unit.
 WHOLE, MOST_SCALE = {"float16": ("<i2", 15), "float32": ("<i4", 24)}, 100
 
+#: Values for JSON by name: a header, a section of one, or the description of a part.
 Header: TypeAlias = dict[str, Any]
+#: Arrays by the names of parts.
 Parts: TypeAlias = dict[str, AnyArray]
 
 
-def part_info(name: str, array: AnyArray) -> dict[str, Any]:
+def part_info(name: str, array: AnyArray) -> Header:
     """Return the description of a part, for JSON; equal arrays have equal digests."""
     return {
         "name": name,
@@ -69,7 +72,7 @@ def parts_file(parts: Mapping[str, AnyArray], *, planes: bool = False) -> bytes:
     return b"".join((struct.pack("<I", len(text)), text, *buffers))
 
 
-def file_infos(file: bytes) -> tuple[list[dict[str, Any]], int]:
+def file_infos(file: bytes) -> tuple[list[Header], int]:
     """Return the descriptions of the parts of a file, and where its arrays begin.
 
     Of the file the beginning will do. Raises a ValueError when they are cut short or no JSON.
@@ -78,8 +81,8 @@ def file_infos(file: bytes) -> tuple[list[dict[str, Any]], int]:
     return json.loads(file[4:start]), start
 
 
-def part_text(array: AnyArray) -> tuple[dict[str, Any], str]:
-    """Return how a part is packed in a page, for its description, and its bytes: gzip in base64."""
+def part_text(array: AnyArray) -> tuple[Header, str]:
+    """Return how a part is packed in a page, for its description, and its text."""
     packing, planes = _packed(array)
     return packing, zipped(planes)
 
@@ -89,28 +92,28 @@ def zipped(data: bytes) -> str:
     return base64.b64encode(gzip.compress(data, COMPRESSION_LEVEL, mtime=0)).decode()
 
 
-def _packed(array: AnyArray) -> tuple[dict[str, Any], bytes]:
-    """Return bytes of a part that gzip packs well, and for its description what they are.
+def _packed(array: AnyArray) -> tuple[Header, bytes]:
+    """Return how a part is packed, for its description, and bytes that gzip packs well.
 
     Numbers whose channels are multiples of powers of two are whole numbers, with the exponents as
     ``scale``.
-    What is packed is by how much numbers differ from those before them, along the rows and along
-    the columns of nodes as often as ``differences`` tell, with the sign as the last bit. The bytes
+    The bytes are those of differences of neighbouring numbers, of the orders ``differences`` along
+    the rows and along the columns of nodes, with the sign as the last bit. The bytes
     of a channel and of one significance lie side by side. Nothing is lost.
     """
     width, channels = array.shape[-2:] if array.ndim > 2 else (*array.shape, 1)[-2:]
     whole, scale = _whole(array, channels)
     numbers = whole.view(f"<u{whole.itemsize}").reshape(-1, max(width, 1), channels)
     middle = len(numbers) // 2
-    some = numbers[middle : middle + max(SAMPLE // max(width * channels, 1), LEAST_ROWS)]
+    sample = numbers[middle : middle + max(SAMPLE // max(width * channels, 1), LEAST_ROWS)]
     differences = []
     for axis in (0, 1):
-        orders = [some]
+        orders = [sample]
         for _ in range(MOST_DIFFERENCES):
             orders.append(_differences(orders[-1], axis))
-        sizes = [float(np.log2(_signed_last(one) + 1.0).sum()) for one in orders]
+        sizes = [float(np.log2(_signed_last(order) + 1.0).sum()) for order in orders]
         differences.append(int(np.argmin(sizes)))
-        some = orders[differences[-1]]
+        sample = orders[differences[-1]]
     for axis, order in enumerate(differences):
         for _ in range(order):
             numbers = _differences(numbers, axis)
@@ -144,11 +147,11 @@ def _differences(numbers: AnyArray, axis: int) -> AnyArray:
 
 
 def _signed_last(numbers: AnyArray) -> AnyArray:
-    """Return whole numbers, of which those near zero have small bytes, negative ones as well."""
+    """Return whole numbers with the sign as the last bit, so that small ones have small bytes."""
     signed = numbers.view(f"<i{numbers.itemsize}")
     return (numbers << 1) ^ (signed >> (8 * numbers.itemsize - 1)).view(numbers.dtype)
 
 
-def plain_list(values: Any) -> list[float]:
+def plain_list(values: ArrayLike) -> list[float]:
     """Return an array as a flat list of Python's own numbers."""
     return [float(v) for v in np.asarray(values).ravel()]

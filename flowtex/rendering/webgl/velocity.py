@@ -40,7 +40,7 @@ MOST_STEPS = 64
 
 
 def can_trace(textures: TextureSet) -> bool:
-    """Whether a client can trace a flow: on a structured surface, with signs.
+    """Return whether a client can trace a flow: on a structured surface, with signs.
 
     Half precision has to hold the sizes of its cells, and a client the steps of pathlines.
     """
@@ -64,13 +64,13 @@ def steps_around(textures: TextureSet, step: int) -> list[int]:
     if store.streamlines:
         return [step]
     reach = float(store.lags[-1] * store.unit.flat[0])
-    near = np.abs(times - times[step]) < reach
-    one_more = np.pad(near, 1)
-    return [int(n) for n in np.flatnonzero(near | one_more[:-2] | one_more[2:])]
+    within_reach = np.abs(times - times[step]) < reach
+    padded = np.pad(within_reach, 1)
+    return [int(n) for n in np.flatnonzero(within_reach | padded[:-2] | padded[2:])]
 
 
 def _sizes(textures: TextureSet) -> Floats:
-    """Lengths of cells in which velocities are measured, (J, I)."""
+    """Return the lengths of cells in which velocities are measured, (J, I)."""
     store = textures.store
     if store.parameter == "arclength":
         return store.unit
@@ -120,7 +120,7 @@ def trace_header(textures: TextureSet) -> Header:
 
 
 def _poles(poles: Poles, frame: Floats) -> Header:
-    """Return what a client has to know of the poles, beside the part "rays"."""
+    """Return the header of the poles, in addition to the part "rays"."""
     near = Charts(poles).near
     return {
         "poles": [
