@@ -1,4 +1,4 @@
-"""Field, settings and appearance of a scene as attributes of what shows it."""
+"""Field, settings and appearance of a scene as attributes of an object that shows it."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from flowtex.field import FlowField
 from flowtex.scene.options import Appearance, option_text
 from flowtex.settings import TABLE, Settings
 
-#: What of the appearance is an attribute; the image is changed by a method.
+#: Fields of the appearance that are attributes; a method changes the image.
 LIVE = tuple(name for name in Appearance.__dataclass_fields__ if name != "image")
 
 
-def _attribute(name: str) -> Any:
+def _attribute(name: str) -> property:
     def get(self: AppearanceAttributes) -> Any:
         return getattr(self.scene.appearance, name)
 
@@ -24,15 +24,14 @@ def _attribute(name: str) -> Any:
 
 
 class AppearanceAttributes:
-    """The field, settings and appearance of a scene as attributes of what shows it.
+    """Base of objects that show a scene: its field, settings and appearance as attributes.
 
-    Each of the appearance is to be set at any time; ``{appearance}`` in the docstring of a class
-    becomes their names.
-
-    Once it is made, other attributes cannot be set, so that a slip of the pen is not a silent one.
+    Those of the appearance can be set at any time; ``{appearance}`` in the docstring of a class
+    becomes their names. An object that is made takes no other attributes, so that a misspelt name
+    raises an error.
     """
 
-    scene: Any
+    scene: Any  #: A Scene; an attribute or a property of the class.
     _is_made = False
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -56,12 +55,12 @@ class AppearanceAttributes:
         return settings
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Set an attribute that there is; the error for another one names those that are near."""
+        """Set an existing attribute; the error for another one names similar ones."""
         is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
         if self._is_made and not is_known:
-            own = [n for n in dir(type(self)) if not n.startswith("_")]
-            of_settings = f"it is a setting: use settings.{name}"
-            hint = of_settings if name in TABLE else near_names(name, own)
+            names = [n for n in dir(type(self)) if not n.startswith("_")]
+            setting_hint = f"it is a setting: use settings.{name}"
+            hint = setting_hint if name in TABLE else near_names(name, names)
             msg = f"{type(self).__name__} has no attribute {name!r}; {hint}"
             raise AttributeError(msg)
         super().__setattr__(name, value)

@@ -14,12 +14,13 @@ from __future__ import annotations
 import inspect
 import math
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import Field, dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import is_number, near_names
 from flowtex._util.colours import DEFAULT_CMAP, SIGNED_CMAP, colour_table, rgb
@@ -53,13 +54,13 @@ PLAIN_COLOR = "#a0a0a0"
 NO_VALUE_COLOR = "darkgray"
 #: Colour of land, unobtrusive on a light and on a dark background.
 LAND_COLOR = "#8f8b82"
-#: What stands at the borders of a view in a browser: coordinates, the length of a bar, or nothing.
+#: Axes of a view in a browser: coordinates, a scale bar, or none.
 AXES = ("ticks", "scale", "none")
 
 #: Arguments for data of the Earth only, and for meshes only.
 OF_EARTH = ("projection", "globe", "level", "sel", "isel")
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free")
-#: What docstrings say of all arguments that are none of the options.
+#: Description of all other arguments in docstrings.
 SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
 #: The scalar that every flow has, and the range of colours without outliers.
 SPEED, ROBUST = "speed", "robust"
@@ -86,16 +87,16 @@ def _read_ends(text: str) -> str | tuple[float, ...]:
 
 
 def _read_differences(words: Sequence[str]) -> dict[str, Any]:
-    """Read words such as ``lod=false`` as settings, and as what :class:`Appearance` has."""
+    """Read words such as ``lod=false`` as settings and as fields of :class:`Appearance`."""
     expected = "name=value, such as --beside lod=false"
     texts = named_texts(str, expected)(words)
     values: dict[str, Any] = {}
     for name, text in texts.items():
-        own = name.strip().replace("-", "_")
-        if (row := Appearance.__dataclass_fields__.get(own)) is not None:
-            values[own] = row.metadata["form"].read(text)
+        key = name.strip().replace("-", "_")
+        if (row := Appearance.__dataclass_fields__.get(key)) is not None:
+            values[key] = row.metadata["form"].read(text)
         else:
-            values[own] = setting(own).parse(text)
+            values[key] = setting(key).parse(text)
     return values
 
 
@@ -125,7 +126,7 @@ class FieldOptions:
         "Number or path of the block to draw, if there are several.",
         Form(read=lambda text: int(text) if text.isdecimal() else text),
     )
-    times: Any | None = _option(
+    times: Sequence[float] | None = _option(
         None, "Times of a list of meshes; 0, 1, 2, ... by default.", form=None
     )
     periodic: str | None = _option(
@@ -158,7 +159,7 @@ class FieldOptions:
         'The same by index from 0: ``{"number": 2}``.',
         Form(read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True),
     )
-    uncertainty: Any | None = _option(
+    uncertainty: ArrayLike | None = _option(
         None,
         "Uncertainty of the direction; where it is high, streaks are shorter and fainter: the "
         "name of a scalar, or an array, of the standard deviation of the velocity over its "
@@ -186,18 +187,22 @@ class FieldOptions:
         uncertainty = choices.pop("uncertainty", None)
         field = self._read(mesh, choices, time, uncertainty)
         # Datasets and files are averaged where they are read.
-        told = uncertainty is None or bool(field.uncertainty and field is not mesh)
-        return field if told else with_uncertainty(field, uncertainty)
+        is_done = uncertainty is None or bool(field.uncertainty and field is not mesh)
+        return field if is_done else with_uncertainty(field, uncertainty)
 
     def _read(
-        self, mesh: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
+        self,
+        mesh: Any,
+        choices: dict[str, Any],
+        time: float | str | None,
+        uncertainty: ArrayLike | None,
     ) -> FlowField:
         if (stored := self._of_store(mesh, choices, time, uncertainty)) is not None:
             return stored
         if is_dataset(mesh):
             return FlowField.from_xarray(mesh, uncertainty=uncertainty, **self._of_dataset(choices))
-        several = mesh if isinstance(mesh, (list, tuple)) and mesh else [mesh]
-        if all(isinstance(one, (str, Path)) for one in several):
+        meshes = mesh if isinstance(mesh, (list, tuple)) and mesh else [mesh]
+        if all(isinstance(item, (str, Path)) for item in meshes):
             if "times" in choices:
                 msg = f"times is given, but {str(mesh)!r} already has times; omit it"
                 raise FieldError(msg)
@@ -214,19 +219,23 @@ class FieldOptions:
         return mesh
 
     def _of_store(
-        self, place: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
+        self,
+        place: Any,
+        choices: dict[str, Any],
+        time: float | str | None,
+        uncertainty: ArrayLike | None,
     ) -> FlowField | None:
         """Return the field of a pyramid in a store, where there is one."""
         if not isinstance(place, (str, Path)) or Path(place).is_file():
-            return None  # which loads nothing
+            return None  # before anything is loaded
         from flowtex.pyramid import is_store, open_store
         from flowtex.pyramid.source import has_parts
 
         if not has_parts(place):
             return None
         if is_store(place):
-            given = choices if time is None else {**choices, "time": time}
-            self._refuse(given, tuple(given), "the source of a pyramid")
+            arguments = choices if time is None else {**choices, "time": time}
+            self._refuse(arguments, tuple(arguments), "the source of a pyramid")
         if time is not None:
             choices = {**choices, "sel": {**choices.get("sel", {}), "time": time}}
         return open_store(place, uncertainty=uncertainty, **self._of_dataset(choices))
@@ -237,9 +246,9 @@ class FieldOptions:
         return {**two_names(choices.pop("vectors", None)), **choices}
 
     @staticmethod
-    def _refuse(choices: Mapping[str, Any], names: tuple[str, ...], what: str) -> None:
+    def _refuse(choices: Mapping[str, Any], names: tuple[str, ...], scope: str) -> None:
         if given := [name for name in names if name in choices]:
-            msg = f"{', '.join(given)} applies to {what}; omit it"
+            msg = f"{', '.join(given)} applies to {scope}; omit it"
             raise FieldError(msg)
 
 
@@ -356,7 +365,7 @@ class Appearance:
             (rgb, LAND_COLOR if self.land is None else self.land, LAND_COLOR),
         )
         for check, value, default in checks:
-            if value is not default:  # which loads nothing
+            if value is not default:  # a default needs no check, and loads nothing
                 try:
                     check(value)
                 except ValueError as error:
@@ -506,7 +515,7 @@ class Options:
         return cls(**parts, settings=values)
 
 
-_KINDS: dict[str, Any] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}
+_KINDS: dict[str, type] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}
 
 
 def accepts_options(*kinds: type) -> Callable[[Function], Function]:
@@ -518,15 +527,15 @@ def accepts_options(*kinds: type) -> Callable[[Function], Function]:
     def complete(function: Function) -> Function:
         options = [f for kind in kinds for f in fields(kind)]
         signature = inspect.signature(function)
-        own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        parameters = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
         keyword = [
             inspect.Parameter(f.name, inspect.Parameter.KEYWORD_ONLY, default=f.default)
             for f in options
             if f.name not in signature.parameters
         ]
-        rest = inspect.Parameter("settings", inspect.Parameter.VAR_KEYWORD, annotation=Any)
-        whole = signature.replace(parameters=[*own, *keyword, rest])
-        function.__signature__ = whole  # type: ignore[attr-defined]
+        settings = inspect.Parameter("settings", inspect.Parameter.VAR_KEYWORD, annotation=Any)
+        complete_signature = signature.replace(parameters=[*parameters, *keyword, settings])
+        function.__signature__ = complete_signature  # type: ignore[attr-defined]
         if function.__doc__:
             function.__doc__ = _described(function.__doc__, options)
         return function
@@ -535,7 +544,7 @@ def accepts_options(*kinds: type) -> Callable[[Function], Function]:
 
 
 def option_text(kind: type, name: str) -> str:
-    """Return what a field of an option class is for, as one paragraph."""
+    """Return the description of a field of an option class, as one paragraph."""
     return str(kind.__dataclass_fields__[name].metadata["text"])  # type: ignore[attr-defined]
 
 
@@ -545,7 +554,7 @@ def option_form(kind: type, name: str) -> Form:
     return form
 
 
-def _described(text: str, options: list[Any]) -> str:
+def _described(text: str, options: Iterable[Field[Any]]) -> str:
     """Put the description of options into a docstring."""
     lines = []
     for line in text.splitlines():

@@ -6,9 +6,8 @@ that records its samples, so that they are those of the picture.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +24,7 @@ from flowtex.rendering.cpu.pixel import LoadedTextures, Recorder, camera_facing,
 from flowtex.rendering.cpu.render import slices_at, view_state
 from flowtex.rendering.cpu.shade import tone
 from flowtex.rendering.cpu.texture import Side, Summing
-from flowtex.rendering.uniforms import ViewState, uniforms
+from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.scene.scene import Scene
 from flowtex.textures import TextureSet
 
@@ -205,7 +204,7 @@ def probe(
     field_values = values_at(view.field, place.index, view.time)
     textures = view.textures
     if (drawn := textures.geometry.field) is not view.field:
-        # Of a large field a coarser form is available, on which the point has another place.
+        # A large field is drawn in a coarser form, on which the point has another place.
         nearest, _ = locator(drawn).nearest(field_values.position[None])
         surface, place = drawn.surface, surface_point(drawn.surface, nearest[0])
     fragments = Fragments.of(textures, cover_place(surface, place, camera, size))
@@ -221,7 +220,7 @@ class _Pixel:
         textures: TextureSet,
         steps: tuple[int, int],
         fragments: Fragments,
-        values: Mapping[str, Any],
+        values: Values,
         field_values: PointValues,
         setting: int,
     ) -> None:
@@ -238,7 +237,7 @@ class _Pixel:
         self._unit = float(self._base[0, 3]) * textures.unit / textures.pace
 
     def probe(self) -> Probe:
-        """Draw the pixel, and return how."""
+        """Draw the pixel, and return how it is computed."""
         values, recorder = self._values, self._lookup
         value = self._summing.texture(self._fragments.place, self._level, self._fragments.by)[0]
         sides = list(self._sides(1))
@@ -247,10 +246,10 @@ class _Pixel:
         lags = lags[order] + 0.0
         points, coordinates, noise = self._places(np.concatenate(recorder.displacement)[order])
         knots = np.concatenate([[0.0], values["u_lags"]])
-        m, shares = bracket(knots, np.abs(lags), side="left")
-        known = self._summing.known(self._fragments.place, self._level)
-        faded = self._summing.faded(self._fragments.place, self._level, known)
-        cell = self._summing.cell(self._fragments.place, known)
+        first_slice, shares = bracket(knots, np.abs(lags), side="left")
+        certainty = self._summing.known(self._fragments.place, self._level)
+        faded = self._summing.faded(self._fragments.place, self._level, certainty)
+        cell = self._summing.cell(self._fragments.place, certainty)
         in_cell = cell is not None and cell.share[0] > 0
         path_lags, path = (lags, points) if in_cell else self._path(sides, knots, lags)
         pixel, grain = self._sizes()
@@ -264,7 +263,7 @@ class _Pixel:
             lags=lags * self._unit,
             points=points,
             coordinates=coordinates,
-            slices=np.stack([m, m + 1], axis=-1),
+            slices=np.stack([first_slice, first_slice + 1], axis=-1),
             shares=shares,
             slice_lags=knots * self._unit,
             slice_level=float(self._level[0]),
@@ -282,23 +281,23 @@ class _Pixel:
         )
 
     def _sides(self, count: int) -> Iterator[Side]:
-        """Sides of the path, as often as it is followed at once."""
-        same = np.zeros(count, dtype=np.intp)
-        place, level = self._fragments.place[same], self._level[same]
-        return self._summing.sides(place, level, self._base[same])
+        """Return the sides of ``count`` copies of the path, which are followed at once."""
+        repeated = np.zeros(count, dtype=np.intp)
+        place, level = self._fragments.place[repeated], self._level[repeated]
+        return self._summing.sides(place, level, self._base[repeated])
 
     def _path(self, sides: list[Side], knots: Floats, samples: Floats) -> tuple[Floats, Floats]:
-        """Lags in multiples of the unit, and points, of the whole path, with all its samples."""
+        """Return lags in multiples of the unit, and points, of the whole path with its samples."""
         number = np.arange((len(knots) - 1) * POINTS_BETWEEN_SLICES + 1)
         fine = np.interp(number / POINTS_BETWEEN_SLICES, range(len(knots)), knots)
         lags, displacements = [np.zeros(1)], [np.zeros((1, 3))]
-        for one, many in zip(sides, self._sides(len(fine) + 1), strict=True):
-            end = max(float(np.clip(one.reach[0], 0.0, knots[-1])), *(-one.sign * samples))
+        for side, copies in zip(sides, self._sides(len(fine) + 1), strict=True):
+            end = max(float(np.clip(side.reach[0], 0.0, knots[-1])), *(-side.sign * samples))
             lag = np.unique([*fine[fine < end], end])[1:]
-            some = np.zeros(len(fine) + 1)
-            some[: len(lag)] = lag
-            moved = many.path.follow(some)[: len(lag)] * (one.sign * one.scale[0])
-            lags.append(-one.sign * lag)
+            padded_lag = np.zeros(len(fine) + 1)
+            padded_lag[: len(lag)] = lag
+            moved = copies.path.follow(padded_lag)[: len(lag)] * (side.sign * side.scale[0])
+            lags.append(-side.sign * lag)
             displacements.append(moved)
         lag = np.concatenate(lags)
         order = np.argsort(-lag)
@@ -308,21 +307,25 @@ class _Pixel:
     def _places(
         self, displacement: Floats, *, coordinates: bool = True
     ) -> tuple[Floats, Floats, Floats | None]:
-        """Points, coordinates as (j, i), and noise coordinates, of displacements (N, 3)."""
+        """Return points, coordinates as (j, i), and noise coordinates of displacements (N, 3)."""
         geometry, paper = self._textures.geometry, self._textures.paper
         noise = self._fragments.noise
-        # From the place itself in double precision: renderers have the nodes in single.
+        # Relative to the place in double precision, as renderers have the nodes in single.
         start, surface = self._field_values.position, geometry.field.surface
         if paper is None or noise is None:
             points = start + displacement @ geometry.frame
             nearest = locator(geometry.field).nearest(points)[0] if coordinates else points
             return points, nearest, None
-        at = noise.value + displacement[:, :2]
-        here, there = (paper.index(where) for where in (noise.value, at))
-        return start + surface.at(there) - surface.at(here), surface.wrap(there)[:, ::-1], at
+        coordinate = noise.value + displacement[:, :2]
+        start_index, index = (paper.index(where) for where in (noise.value, coordinate))
+        return (
+            start + surface.at(index) - surface.at(start_index),
+            surface.wrap(index)[:, ::-1],
+            coordinate,
+        )
 
     def _sizes(self) -> tuple[float, float]:
-        """Longer side of the pixel, and size of a grain."""
+        """Return the longer side of the pixel, and the size of a grain."""
         values, paper, noise = self._values, self._textures.paper, self._fragments.noise
         position = self._fragments.position
         sides = [float(side[0]) for side in footprint(position.dx, position.dy)]

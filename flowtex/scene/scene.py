@@ -1,4 +1,4 @@
-"""The scene: a field, its appearance, its settings and the time that is shown.
+"""The scene: a field, its appearance, its settings and the time shown.
 
 :class:`Scene` owns the arrays and knows no toolkit. It notifies of a change, and data is pulled:
 a renderer asks for :attr:`Scene.textures` when it draws and gets new ones only when traces
@@ -47,7 +47,7 @@ from flowtex.trace import SliceStore, TraceSlices, chosen_lines, shared_store
 
 __all__ = ["NO_IMAGE", "Change", "Scene", "drawn_store", "follow", "lay_image", "share_field"]
 
-#: What has changed: what a setting affects, or the appearance.
+#: The kind of a change: what a setting affects, or the appearance.
 Change = Affects | Literal["appearance"]
 Notice = Callable[[Change], None]
 
@@ -65,12 +65,12 @@ NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_im
 
 
 class Scene:
-    """One flow and how it is looked at.
+    """One flow, its appearance and its settings.
 
     It follows changes of the settings; the image of the appearance is advected where
     ``noise="image"``. Traces of the field may be given as ``slices``, and texels in place of that
-    image, (H, W, 4): colours times opacity, row 0 at the bottom. A SettingsError tells of an image
-    that is missing or cannot be used, a FieldError of a scalar that there is not.
+    image, (H, W, 4): colours times opacity, row 0 at the bottom. Raises a SettingsError when
+    an image is missing or cannot be used, and a FieldError when a scalar does not exist.
     """
 
     def __init__(
@@ -125,39 +125,42 @@ class Scene:
     def beside(self, changes: Mapping[str, Any], field: FlowField | None = None) -> Scene:
         """Return a second scene of the same field, or of another one, that differs in changes.
 
-        These are of :class:`Appearance` and of settings; :func:`follow` has the rest follow. Raises
-        a FieldError when they choose data, and what making a scene does.
+        They are fields of :class:`Appearance` and settings; :func:`follow` updates the others.
+        Raises a FieldError when they choose data, and the errors of the constructor.
         """
-        of_field = [name for name in FieldOptions.__dataclass_fields__ if name in changes]
-        if of_field:
+        field_names = [name for name in FieldOptions.__dataclass_fields__ if name in changes]
+        if field_names:
             msg = (
-                f"beside has {', '.join(of_field)}, which selects data; both views show the same "
+                f"beside has {', '.join(field_names)}, which selects data; both views show the same "
                 "field, so expected settings"
             )
             raise FieldError(msg)
         field, settings = field or self.field, dict(self.settings)
-        if "image" in changes:  # which has its colours alone
+        if "image" in changes:  # an image keeps its own colours
             del settings["noise"], settings["strength"]
         options = Options.split("appearance", **{**settings, **changes})
-        own = {n: v for n, v in vars(options.appearance).items() if n in changes}
-        look, image = _look_beside(self, own, field), None if "image" in own else self.image
+        own_appearance = {n: v for n, v in vars(options.appearance).items() if n in changes}
+        look, image = (
+            _look_beside(self, own_appearance, field),
+            None if "image" in own_appearance else self.image,
+        )
         return Scene(field, options.make_settings(), look, image=image)
 
     @property
     def appearance(self) -> Appearance:
         """How the surface looks; set another one to change it and notify observers.
 
-        An error, as of making a scene, leaves it as it was.
+        Raises the errors of the constructor, and then nothing changes.
         """
         return self._appearance
 
     @appearance.setter
     def appearance(self, value: Appearance) -> None:
         before, self.field = self.field, _with_scalars(self.field, value)
-        same = value.image is None or value.image is self._appearance.image
+        same_image = value.image is None or value.image is self._appearance.image
         try:
             self._check_colours(value)
-            picture = None if same else self._picture(value.image)
+            picture = None if same_image else self._picture(value.image)
         except BaseException:
             self.field = before
             raise
@@ -176,12 +179,12 @@ class Scene:
 
     @property
     def scalar_name(self) -> str | None:
-        """Name of what the surface is coloured by; ``None`` for a plain one."""
+        """Name of the scalar that colours the surface; ``None`` for a plain one."""
         return self.appearance.scalar_name
 
     @property
     def scalar_names(self) -> tuple[str, ...]:
-        """Names of what the surface can be coloured by."""
+        """Names of the scalars that can colour the surface."""
         return tuple(dict.fromkeys((SPEED, *self.field.scalars)))
 
     def label_of(self, name: str) -> str:
@@ -214,7 +217,7 @@ class Scene:
 
     @property
     def lines(self) -> str:
-        """What the texture is drawn along: ``"pathlines"`` or ``"streamlines"``."""
+        """Lines along which the texture is drawn: ``"pathlines"`` or ``"streamlines"``."""
         return chosen_lines(self.field, self.settings.lines)
 
     @property
@@ -249,7 +252,7 @@ class Scene:
 
     @property
     def textures(self) -> TextureSet:
-        """What a renderer needs, at the settings of this moment."""
+        """The texture set for the current settings."""
         textures, version = self._textures, self._version
         if textures is None:
             textures = _shared_textures(self.store, self.settings.copy(), self.image, self.pyramid)
@@ -260,13 +263,13 @@ class Scene:
     def set_image(self, image: Any) -> None:
         """Lay an image, as :class:`Appearance` has it, in place of the noise on the surface.
 
-        It sets ``noise`` to ``"image"``. Nothing is changed when an ImageError tells that it cannot
-        be used, or a SettingsError that a surface of triangles takes none.
+        It sets ``noise`` to ``"image"``. Raises an ImageError when it cannot be used, and a
+        SettingsError for a surface of triangles; nothing is changed then.
         """
         self._lay(self._picture(image))
 
     def _picture(self, image: Any) -> Floats32:
-        """Return the texels of an image; refuse one that cannot be laid on this surface."""
+        """Return the texels of an image; raise an error if the surface takes none."""
         check_noise(self.field, "image")
         return as_picture(load_image(image))
 
@@ -281,9 +284,9 @@ class Scene:
 
     @property
     def time(self) -> float:
-        """Time that is shown, in the field's own unit, within its first and last step.
+        """Time shown, in the field's own unit, within its first and last step.
 
-        Where the field's times count from a date it may be set to a date, or to the text of one.
+        If the field's times count from a date, it can be set to a date or the text of one.
         """
         return self._time
 
@@ -316,10 +319,12 @@ class Scene:
         before, after, share = self.moment
         if len(steps) == 1:
             return np.asarray(steps[0])
-        one, other = steps[before], steps[after]
-        mixed = one * (1 - share) + other * share
+        values_before, values_after = steps[before], steps[after]
+        mixed = values_before * (1 - share) + values_after * share
         # Where one step has no value, that of the nearer step is shown.
-        return np.asarray(np.where(np.isnan(mixed), one if share < 0.5 else other, mixed))
+        return np.asarray(
+            np.where(np.isnan(mixed), values_before if share < 0.5 else values_after, mixed)
+        )
 
     def _limits(self, appearance: Appearance) -> tuple[float, float]:
         name, chosen = appearance.scalar_name, appearance.clim
@@ -336,7 +341,7 @@ class Scene:
         return low, high
 
     def _check_colours(self, appearance: Appearance) -> None:
-        """Raise where the field has no such scalar, or none that has a logarithm."""
+        """Raise a FieldError if the scalar does not exist, or has no logarithm."""
         if (name := appearance.scalar_name) is None:
             return
         steps_of(self.field, name)
@@ -349,7 +354,7 @@ class Scene:
             raise FieldError(msg)
 
     def usual_range(self, name: str) -> tuple[float, float]:
-        """Range of the colours by default: all values, or the robust range beside a long tail."""
+        """Return the default range of colours: all values, or robust if there are outliers."""
         return usual_ends(self.scalar_range(name), self.scalar_range(name, robust=True))
 
     @property
@@ -373,19 +378,19 @@ class Scene:
         return self._ranges[key]
 
     def _range_of(self, name: str, *, robust: bool) -> tuple[float, float]:
-        known = {} if self.pyramid is None else self.pyramid.ranges
-        ends = known.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
+        stored = {} if self.pyramid is None else self.pyramid.ranges
+        ends = stored.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
         return widened(ends, self.field, name)
 
     def _range_values(self, name: str) -> Floats:
         """Values of the valid nodes at all times."""
-        some, valid = self.field.typical, self.field.valid
+        typical, valid = self.field.typical, self.field.valid
         if self.pyramid is None or name in self.field.scalars:
-            return np.asarray(np.asarray(steps_of(some, name))[:, valid])
-        return drawn_speeds(some, self.whole)
+            return np.asarray(np.asarray(steps_of(typical, name))[:, valid])
+        return drawn_speeds(typical, self.whole)
 
     def copy(self) -> Scene:
-        """Return a scene that shows the same, for a thread: no change of this one reaches it."""
+        """Return an independent scene that shows the same, for a thread."""
         scene = Scene(self.field)
         scene.settings, scene._appearance = self.settings.copy(), self.appearance
         scene.image, scene._noise, scene._time = self.image, self._noise, self._time
@@ -414,10 +419,10 @@ class Scene:
         return scene
 
     def showing(self, field: FlowField, own: dict[str, Any] | None = None) -> Scene:
-        """Return a scene of another flow with these settings, also in the future, and this look.
+        """Return a scene of another flow that shares these settings and has this appearance.
 
-        It is at the nearest time. With ``own`` changes of the look, colours that the flow has not
-        are those of the speed. Raises what making a scene does.
+        Its time is the nearest one. With ``own`` changes of the appearance, scalars that the flow
+        lacks are replaced by the speed. Raises the errors of the constructor.
         """
         look = self._appearance if own is None else _look_beside(self, own, field)
         scene = Scene(field, self.settings, look, image=self.image)
@@ -431,13 +436,13 @@ class Scene:
         self._notify("trace")
 
     def observe(self, notice: Notice) -> Callable[[], None]:
-        """Call ``notice(affects)`` after each change; returns what ends it."""
-        notices = self._notices  # which another scene may take over
+        """Call ``notice(affects)`` after each change; return a function that ends this."""
+        notices = self._notices  # another scene may take over the list
         notices.append(notice)
         return lambda: notices.remove(notice) if notice in notices else None
 
     def close(self) -> None:
-        """Follow the settings no longer."""
+        """Stop following the settings."""
         self._end()
         self._notices.clear()
 
@@ -456,7 +461,7 @@ class Scene:
                 if value == "image" and self.image is None:
                     raise SettingsError(NO_IMAGE)
             except SettingsError:
-                # Observers are called once a setting is set; what cannot be drawn is set back.
+                # Observers are called after a setting is set, so an invalid value is reset.
                 self.settings.noise = self._noise
                 raise
             self._noise = value
@@ -480,9 +485,9 @@ class Scene:
 
 
 def _look_beside(first: Scene, own: dict[str, Any], field: FlowField) -> Appearance:
-    """Return the appearance of a scene beside a first one; a range is that of one scalar.
+    """Return the appearance of a scene beside a first one.
 
-    Colours that its field has not are those of the speed.
+    Another scalar gets its own range, and a scalar that the field lacks becomes the speed.
     """
     if "scalars" not in own and first.scalar_name not in (None, SPEED, *field.scalars):
         own = {**own, "scalars": SPEED}
@@ -494,7 +499,7 @@ def _look_beside(first: Scene, own: dict[str, Any], field: FlowField) -> Appeara
 def follow(
     first: Callable[[], Scene], second: Callable[[], Scene], own: Collection[str]
 ) -> Callable[[], None]:
-    """Have a second scene follow a first one in all but what is its own; returns what ends it."""
+    """Update a second scene with a first one, except ``own``; return a function that ends this."""
 
     def follow_setting(name: str, value: Any) -> None:
         if name not in own:
@@ -509,7 +514,7 @@ def follow(
         look = _look_beside(first(), kept, scene.field)
         try:
             scene.appearance = look
-        except ValueError:  # its values have no logarithm, as those of the first one have
+        except ValueError:  # its values have no logarithm, unlike those of the first scene
             scene.appearance = replace(look, log_scale=False, clim=None)
 
     ends = first().settings.observe(follow_setting), first().observe(follow_look)
@@ -517,15 +522,15 @@ def follow(
 
 
 def lay_image(scenes: Sequence[Scene], image: Any, own: Collection[str]) -> None:
-    """Lay an image in scenes, of which others than the first may have their own noise."""
-    # The others follow the first one, and have to have the image by then.
+    """Set the image of scenes, except of followers that have their own noise."""
+    # Followers take the noise of the first scene, and need the image before.
     for scene in reversed(scenes):
         if scene is scenes[0] or "noise" not in own or scene.settings.noise == "image":
             scene.set_image(image)
 
 
 def _with_scalars(field: FlowField, appearance: Appearance) -> FlowField:
-    """Return the field with what it is coloured by, where that is derived from the velocity."""
+    """Return the field with the scalar of its colours, if that is derived from the velocity."""
     name = appearance.scalar_name
     if name not in DERIVED or name in field.scalars or has_pyramid(field) or field.sign_free:
         return field
@@ -538,38 +543,45 @@ _textures: WeakCache[TextureSet] = WeakCache()
 
 
 def share_field(field: FlowField) -> FlowField:
-    """Return the field of the same numbers and names that is in use, or this one.
+    """Return an equal field that is in use already, or this one.
 
-    A notebook shows one mesh many times over, and makes it a field each time.
+    A notebook shows one mesh many times, and makes a new field each time.
     """
     if has_pyramid(field):
         return field
     names = (field.name, field.length_unit, field.time_unit, *field.long_names.items())
-    made = field.formula and (field.formula.texts, field.formula.parameters)
-    words = (*names, str(made), field.periodic, field.sign_free, str(field.start), field.projection)
+    formula = field.formula and (field.formula.texts, field.formula.parameters)
+    words = (
+        *names,
+        str(formula),
+        field.periodic,
+        field.sign_free,
+        str(field.start),
+        field.projection,
+    )
     units = tuple(field.units.items())
     positions = () if field.has_position is None else (field.has_position,)
     joined = () if field.triangles is None else (field.triangles,)
-    given = (field.points, field.velocity, field.times, field.valid, *positions, *joined)
-    given += tuple(field.scalars.values())
-    # What is read late is known by the object, which a field keeps alive.
-    late = tuple(id(a) for a in given if isinstance(a, LazySteps))
-    arrays = (a for a in given if not isinstance(a, LazySteps))
+    inputs = (field.points, field.velocity, field.times, field.valid, *positions, *joined)
+    inputs += tuple(field.scalars.values())
+    # Lazy steps are identified by their object, which a field keeps alive.
+    lazy_ids = tuple(id(a) for a in inputs if isinstance(a, LazySteps))
+    arrays = (a for a in inputs if not isinstance(a, LazySteps))
     kind = (field.has_position is None, field.triangles is None)
-    key = digest(*arrays, words=(words, units, kind, late, *field.scalars, field.uncertainty))
+    key = digest(*arrays, words=(words, units, kind, lazy_ids, *field.scalars, field.uncertainty))
     return _fields.get(key, lambda: field)
 
 
 def _is_tiled(field: FlowField, settings: Settings) -> bool:
-    """Whether a field is drawn in tiles where it is large."""
+    """Return whether a field is drawn in tiles if it is large."""
     return settings.noise == "procedural" and not field.sign_free
 
 
 def drawn_store(field: FlowField, settings: Settings) -> tuple[SliceStore, Pyramid | None]:
     """Return the traces from which scenes of a field draw their first picture, and its pyramid.
 
-    Of a large field they are those of the coarsest level, as :attr:`Scene.whole` has it, and the
-    pyramid has to be kept along with them.
+    For a large field they belong to the coarsest level, :attr:`Scene.whole`, and the pyramid must
+    be kept with them.
     """
     lines, pyramid = chosen_lines(field, settings.lines), None
     if _is_tiled(field, settings):
@@ -581,9 +593,9 @@ def drawn_store(field: FlowField, settings: Settings) -> tuple[SliceStore, Pyram
 def _shared_textures(
     store: SliceStore, settings: Settings, image: Floats32 | None, pyramid: Pyramid | None
 ) -> TextureSet:
-    """Return :meth:`TextureSet.build` of a store and settings, one for all who ask."""
-    # Textures keep their store alive, so its number is its own while they live.
-    key: tuple[Any, ...] = (id(store),)
+    """Return :meth:`TextureSet.build` of a store and settings, cached."""
+    # Textures keep their store alive, so its id is unique while they live.
+    key: tuple[object, ...] = (id(store),)
     if settings.noise != "procedural":
         key += (settings.noise, settings.resolution, settings.noise_correction)
         key += (settings.seed, settings.tiles)

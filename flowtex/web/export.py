@@ -1,9 +1,9 @@
-"""A flow as one file that draws without its own server: an HTML page, or a module for one.
+"""A flow as one file that needs no server: an HTML page, or a module for one.
 
 The client, its style, the header and all arrays lie in the file. The header and the arrays are
-gzipped, these with the bytes of equal significance side by side, which is where slopes resemble one
-another, and written in base64. A page's Content-Security-Policy lets nothing run but the one text
-whose digest it names, and lets nothing be fetched.
+gzipped, the arrays with bytes of equal significance side by side, where slopes are similar, and
+written in base64. A page's Content-Security-Policy allows only the script with its digest, and no
+requests.
 
 A page of a pyramid in a store may have the coarsest level and one moment alone, and read the rest
 from the store: its policy names the server of the store.
@@ -30,6 +30,7 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError
+from flowtex.rendering.camera import CameraValues
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
 from flowtex.scene.options import Appearance, FieldOptions, ViewOptions, accepts_options
@@ -92,7 +93,7 @@ def export(
     steps: int | None = None,
     title: str | None = None,
     store: str | None = None,
-    basemap: str | Mapping[str, Any] | None = None,
+    basemap: str | Mapping[str, object] | None = None,
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
@@ -158,8 +159,17 @@ def export(
     views = web_views(shown, arguments, steps=steps)
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        look: dict[str, Any] = {"camera": camera, "title": title, "axes": arguments.view.axes}
-        return write_page(views, path, store=store, basemap=basemap, announce=announce, **look)
+        axes = arguments.view.axes
+        return write_page(
+            views,
+            path,
+            store=store,
+            basemap=basemap,
+            announce=announce,
+            camera=camera,
+            title=title,
+            axes=axes,
+        )
     finally:
         for view in views:
             view.close()
@@ -170,7 +180,7 @@ def write_page(
     path: str | Path,
     *,
     store: str | None = None,
-    basemap: str | Mapping[str, Any] | None = None,
+    basemap: str | Mapping[str, object] | None = None,
     announce: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> Page:
@@ -209,9 +219,9 @@ def page_text(views: Sequence[WebView], *, store: str | None = None, **options: 
 
 
 def page_data(views: Sequence[WebView], *, traces: bool = True) -> list[ClientData]:
-    """Return what a page holds of its views, with as many levels of tiles as there is room for.
+    """Return the data of views in a page, with as many levels of tiles as fit.
 
-    Where the client ``traces``, it holds velocities and not slices.
+    With ``traces`` they are velocities, which the client traces, instead of slices.
     """
     scenes = []
     for view in views:
@@ -228,12 +238,12 @@ def page_data(views: Sequence[WebView], *, traces: bool = True) -> list[ClientDa
 
 
 def _times_larger(pyramid: Pyramid, level: int) -> float:
-    """How many times as many nodes a level has as the root."""
+    """Return the number of nodes of a level over that of the root."""
     return math.prod(pyramid.shape(level)) / math.prod(pyramid.shape(pyramid.depth))
 
 
 def _arrays_bytes(scene: ClientData, steps: int) -> int:
-    """Bytes of the arrays of a scene without tiles, packed; slices are not made for that."""
+    """Estimate the packed bytes of the arrays of a scene without tiles; no slices are made."""
     surface = _packed_bytes(scene.surface())
     if scene.traced:
         return surface + steps * _packed_bytes(scene.step(0))
@@ -246,7 +256,7 @@ def _packed_bytes(parts: Parts) -> int:
 
 
 def estimate(scenes: Sequence[ClientData], *, client: str, linked: bool = False) -> int:
-    """Bytes that a page with a client is going to have, about; textures of both views count once.
+    """Estimate the bytes of a page with a client; textures that views share count once.
 
     Pages that are linked to a store have one moment.
     """
@@ -267,7 +277,7 @@ def page_pieces(
     views: Sequence[WebView],
     scenes: Sequence[ClientData],
     *,
-    camera: dict[str, Any] | None = None,
+    camera: CameraValues | None = None,
     time: float | None = None,
     clock: float = 0.0,
     title: str | None = None,
@@ -275,15 +285,14 @@ def page_pieces(
     picture: bytes | None = None,
     link: StoreLink | None = None,
 ) -> Iterator[str]:
-    """Give the text of a page piece by piece; each array is packed when it is reached.
+    """Yield the text of a page piece by piece; each array is packed when its turn comes.
 
     ``axes`` is that of :class:`~flowtex.scene.options.ViewOptions`. Camera, time and clock are
     those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page
-    has drawn; made here if missing. ``link`` says where the rest is; ``scenes`` are then of
-    :func:`linked_data`.
+    has drawn, by default a preview. ``link`` is the store that has the rest; ``scenes`` are then
+    those of :func:`linked_data`.
     """
-    now = {"camera": camera, "time": time, "clock": clock}
-    headers = _headers(views, scenes, link, title, axes=axes, **now)
+    headers = _headers(views, scenes, link, title, axes=axes, camera=camera, time=time, clock=clock)
     if picture is None:
         picture = preview.preview_png(
             views[0], PREVIEW, camera=headers[0]["camera"], time=time, coarser=1
@@ -306,7 +315,7 @@ def module_pieces(
     link: StoreLink | None = None,
     **shown: Any,
 ) -> Iterator[str]:
-    """Give the text of a module piece by piece; the arguments are those of :func:`page_pieces`."""
+    """Yield the text of a module piece by piece; the arguments are those of :func:`page_pieces`."""
     headers = _headers(views, scenes, link, title, time=time, **shown)
     before, after = asset("scene.mjs").read_text("utf-8").split("$parts\n")
     values = {
@@ -329,7 +338,7 @@ def scene_pieces(
     link: StoreLink | None = None,
     **shown: Any,
 ) -> Iterator[str]:
-    """Give the JSON text of a scene in pieces; the arguments are those of :func:`page_pieces`."""
+    """Yield the JSON text of a scene in pieces; the arguments are those of :func:`page_pieces`."""
     headers = _headers(views, scenes, link, title, time=time, **shown)
     yield f'{{"headers": {_headers_text(headers)}, "parts": ['
     for n, packed in enumerate(_packed(scenes, link, time)):
@@ -338,7 +347,7 @@ def scene_pieces(
 
 
 def _map_pieces(
-    basemap: Any,
+    basemap: str | Mapping[str, object],
     views: Sequence[WebView],
     scenes: Sequence[ClientData],
     *,
@@ -380,7 +389,7 @@ def _headers_text(headers: Sequence[Header]) -> str:
 def _values(
     headers: Sequence[Header], title: str, picture: bytes, link: StoreLink | None
 ) -> dict[str, str]:
-    """Return what the page's template asks for."""
+    """Return the values of the placeholders in the page's template."""
     ground = headers[0]["background"]
     # A browser has its own colour for light and for dark pages.
     background = (
@@ -403,14 +412,14 @@ def _values(
 
 
 def different(header: Header, first: Header) -> Header:
-    """Return what of a header is not as in the first: shaders and table lie in the page once."""
+    """Return the items of a header that differ from the first, to store equal ones once."""
     return {name: value for name, value in header.items() if value != first[name]}
 
 
 def _policy(script: str, link: StoreLink | None) -> str:
-    """Allow the one script by its digest, styles of the page's own, and nothing from outside.
+    """Return the policy: the script with its digest, inline styles, and nothing from outside.
 
-    Where there is a store, its server alone may be asked.
+    With a store the page may connect to the store's server alone.
     """
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
@@ -420,7 +429,7 @@ def _policy(script: str, link: StoreLink | None) -> str:
     )
 
 
-def json_text(value: Any) -> str:
+def json_text(value: object) -> str:
     """Return JSON in which nothing can end a script element."""
     text = json.dumps(value, allow_nan=False, separators=(",", ":"))
     return text.replace("<", r"\u003c").replace(">", r"\u003e").replace("&", r"\u0026")
@@ -437,14 +446,14 @@ def _parts(scene: ClientData) -> Iterator[tuple[str, AnyArray]]:
 
 def _packed(
     scenes: Sequence[ClientData], link: StoreLink | None, time: float | None
-) -> Iterator[tuple[int, dict[str, Any], str]]:
-    """Give view, description and text of the parts of all views; equal arrays have a text once."""
-    written: dict[str, dict[str, Any]] = {}
+) -> Iterator[tuple[int, Header, str]]:
+    """Yield view, description and text of the parts of all views; equal arrays once."""
+    written: dict[str, Header] = {}
     for n, scene in enumerate(scenes):
         names: set[str] = set()
         parts = _parts(scene) if link is None else first_parts(scene, time).items()
         for name, array in parts:
-            if name in names:  # values of all times, which each of them has
+            if name in names:  # values of all times are parts of each step
                 continue
             names.add(name)
             info, text = part_info(name, array), ""

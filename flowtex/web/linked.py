@@ -14,7 +14,7 @@ from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.textures.tiles import shared_pyramid
 from flowtex.web.view import WebView
 
-#: What a name of a server may have, of which nothing means anything in a policy of a page.
+#: Valid host names, which have no characters with a meaning in a page's policy.
 HOST = re.compile(r"[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\]")
 EXPECTED = (
     "expected the address from which a browser reads the store, such as "
@@ -28,13 +28,13 @@ class StoreLink:
     """Where a page finds its store."""
 
     address: str  #: A URL, whole or from the page on.
-    source: str  #: What the page's policy allows it to connect to.
+    source: str  #: Source to which the page's policy allows connections.
 
     @classmethod
     def of(cls, text: str) -> StoreLink:
         """Return the link of an address.
 
-        Raises a FieldError when a browser could not read it, or it holds what is not for everybody.
+        Raises a FieldError when a browser could not read it, or it contains secrets.
         """
         if not isinstance(text, str):
             msg = f"store is {text!r}; expected an address, such as './flow.zarr'"
@@ -54,10 +54,10 @@ class StoreLink:
         except ValueError:
             host, port = "", None
         if parts.scheme not in ("http", "https") or not HOST.fullmatch(host):
-            what = (
+            hint = (
                 "; s3:// and other object storage have such an address too" if "://" in text else ""
             )
-            msg = f"store is {text!r}; {EXPECTED}{what}"
+            msg = f"store is {text!r}; {EXPECTED}{hint}"
             raise FieldError(msg)
         return cls(text, f"{parts.scheme}://{host}" + (f":{port}" if port else ""))
 
@@ -76,7 +76,7 @@ def linked_data(view: WebView) -> ClientData:
 
 
 def store_header(view: WebView, scene: ClientData, link: StoreLink) -> Header:
-    """Return what the client has to know of the store."""
+    """Return the part of the header about the store."""
     stored = _stored(view)
     return {
         "url": link.address,
@@ -92,8 +92,8 @@ def first_parts(scene: ClientData, time: float | None) -> Parts:
     parts = scene.surface()
     for step in scene.moment(float(scene.times[0] if time is None else time)):
         parts |= scene.values(step, shown=True)
-        whole = scene.step(step)
-        parts |= {name: whole[name] for name in whole if not name.startswith("scalars/")}
+        step_parts = scene.step(step)
+        parts |= {name: step_parts[name] for name in step_parts if not name.startswith("scalars/")}
     return parts
 
 
@@ -116,10 +116,10 @@ def _stored(view: WebView) -> StoredPyramid:
             "and export that, or omit store for a page with as many levels as fit"
         )
         raise FieldError(msg)
-    own = pyramid.about
-    if (pyramid.parameter, pyramid.lines) != (own["parameter"], own["lines"]):
+    about = pyramid.about
+    if (pyramid.parameter, pyramid.lines) != (about["parameter"], about["lines"]):
         msg = (
-            f"the store has paths with parameter={own['parameter']!r} along {own['lines']}; "
+            f"the store has paths with parameter={about['parameter']!r} along {about['lines']}; "
             f"expected {pyramid.parameter!r} along {pyramid.lines}. Export with the settings of "
             "the store, or build another"
         )

@@ -1,4 +1,4 @@
-"""A small picture of a flow, for where the client cannot draw or has not drawn yet.
+"""A small picture of a flow, shown where the client cannot draw or has not drawn yet.
 
 The renderer in NumPy draws it from few nodes and samples, so that it takes a fraction of a second,
 needs no OpenGL, and can be made in any thread.
@@ -7,16 +7,15 @@ needs no OpenGL, and can be made in any thread.
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flowtex._util.array_types import Bools, Bytes, Floats
 from flowtex._util.colours import rgb
 from flowtex.field.interpolation import steps_around
-from flowtex.rendering.camera import Camera
+from flowtex.rendering.camera import Camera, CameraValues
 from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.map_overlay import SPACING_PX, SPACINGS, STROKES, map_lines
 from flowtex.rendering.uniforms import ViewState
@@ -35,7 +34,7 @@ NODES, SAMPLES = 3_000, 17
 WIDEST_SPACING = 0.7
 #: Pixels of the picture by one that NumPy draws, along each side.
 COARSER = 2
-#: Ground that is not seen where it is that of the page around.
+#: Background of the preview where it is that of the surrounding page.
 WHITE = (1.0, 1.0, 1.0)
 
 
@@ -43,7 +42,7 @@ def preview_png(
     view: WebView,
     size: tuple[int, int],
     *,
-    camera: Mapping[str, Any] | None = None,
+    camera: CameraValues | None = None,
     time: float | None = None,
     scene: ClientData | None = None,
     coarser: int = COARSER,
@@ -58,14 +57,14 @@ def preview_png(
     drawn = _drawn(view, scene, (size[0] // coarser, size[1] // coarser), camera, time)
     from PIL import Image
 
-    whole = Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC)
-    _draw_lines(whole, scene, Camera.from_dict(camera))
-    picture = np.asarray(whole)
+    image = Image.fromarray(drawn).resize(size, Image.Resampling.BICUBIC)
+    _draw_lines(image, scene, Camera.from_dict(camera))
+    picture = np.asarray(image)
     # Colours are chosen among a few pixels: among all of them it takes longer than the drawing.
-    few = Image.fromarray(np.ascontiguousarray(picture[::4, ::4])).quantize(160)
-    reduced = Image.fromarray(picture).quantize(palette=few, dither=Image.Dither.NONE)
+    palette_image = Image.fromarray(np.ascontiguousarray(picture[::4, ::4])).quantize(160)
+    reduced = Image.fromarray(picture).quantize(palette=palette_image, dither=Image.Dither.NONE)
     palette, corner = reduced.getpalette() or [], 3 * int(np.asarray(reduced)[0, 0])
-    palette[corner : corner + 3] = picture[0, 0].tolist()  # the ground keeps its very colour
+    palette[corner : corner + 3] = picture[0, 0].tolist()  # the exact background
     reduced.putpalette(palette)
     file = io.BytesIO()
     is_page = scene.colours.background is None and (picture[0, 0] == 255).all()
@@ -75,11 +74,11 @@ def preview_png(
 
 def _few_samples(settings: Settings) -> Settings:
     settings = settings.copy()
-    few = min(settings.samples, SAMPLES)
-    # The streaks keep their length as far as they can.
-    spacing = settings.spacing * settings.samples / few
+    samples = min(settings.samples, SAMPLES)
+    # Streaks keep their length as far as possible.
+    spacing = settings.spacing * settings.samples / samples
     widest = max(settings.spacing, WIDEST_SPACING * settings.grain)
-    settings.update(samples=few, spacing=min(spacing, widest))
+    settings.update(samples=samples, spacing=min(spacing, widest))
     return settings
 
 
@@ -87,7 +86,7 @@ def _drawn(
     view: WebView,
     scene: ClientData,
     size: tuple[int, int],
-    camera: Mapping[str, Any],
+    camera: CameraValues,
     time: float | None,
 ) -> Bytes:
     before, after, between = steps_around(
@@ -120,7 +119,7 @@ def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None
         return
     draw = ImageDraw.Draw(picture, "RGBA")
     fine = SPACING_PX * camera.height / (size[1] / 2)
-    spacing = next((some for some in SPACINGS if some <= fine), 0.0)
+    spacing = next((s for s in SPACINGS if s <= fine), 0.0)
     for option, lines in map_lines(field, has_globe=False).items():
         if not getattr(scene.colours, option):
             continue
@@ -133,12 +132,12 @@ def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None
         stroke = STROKES[option]
         colour = tuple(round(255 * c) for c in (*rgb(stroke.color), stroke.opacity))
         for begin, end in pairwise(lines.starts):
-            for some in np.split(np.arange(begin, end), 1 + np.flatnonzero(~seen[begin:end])):
-                draw.line([tuple(p) for p in pixels[some][seen[some]]], fill=colour)
+            for run in np.split(np.arange(begin, end), 1 + np.flatnonzero(~seen[begin:end])):
+                draw.line([tuple(p) for p in pixels[run][seen[run]]], fill=colour)
 
 
 def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between: float) -> Floats:
-    """Colour of the surface at each pixel, (H, W, 3)."""
+    """Return the colour of the surface at each pixel, (H, W, 3)."""
     colours = scene.colours
     if colours.values is None or colours.table is None:
         return np.asarray(colours.plain)

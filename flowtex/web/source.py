@@ -2,7 +2,7 @@
 
 ::
 
-    parts(None, ())          what of the whole surface is the same at all times
+    parts(None, ())          the parts of the whole surface that are the same at all times
     parts(None, (3,))        the flow and the values of the whole at a time step
     parts(key, (3, 4))       a tile: its header and surface, and its flow and values at two steps
     parts(None, (3,), kind)  marks of a kind at a time step: critical points, or separatrices
@@ -41,7 +41,7 @@ _marks_pool = pool(1, "flowtex-marks")
 
 @dataclass(frozen=True, eq=False)
 class _Tile:
-    """Textures of a tile, none where nothing of it is drawn, and their slices if there are."""
+    """Textures of a tile, ``None`` if nothing of it is drawn, and their packed slices if any."""
 
     textures: TextureSet | None
     packing: Packing | None
@@ -53,9 +53,9 @@ class _Tile:
 
 
 class TileSource:
-    """Gives the parts of a scene, of which those of tiles are made when they are requested.
+    """Source of the parts of a scene; those of tiles are made on request.
 
-    The same in other colours may take the place of the ``scene`` at any time. All methods may be
+    ``scene`` may be replaced at any time by the same scene in other colours. All methods may be
     called from any thread.
     """
 
@@ -123,13 +123,13 @@ class TileSource:
             yield from (future.result() for future in asked)
 
     def close(self) -> None:
-        """Stop what is being made."""
+        """Stop making parts."""
         self._is_closed = True
         self._tiles.clear()
 
 
 def _made(scene: ClientData, key: TileKey, steps: Sequence[int]) -> _Tile:
-    """Make a tile, where its slices are sent with a halo that does for these steps."""
+    """Return a tile; slices that are sent have a halo large enough for these steps."""
     if scene.pyramid is None:
         msg = f"tile {tuple(key)} does not exist: the surface is sent as a whole"
         raise LookupError(msg)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Collection
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from flowtex._util.arguments import checked_count
@@ -15,6 +16,7 @@ from flowtex.field.derived import steps_of
 from flowtex.rendering.webgl import ClientData, Colours
 from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.rendering.webgl.marks import MARK_PARTS, Marks
+from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.options import Options, default_cmap
 from flowtex.scene.scene import Scene, share_field
 from flowtex.settings import TABLE
@@ -24,9 +26,9 @@ from flowtex.textures.tiles import Pyramid
 class WebView:
     """A scene for a client in a browser.
 
-    Of the time steps so many are sent, evenly chosen with the first and the last among them; paths
-    are traced through all of them all the same. ``own`` names the settings and what of the
-    appearance are this view's alone, where it stands beside another. ``bodies`` are drawn with the
+    ``steps`` time steps are sent, evenly spaced including the first and the last; paths are traced
+    through all of them. ``own`` names the settings and the fields of the appearance in which this
+    view differs from the one beside it. ``bodies`` are drawn with the
     flow.
     """
 
@@ -71,8 +73,10 @@ class WebView:
         colours, settings = replace(data.colours, others=others), self.scene.settings
         # A client finds the structure of a formula itself.
         is_whole = data.formula is not None
-        wanted = [part for name, part in MARK_PARTS.items() if is_whole or getattr(settings, name)]
-        kinds = [kind for kind in wanted if data.marks and kind in data.marks.kinds]
+        requested = [
+            part for name, part in MARK_PARTS.items() if is_whole or getattr(settings, name)
+        ]
+        kinds = [kind for kind in requested if data.marks and kind in data.marks.kinds]
         marks = data.marks and replace(data.marks, kinds=tuple(kinds), carried=True)
         return replace(data.recoloured(colours), marks=marks if kinds else None)
 
@@ -103,7 +107,7 @@ class WebView:
         return data.recoloured(colours_of(self.scene, data.field, self._background))
 
     def close(self) -> None:
-        """Follow the settings no longer."""
+        """Stop following the settings."""
         self.scene.close()
 
 
@@ -146,9 +150,9 @@ def colours_of(
     )
 
 
-def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
-    """Return what can be coloured by, with the range that each has by itself."""
-    choices: list[dict[str, Any]] = []
+def choices_of(scene: Scene) -> tuple[Header, ...]:
+    """Return the scalars that can colour the surface, with their own ranges."""
+    choices: list[Header] = []
     for name in scene.scalar_names:
         (low, high), (least, most) = scene.usual_range(name), scene.scalar_range(name)
         steps = len(scene.field.scalars.get(name, scene.field.velocity))
@@ -169,17 +173,17 @@ def choices_of(scene: Scene) -> tuple[dict[str, Any], ...]:
 
 
 def browser_options(mesh: Any, **options: Any) -> tuple[Any, Options]:
-    """Return what is drawn, and the arguments sorted.
+    """Return the mesh or field to draw, and the sorted arguments.
 
-    Of a PyVista plotter it is the first flow texture there, as it looks and with what stands beside
-    it; arguments that are given come before those.
+    For a PyVista plotter they are those of its first flow texture, with the other objects of the
+    scene; ``options`` have precedence.
     """
     pyvista = sys.modules.get("pyvista")
     if pyvista is None or not isinstance(mesh, pyvista.BasePlotter):
         return mesh, Options.split(**options)
     field, look, bodies = mesh.flowtex.for_browser()
-    given = {name: value for name, value in options.items() if value is not None}
-    return field, replace(Options.split(**{**look, **given}), bodies=bodies)
+    arguments = {name: value for name, value in options.items() if value is not None}
+    return field, replace(Options.split(**{**look, **arguments}), bodies=bodies)
 
 
 def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple[WebView, ...]:
@@ -192,15 +196,15 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
     notify_section(field.section)
     background, changes = options.view.background, options.view.beside
     first = Scene(field, options.make_settings(field), options.appearance)
-    common: dict[str, Any] = {"background": background, "steps": steps, "bodies": options.bodies}
-    views = [WebView(first, **common)]
+    make = partial(WebView, background=background, steps=steps, bodies=options.bodies)
+    views = [make(first)]
     if changes is not None:
-        views.append(WebView(first.beside(changes), own=changes, **common))
+        views.append(make(first.beside(changes), own=changes))
     return tuple(views)
 
 
 def even_steps(count: int, steps: int | None) -> tuple[int, ...]:
-    """Return so many of the numbers below a count, or none of them where all are requested."""
+    """Return evenly spaced time steps, ``steps`` out of ``count``; empty for all of them."""
     if steps is None:
         return ()
     expected = f"1 to {count}, the time steps of the field"

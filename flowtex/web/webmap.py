@@ -7,7 +7,6 @@ import json
 import string
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 from urllib.parse import urlsplit
 
 from flowtex._util import __version__
@@ -15,7 +14,7 @@ from flowtex.errors import FieldError
 from flowtex.web.assets import asset
 from flowtex.web.view import WebView
 
-#: Where pages have MapLibre from.
+#: Address from which pages load MapLibre.
 MAPLIBRE = "https://unpkg.com/maplibre-gl@6.17.0/dist"
 
 
@@ -24,8 +23,8 @@ def layer_script() -> str:
     return asset("maplibre.js").read_text("utf-8")
 
 
-def check_basemap(basemap: Any, path: Path, views: Sequence[WebView]) -> None:
-    """Raise a FieldError where a map has no style, or cannot show what a page has."""
+def check_basemap(basemap: object, path: Path, views: Sequence[WebView]) -> None:
+    """Raise a FieldError when a map has no style, or cannot show the views of a page."""
     if path.suffix.lower() not in (".html", ".htm"):
         msg = f"basemap is given, and path is {path.name!r}; expected a page, such as 'map.html'"
         raise FieldError(msg)
@@ -49,8 +48,10 @@ def check_basemap(basemap: Any, path: Path, views: Sequence[WebView]) -> None:
         raise FieldError(msg)
 
 
-def map_pieces(scene: Iterator[str], basemap: Any, title: str) -> Iterator[str]:
-    """Give the text of a page piece by piece, of the pieces of a scene in JSON."""
+def map_pieces(
+    scene: Iterator[str], basemap: str | Mapping[str, object], title: str
+) -> Iterator[str]:
+    """Yield the text of a page piece by piece, from the pieces of a scene in JSON."""
     before, after = asset("map.html").read_text("utf-8").split("$scene\n")
     style = json.dumps(basemap, allow_nan=False).replace("<", r"\u003c")
     values = {

@@ -1,9 +1,9 @@
-"""How a widget gets into a cell, once, and what stands there where widgets do not run.
+"""Display of a widget in a cell, once, and of a still where widgets do not run.
 
-A cell gets two outputs: the widget, and below it a still, a picture of it, alone or among others
-in a box. JupyterLab takes no other form of an output whose widget is missing, and says so instead;
-so the style of the still hides the output above it until there is a view that is drawn, and such a
-view hides the still. Thus a notebook without a kernel shows stills, wherever it is read.
+A cell gets two outputs: the widget, and below it a still, that is a picture of it, alone or among
+others in a box. JupyterLab shows a message in place of an output whose widget is missing, even if
+the output has other forms; so the style of the still hides the output above it until a view is
+drawn, and such a view hides the still. Thus a notebook without a kernel shows stills.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from typing import Any, Self
 import anywidget
 import ipywidgets
 
-#: Seconds that cells wait for small pictures, at most; how much comes back in a second.
+#: Most seconds that cells wait for small pictures, and seconds of waiting regained per second.
 MAX_WAIT_S, WAIT_REGAINED = 2.0, 0.2
 #: Stills of one cell: of more than fifty outputs JupyterLab hides the rest.
 MOST_STILLS = 20
@@ -34,14 +34,14 @@ STYLE = (
 
 
 class WaitBudget:
-    """Time that may be waited for pictures, however many widgets are shown at once."""
+    """Total time to wait for pictures, however many widgets are shown at once."""
 
     def __init__(self) -> None:
         self._left, self._at = MAX_WAIT_S, time.monotonic()
 
     @contextmanager
     def spend(self) -> Iterator[float]:
-        """Give the seconds that are left; those that pass meanwhile are used up."""
+        """Yield the remaining seconds, and subtract those that pass meanwhile."""
         started = time.monotonic()
         self._left = min(MAX_WAIT_S, self._left + WAIT_REGAINED * (started - self._at))
         try:
@@ -67,11 +67,11 @@ class Displayed(anywidget.AnyWidget):
             shell.display_formatter.ipython_display_formatter.for_type(ipywidgets.Box, _display_box)
 
     def _picture(self, timeout_s: float) -> bytes | None:
-        """Return a PNG or JPEG of the widget, which may be waited for."""
+        """Return a PNG or JPEG of the widget, waiting for it at most ``timeout_s``."""
         raise NotImplementedError
 
     def _encoded_picture(self) -> tuple[str, str] | None:
-        """Return the format and the text of a picture, where there is time to make one."""
+        """Return the format and the text of a picture, if there is time to make one."""
         with _wait_budget.spend() as seconds:
             picture = self._picture(seconds)
         if not picture or self.comm is None:
@@ -103,7 +103,7 @@ class Displayed(anywidget.AnyWidget):
 
     def _update_stills(self, *, last: bool = False) -> None:
         """Show the present picture where widgets do not run."""
-        stills: dict[str, Any] = vars(self).get("_stills", {})  # none where its making failed
+        stills: dict[str, Any] = vars(self).get("_stills", {})  # missing if the constructor failed
         for name, shown in stills.items():
             _display_still(shown, name, update=True)
         if last:  # a widget is closed once more when it is collected
@@ -111,7 +111,7 @@ class Displayed(anywidget.AnyWidget):
 
 
 def _display(shown: Any) -> None:
-    """Display a widget or a box of widgets, and its still; a notebook of marimo's keeps none."""
+    """Display a widget or a box of widgets, and its still, except in marimo."""
     if (marimo := sys.modules.get("marimo")) is not None and marimo.running_in_notebook():
         marimo.output.append(shown)
         return
@@ -124,7 +124,7 @@ def _display(shown: Any) -> None:
     if _kernel_shell() is None or _stills_of_cells[cell] > MOST_STILLS:
         display(data, metadata=metadata, raw=True)
         return
-    # Empty texts, as some readers warn of an output of which they can show nothing.
+    # Some readers warn about an output without any text.
     display({VIEW: data[VIEW], "text/html": "", "text/plain": ""}, metadata=metadata, raw=True)
     name = uuid.uuid4().hex
     _display_still(shown, name)
@@ -161,16 +161,16 @@ def _pictures(shown: Any) -> str:
 
 
 def _displayed_in(shown: Any) -> list[Displayed]:
-    """Return the widgets in a box, and of a widget itself."""
+    """Return the displayed widgets in a box, or a widget itself."""
     if isinstance(shown, ipywidgets.Box):
         return [widget for child in shown.children for widget in _displayed_in(child)]
     return [shown] if isinstance(shown, Displayed) else []
 
 
 def _display_box(box: Any) -> None:
-    """Display a box that has flows in it; IPython displays others as it does without this."""
-    if (own := getattr(box, "_ipython_display_", None)) is not None:
-        own()
+    """Display a box that contains flows; for others IPython falls back to its own way."""
+    if (display := getattr(box, "_ipython_display_", None)) is not None:
+        display()
     elif not _displayed_in(box):
         raise NotImplementedError
     else:

@@ -1,8 +1,8 @@
-"""Sends a client its arrays: coarse ones first, then all, then what it asks for.
+"""Feed of arrays to a client: coarse ones first, then all, then those that it requests.
 
-Two workers do what takes time. One sends the client what shows the scene that there is; the other
-makes the next scene, the whole one after a coarse one or that of new settings, and replaces the
-first by it when it can be shown. What a client asks for is made by the scene's source.
+Two workers do the long work. One sends the parts of the current scene; the other makes the next
+scene, the whole one after a coarse one or that of new settings, and replaces the current one when
+the new one can be shown. The scene's source makes the parts that a client requests.
 
 An array that was sent to some page already is offered by its digest and not sent: a page that
 shows the same mesh many times holds it once, and asks for what it lacks.
@@ -20,11 +20,11 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from functools import partial
-from typing import Any
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import Stopped
 from flowtex._util.threads import has_threads
+from flowtex.rendering.camera import CameraValues
 from flowtex.rendering.webgl import ClientData
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header, Parts, part_buffer, part_info
@@ -47,20 +47,24 @@ BETWEEN_STEADY, BETWEEN_VARYING = 100_000, 16_000
 MESSAGE_BYTES = 2_000_000
 #: Seconds after which data without an acknowledgement are sent again.
 RESEND_WAITS_S = (2.5, 4.0, 8.0, 16.0)
-#: Seconds in which a client asks for what it has just been sent, as the header comes first.
+#: Seconds in which a client may request parts that are being sent, as the header comes first.
 COMING_S = 2.0
 #: Names of arrays of a time step, such as "slices/3" and "scalars/3/1".
 _OF_STEP = re.compile(r"[a-z]+/([0-9]{1,9})(/[0-9]+)?")
 #: Bytes from which an array is offered before it is sent again.
 LEAST_OFFERED_BYTES = 50_000
 
-#: Digests of arrays that were sent to some page, and how many of them are remembered.
+#: Digests of arrays that were sent to any page, and how many of them are remembered.
 _sent_digests: OrderedDict[str, None] = OrderedDict()
 _sent_lock = threading.Lock()
 MOST_DIGESTS = 10_000
 
-#: Threads that answer are more than there are processors: one may be tracing for long.
+#: There are more answering threads than processors, as one may be tracing for long.
 ANSWER_POOL, BUILD_POOL = WorkerPool("flowtex-answer", 4), WorkerPool("flowtex-build", 2)
+
+
+#: Sends a message with its buffers.
+Send = Callable[[Header, list[memoryview]], None]
 
 
 class Feed:
@@ -76,7 +80,7 @@ class Feed:
         *,
         moment: Callable[[], float],
         announce: Callable[[Header], None],
-        send: Callable[[dict[str, Any], list[memoryview]], None],
+        send: Send,
     ) -> None:
         self._view = view
         self._moment, self._announce, self._send = moment, announce, send
@@ -85,7 +89,7 @@ class Feed:
         self._live = self._closed = self._drawing = False
         #: Requests that a client waits for.
         self._requests: set[str] = set()
-        #: Steps that are on their way, and until when they are not sent to who asks.
+        #: Time until which steps that are being sent are not sent again, and these steps.
         self._coming: tuple[float, tuple[int, ...]] = (0.0, ())
         self._sent: dict[str, str] = {}
         #: Names of the time-independent parts of the scene; empty for the first scene.
@@ -103,8 +107,11 @@ class Feed:
     @property
     def header(self) -> Header:
         """Header of the present scene, without settings and camera."""
-        told = {"generation": self._generation, "surface": self._surface}
-        return {**self.scene.constants(), **told}
+        return {
+            **self.scene.constants(),
+            "generation": self._generation,
+            "surface": self._surface,
+        }
 
     def start(self) -> None:
         """Send what is shown first, without being asked, and then make the whole of it.
@@ -116,14 +123,14 @@ class Feed:
         if has_threads():
             self._timer.start()
 
-    def draw(self, size: tuple[int, int], camera: dict[str, Any]) -> None:
+    def draw(self, size: tuple[int, int], camera: CameraValues) -> None:
         """Draw a small picture, once, as soon as there is time; ``pictured`` tells when."""
         if not self._drawing:
             self._drawing = True
             self._answers.do(lambda: self._draw(size, camera), urgency=1)
 
     def ready(self) -> None:
-        """Answer a client that has nothing yet."""
+        """Answer a client that has no arrays yet."""
         self._send_first(urgency=1)
 
     def _send_first(self, urgency: int) -> None:
@@ -131,7 +138,7 @@ class Feed:
         self._answers.do(lambda: self._send_parts(self._first_parts), urgency=urgency)
 
     def _expect(self, scene: ClientData) -> None:
-        """Note that the parts of the present moment are on their way."""
+        """Remember that the parts of the present moment are being sent."""
         self._coming = (time.monotonic() + COMING_S, scene.moment(self._moment()))
 
     def load(self, request: str, key: TileKey | None, steps: Sequence[int], kind: str = "") -> None:
@@ -147,13 +154,13 @@ class Feed:
         made.add_done_callback(answer)
 
     def drop(self, request: str) -> None:
-        """Give up what a client does not need any more."""
+        """Cancel a request that a client no longer needs."""
         self._requests.discard(request)
 
     def _answer(
         self, scene: ClientData, request: str, key: TileKey | None, made: Future[Parts]
     ) -> None:
-        """Send what has been made of a scene, or what went wrong."""
+        """Send the parts made of a scene, or the error."""
         self._requests.discard(request)
         error = made.exception()
         if isinstance(error, Stopped) or self._closed:
@@ -168,9 +175,9 @@ class Feed:
                 self._deliver(made.result(), again=True, offer=key is None)
             self._end(request)
 
-    def _end(self, request: str, **told: str) -> None:
+    def _end(self, request: str, **result: str) -> None:
         with self._lock:
-            self._send({"kind": "loaded", "request": request, **told}, [])
+            self._send({"kind": "loaded", "request": request, **result}, [])
 
     def _resend_timer(self, waits: tuple[float, ...]) -> threading.Timer:
         timer = threading.Timer(waits[0], self._send_again, [waits[1:]])
@@ -178,9 +185,9 @@ class Feed:
         return timer
 
     def _send_again(self, waits: tuple[float, ...]) -> None:
-        """Send once more to a client that has not answered: it may not have been loaded yet.
+        """Send again to a client that has not answered: it may not have been loaded yet.
 
-        What was only offered goes along whole: what it was offered from may be lost as well.
+        Offered arrays are sent whole, as the page that holds them may be gone as well.
         """
         if self.acknowledged or self._closed:
             return
@@ -191,7 +198,7 @@ class Feed:
             self._timer.start()
 
     def want(self, names: list[str]) -> None:
-        """Answer a client that lacks arrays that it was offered."""
+        """Send a client the offered arrays that it lacks."""
         self._answers.do(lambda: self._send_named(names), urgency=1)
 
     def _scene_changed(self, affects: Change) -> None:
@@ -228,7 +235,7 @@ class Feed:
     def _first(self) -> ClientData:
         """Return the scene to begin with: a coarse one of a large field."""
         field = self._view.field
-        # The coarse form of triangles is the root of their tiles, which is what comes first anyway.
+        # The coarse form of triangles is the root of their tiles, which is sent first in any case.
         is_whole = self._view.scene.pyramid is None
         if field.triangles is not None or (is_whole and self._nodes <= LARGE_NODES):
             return self._view.data()
@@ -246,7 +253,7 @@ class Feed:
         return math.prod(self._view.shape) * len(self._view.field.times)
 
     def _refine(self) -> None:
-        """Replace a coarse scene by one between, where the whole takes long, and by the whole."""
+        """Replace a coarse scene by an intermediate one, if the whole takes long, and the whole."""
         order, field = self._order, self._view.field
         nodes = BETWEEN_STEADY if field.steady else BETWEEN_VARYING
 
@@ -261,15 +268,15 @@ class Feed:
         self._builds.do(complete)
 
     def _refine_to(self, make: Callable[[], ClientData], order: int) -> None:
-        """Replace a scene that is still coarse and wanted."""
+        """Replace a scene if it is still coarse and current."""
         shape = self.scene.textures.geometry.shape
         if order == self._order and shape != self._view.shape:
             self._replace(make(), order)
 
     def _replace(self, scene: ClientData, order: int | None = None) -> None:
-        """Replace the current scene, unless another than ``order`` is wanted.
+        """Replace the current scene, unless ``order`` is no longer the latest.
 
-        Without one it is shown in any case: the flow may change faster than a scene is made.
+        Without ``order`` it is always shown: the flow may change faster than a scene is made.
         """
         parts = self._first_parts(scene)
         with self._lock:
@@ -291,7 +298,7 @@ class Feed:
                 self._deliver(parts, again=False)
 
     def _recolour(self) -> None:
-        """Send the colours of this moment: the header, and what of the arrays differs."""
+        """Send the current colours: the header, and the arrays that differ."""
         scene = self._view.recoloured(self.scene)
         parts = self._first_parts(scene)
         with self._lock:
@@ -305,14 +312,14 @@ class Feed:
                 self._deliver(colours, again=False)
 
     def _first_parts(self, scene: ClientData) -> Parts:
-        """Return what shows the present moment of a scene."""
+        """Return the parts that show the present moment of a scene."""
         parts = scene.surface()
         for step in scene.moment(self._moment()):
             parts |= scene.step(step)
         return parts
 
     def _send_parts(self, parts_of: Callable[[ClientData], Parts]) -> None:
-        """Send parts of the present scene, also when it is replaced while they are made."""
+        """Send parts of the current scene, also when it is replaced while they are made."""
         while True:
             scene = self.scene
             parts = parts_of(scene)
@@ -333,13 +340,13 @@ class Feed:
             if step < scene.steps:
                 parts |= scene.mark(name, step) if name else scene.step(step)
         with self._lock:
-            if scene is self.scene:  # what was offered of another is not waited for any more
+            if scene is self.scene:  # the client no longer waits for arrays of another scene
                 self._deliver({n: parts[n] for n in names if n in parts}, again=True, offer=False)
 
     def _deliver(self, parts: Parts, *, again: bool, offer: bool = True) -> None:
         """Send arrays, the flow after its surface; those that a client has only when ``again``."""
-        offers: list[dict[str, Any]] = []
-        batch: list[tuple[dict[str, Any], AnyArray]] = []
+        offers: list[Header] = []
+        batch: list[tuple[Header, AnyArray]] = []
         for name, array in sorted(parts.items(), key=lambda item: ("/" in item[0], item[1].nbytes)):
             info = part_info(name, array)
             if not again and "/" not in name and self._sent.get(name) == info["digest"]:
@@ -355,7 +362,7 @@ class Feed:
         self._post("parts", batch)
         self._post("offer", [(info, None) for info in offers])
 
-    def _post(self, kind: str, parts: Sequence[tuple[dict[str, Any], AnyArray | None]]) -> None:
+    def _post(self, kind: str, parts: Sequence[tuple[Header, AnyArray | None]]) -> None:
         """Send descriptions of parts with their arrays, or offer them without."""
         if self._closed or not parts:
             return
@@ -363,8 +370,8 @@ class Feed:
         buffers = [part_buffer(array) for _, array in parts if array is not None]
         self._send({"kind": kind, "generation": self._generation, "parts": infos}, buffers)
 
-    def _draw(self, size: tuple[int, int], camera: dict[str, Any]) -> None:
-        """Draw the small picture, which nothing depends on."""
+    def _draw(self, size: tuple[int, int], camera: CameraValues) -> None:
+        """Draw the small picture; an error does no harm."""
         with suppress(Exception):
             self.picture = preview.preview_png(
                 self._view, size, camera=camera, time=self._moment(), scene=self.scene
@@ -384,7 +391,7 @@ def _words(error: BaseException) -> str:
 
 
 def _was_sent(digest: str) -> bool:
-    """Return whether an array was sent to some page, and note that it is."""
+    """Return whether an array was sent to any page before, and remember it."""
     with _sent_lock:
         was_sent = digest in _sent_digests
         _sent_digests[digest] = None

@@ -20,6 +20,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.locate import locate
 from flowtex.rendering.camera import Camera, can_share_camera
+from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.attributes import AppearanceAttributes
 from flowtex.scene.options import (
     Appearance,
@@ -67,7 +68,7 @@ class Host:
         asyncio.run_coroutine_threadsafe(flush(), self._loop)
 
 
-SLACK = 1e-9  #: Share of the duration by which a time may lie outside it, for rounding's sake.
+SLACK = 1e-9  #: Share of the duration by which rounding may move a time outside of it.
 
 
 class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
@@ -119,7 +120,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     _header = traitlets.Dict().tag(sync=True)
     _header_beside = traitlets.Dict().tag(sync=True)
-    #: The text of each view's shaders: most of a header, and seldom another one.
+    #: The text of each view's shaders: most of a header, and rarely changed.
     _shaders: Any = traitlets.List([{}, {}]).tag(sync=True)
     _key = traitlets.Unicode().tag(sync=True)
     camera = CameraTrait().tag(sync=True, echo_update=False)
@@ -234,12 +235,12 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         title
             Title of the page; the name of the field by default.
         """
-        now: dict[str, Any] = {"camera": dict(self.camera), "time": self.time, "clock": self.clock}
-        now["axes"] = self.axes
+        shown: dict[str, Any] = {"camera": dict(self.camera), "axes": self.axes}
+        shown |= {"time": self.time, "clock": self.clock}
         picture = self._picture(timeout_s=0.0)
         if path is None:
-            return page_text(self._views.views, title=title, picture=picture, **now)
-        write_page(self._views.views, path, title=title, picture=picture, **now)
+            return page_text(self._views.views, title=title, picture=picture, **shown)
+        write_page(self._views.views, path, title=title, picture=picture, **shown)
         return None
 
     def as_html(self) -> str:
@@ -258,7 +259,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     def close(self) -> None:
         """Remove the widget from the page and free its memory."""
-        if "_views" in vars(self):  # a widget whose making failed is closed too
+        if "_views" in vars(self):  # also a widget whose constructor failed is closed
             for end in self._ends:
                 end()
             self._ends = []
@@ -296,7 +297,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         point, field = proposal["value"], self.field
         if point is None or field.triangles is None:
             return point
-        try:  # what is drawn may be other triangles than those of the field
+        try:  # the drawn triangles may differ from those of the field
             at = locate(field, point.get("position"), tolerance=np.inf)
         except FieldError as error:
             raise TraitValueError(str(error)) from error
@@ -311,7 +312,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
                 except (traitlets.TraitError, FieldError):
                     self.send_state(name)
 
-    def _announce(self, number: int, header: dict[str, Any]) -> None:
+    def _announce(self, number: int, header: Header) -> None:
         # Not while the browser's values are being set, which would delay it until after the arrays
         # that belong to it.
         with self._state_lock:
@@ -320,7 +321,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             self._shaders = shaders
             setattr(self, HEADERS[number], {**header, "shaders": None})
 
-    def _handle_message(self, _: Any, content: Any, buffers: list[Any]) -> None:
+    def _handle_message(self, _: Any, content: Any, buffers: list[memoryview]) -> None:
         if isinstance(content, dict):
             if content.get("kind") == "frame":
                 self._frame = bytes(buffers[0])

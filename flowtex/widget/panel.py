@@ -11,9 +11,9 @@ from flowtex.settings import TABLE, Setting, SettingsError
 
 
 def make_panel(widget: Any) -> tuple[Any, Callable[[], None]]:
-    """Return a panel with a control for each setting, and what closes it.
+    """Return a panel with a control for each setting, and a function that closes it.
 
-    The widget has a trait for each setting; both follow each other.
+    Controls and the widget's traits of the same names follow each other.
     """
     controls = [_control(row, getattr(widget, row.name)) for row in TABLE.values()]
     ends = [_join(widget, name, control) for name, control in zip(TABLE, controls, strict=True)]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import traitlets
 
 from flowtex.errors import FieldError
-from flowtex.rendering.camera import Camera
+from flowtex.rendering.camera import Camera, CameraValues
 from flowtex.settings import TABLE, Setting, SettingsError
 
 __all__ = ["CameraTrait", "SettingTrait", "SettingTraits", "SizeTrait", "TraitValueError"]
@@ -24,26 +24,26 @@ class SettingTrait(traitlets.TraitType[Any, Any]):
         self.row = row
         super().__init__(row.default, help=row.text)
 
-    def validate(self, obj: Any, value: Any) -> Any:
-        """Return the value in the setting's own type; raise SettingsError where it is none."""
+    def validate(self, obj: traitlets.HasTraits | None, value: Any) -> Any:
+        """Return the value in the setting's own type; raise SettingsError if it is invalid."""
         return self.row.check(value)
 
 
-class CameraTrait(traitlets.TraitType[Any, Any]):
-    """A camera's numbers by name; what is left out stays as it was."""
+class CameraTrait(traitlets.TraitType[CameraValues, Any]):
+    """A camera's attributes by name; missing ones keep their values."""
 
-    def validate(self, obj: Any, value: Any) -> Any:
-        """Return the whole camera as plain numbers; raise CameraError where it is none."""
-        present = obj._trait_values.get(self.name)
+    def validate(self, obj: traitlets.HasTraits | None, value: Any) -> CameraValues:
+        """Return the complete camera as plain numbers; raise CameraError if it is invalid."""
+        present = getattr(obj, "_trait_values", {}).get(self.name)
         if isinstance(value, Camera):
             return value.to_dict()
         return Camera.from_dict(value, Camera(**present) if present else None).to_dict()
 
 
-class SizeTrait(traitlets.TraitType[Any, Any]):
+class SizeTrait(traitlets.TraitType[list[int], Any]):
     """Width and height in pixels of the page; a width of 0 fills the cell."""
 
-    def validate(self, obj: Any, value: Any) -> list[int]:
+    def validate(self, obj: traitlets.HasTraits | None, value: Any) -> list[int]:
         """Return both as a list."""
         try:
             width, height = (int(n) for n in value)

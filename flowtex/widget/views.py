@@ -15,20 +15,19 @@ from typing import Any, TypeGuard
 import numpy as np
 
 from flowtex.field import FlowField
+from flowtex.rendering.camera import CameraValues
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.scene import Scene, follow, lay_image
 from flowtex.textures.tiles import TileKey
 from flowtex.web.view import WebView
-from flowtex.widget.feed import Feed
+from flowtex.widget.feed import Feed, Send
 
 #: Traits of the widget with the headers of the views, from left to right.
 HEADERS = ("_header", "_header_beside")
 
-#: What of the appearance is chosen in the browser.
+#: Fields of the appearance that can be chosen in the browser.
 CHOSEN = ("scalars", "cmap", "clim", "log_scale", "opacity", "coastlines", "graticule")
-
-Send = Callable[[dict[str, Any], list[memoryview]], None]
 
 
 class Views:
@@ -48,11 +47,11 @@ class Views:
 
     @property
     def first(self) -> Scene:
-        """What the first view shows."""
+        """The scene of the first view."""
         return self.views[0].scene
 
     def show(self, field: FlowField) -> None:
-        """Show another flow in all views, or in none where it does not fit one of them."""
+        """Show another flow in all views, or in none if it does not fit one of them."""
         for view in self.views:
             view.scene.showing(field).close()
         for view in self.views:
@@ -69,7 +68,7 @@ class Views:
         )
 
     def _with_own(self, number: int, header: Header) -> Header:
-        """Add the settings that are a view's own, where there are two."""
+        """Add the settings in which two views differ."""
         if len(self.views) == 1:
             return header
         own, settings = self.views[1].own_settings, self.views[number].scene.settings
@@ -82,12 +81,12 @@ class Views:
         return [self._with_own(n, feed.header) for n, feed in enumerate(self.feeds)]
 
     def start(self) -> None:
-        """Begin to work."""
+        """Start the feeds."""
         for feed in self.feeds:
             feed.start()
 
-    def handle_message(self, message: dict[str, Any]) -> None:
-        """Answer the client; what it cannot mean is not answered."""
+    def handle_message(self, message: Header) -> None:
+        """Answer the client; invalid messages are ignored."""
         kind, number = message.get("kind"), message.get("view", 0)
         for feed in self.feeds:
             feed.acknowledged = True
@@ -110,24 +109,24 @@ class Views:
             elif _are_whole(key) and len(key) == len(TileKey._fields):
                 self.feeds[number].load(request, TileKey(*key), steps)
 
-    def _take_appearance(self, changes: dict[str, Any]) -> None:
-        """Take colours that were chosen in the browser; what does not fit changes nothing there."""
-        known = {name: value for name, value in changes.items() if name in CHOSEN}
+    def _take_appearance(self, changes: Header) -> None:
+        """Apply colours that were chosen in the browser; invalid ones are ignored."""
+        chosen = {name: value for name, value in changes.items() if name in CHOSEN}
         with suppress(ValueError, KeyError, TypeError):
-            self.first.appearance = replace(self.first.appearance, **known)
+            self.first.appearance = replace(self.first.appearance, **chosen)
 
     def set_image(self, image: Any) -> None:
         """Lay another image on the surface, in all views that show one."""
         lay_image([view.scene for view in self.views], image, self.views[-1].own)
 
     def picture(
-        self, size: tuple[int, int], camera: dict[str, Any], timeout_s: float
+        self, size: tuple[int, int], camera: CameraValues, timeout_s: float
     ) -> bytes | None:
         """Return a small picture of all views as PNG, if there is one in this many seconds."""
-        each = (size[0] // len(self.feeds), size[1] // len(self.feeds))  # in the same shape
+        view_size = (size[0] // len(self.feeds), size[1] // len(self.feeds))  # in the same shape
         if timeout_s > 0:
             for feed in self.feeds:
-                feed.draw(each, camera)
+                feed.draw(view_size, camera)
                 feed.pictured.wait(timeout_s)
         pictures = [feed.picture for feed in self.feeds if feed.picture is not None]
         if len(pictures) < len(self.feeds):
@@ -135,7 +134,7 @@ class Views:
         return pictures[0] if len(pictures) == 1 else _side_by_side(pictures)
 
     def close(self) -> None:
-        """Let go of everything."""
+        """Close the feeds and the views."""
         for feed, view in zip(self.feeds, self.views, strict=True):
             feed.close()
             view.close()

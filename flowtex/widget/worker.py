@@ -1,8 +1,8 @@
 """A few threads that work for all widgets of a process: the urgent jobs first.
 
-Thirty widgets with their own threads would all be slow together; so would be all behind one whose
-trace takes long. Threads are there while there is work, and are daemons, so that a long trace does
-not keep a kernel from ending.
+Thirty widgets with their own threads would slow each other down, and behind a single thread all
+would wait for one long trace. Threads exist while there is work, and are daemons, so that a long
+trace does not keep a kernel from ending.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from collections.abc import Callable
 from flowtex._util.threads import start
 
 Job = Callable[[], None]
-#: Urgency as a number that is least for what comes first, order of asking, for whom, and what.
+#: Negative urgency, order of arrival, worker, and job.
 Entry = tuple[int, int, "Worker", Job]
 
 
 class WorkerPool:
-    """So many threads at most that do the jobs of many workers, for each worker one at a time."""
+    """At most ``size`` threads that do the jobs of many workers, one at a time for each worker."""
 
     def __init__(self, name: str, size: int) -> None:
         self._name, self._size = name, size
@@ -31,7 +31,7 @@ class WorkerPool:
         self._threads = 0
 
     def put(self, worker: Worker, job: Job, urgency: int) -> None:
-        """Do a job when its turn has come."""
+        """Add a job, which is done when its turn comes."""
         with self._lock:
             self._waiting.append((-urgency, next(self._count), worker, job))
             if self._threads == self._size:
@@ -40,7 +40,7 @@ class WorkerPool:
         start(self._work, self._name)
 
     def has(self, worker: Worker) -> bool:
-        """Whether a job of a worker waits or runs."""
+        """Return whether a job of a worker waits or runs."""
         with self._lock:
             return worker in self._busy or any(entry[2] is worker for entry in self._waiting)
 
