@@ -1,18 +1,19 @@
-"""What stands on a PyVista plotter beside its flow, as a browser draws it.
+"""Other objects of a PyVista plotter with a flow, as a browser draws them.
 
-Meshes become triangles and pieces of lines with the colours that their mapper gives them; volumes,
-images, and what lies in the window and not in space, are left out and named.
+Meshes become triangles and pieces of lines with the colours of their mapper; volumes, images, and
+actors in window coordinates are left out and named.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike
 from vtkmodules.vtkCommonCore import reference
-from vtkmodules.vtkRenderingCore import vtkAbstractMapper
+from vtkmodules.vtkRenderingCore import vtkAbstractMapper, vtkProperty
 
 from flowtex._util.array_types import Bytes, Indices
 from flowtex.plotting.handle import FlowHandle
@@ -20,16 +21,16 @@ from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, B
 
 #: Name of the colours among the arrays of a mesh.
 COLOURS = "flowtex colours"
-#: Number of VTK's that labels have which stand on no plate.
+#: VTK's shape of labels without a plate.
 NO_PLATE = 0
 
 
 class _NotDrawnError(Exception):
-    """An actor is left out, for the reason that is its text."""
+    """An actor is left out; the text is the reason."""
 
 
-def read_bodies(plotter: Any, shown: FlowHandle) -> tuple[Bodies, list[str]]:
-    """Return what stands beside a flow, and what is left out with the reasons."""
+def read_bodies(plotter: pv.BasePlotter, shown: FlowHandle) -> tuple[Bodies, list[str]]:
+    """Return the other objects of a scene, and those left out with the reasons."""
     meshes: list[Body] = []
     labels: list[Label] = []
     left_out: list[str] = []
@@ -61,8 +62,8 @@ def read_bodies(plotter: Any, shown: FlowHandle) -> tuple[Bodies, list[str]]:
     return Bodies(tuple(meshes), tuple(labels[:MOST_LABELS]), lights), left_out
 
 
-def _actors(plotter: Any, shown: FlowHandle) -> Iterator[tuple[str, Any]]:
-    """Yield what a plotter shows, except the flow and its legend."""
+def _actors(plotter: pv.BasePlotter, shown: FlowHandle) -> Iterator[tuple[str, Any]]:
+    """Yield the visible actors of a plotter, except the flow and its legend."""
     flows = {id(handle.actor) for handle in plotter.flowtex}
     bars, title = dict(plotter.scalar_bars.items()), shown._bar_title
     bar = None if title is None else bars.get(title)
@@ -76,11 +77,11 @@ def _actors(plotter: Any, shown: FlowHandle) -> Iterator[tuple[str, Any]]:
 
 
 def _bodies(actor: Any) -> Iterator[Body]:
-    """Give the faces, the lines and the points of an actor."""
+    """Yield the faces, the lines and the points of an actor."""
     mapper, prop = actor.GetMapper(), actor.GetProperty()
     data = None
     if mapper.GetInputAlgorithm() is not None:
-        mapper.GetInputAlgorithm().Update()  # nothing may have been drawn yet
+        mapper.GetInputAlgorithm().Update()  # no frame may have been drawn yet
         data = mapper.GetInputDataObject(0, 0)
     if mapper.IsA("vtkCompositePolyDataMapper"):
         blocks = [block for block in pv.wrap(data).recursive_iterator() if block is not None]
@@ -100,12 +101,12 @@ def _bodies(actor: Any) -> Iterator[Body]:
         yield from _parts_of(surface, prop)
 
 
-def _coloured(mesh: Any, mapper: Any, prop: Any) -> Any:
+def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
     """Return the surface of a mesh with no other arrays than colours and normals."""
     colours = _colours(mesh, mapper)
-    bare = mesh.copy(deep=False)
+    plain_mesh = mesh.copy(deep=False)
     normals = mesh.point_data.active_normals if isinstance(mesh, pv.PolyData) else None
-    bare.clear_data()
+    plain_mesh.clear_data()
     if colours is None:
         colours = np.tile(_bytes((*prop.GetColor(), 1.0)), (mesh.n_points, 1))
     else:
@@ -113,13 +114,17 @@ def _coloured(mesh: Any, mapper: Any, prop: Any) -> Any:
     opacity = prop.GetOpacity() * colours[:, 3]
     colours[:, 3] = np.where(opacity < 255, np.minimum(np.rint(opacity), 254), 255)
     on_points = len(colours) == mesh.n_points
-    (bare.point_data if on_points else bare.cell_data)[COLOURS] = colours
+    (plain_mesh.point_data if on_points else plain_mesh.cell_data)[COLOURS] = colours
     if normals is not None and prop.GetInterpolation():
-        bare.point_data.active_normals = normals
-    return bare if isinstance(bare, pv.PolyData) else bare.extract_surface(algorithm=None)
+        plain_mesh.point_data.active_normals = normals
+    return (
+        plain_mesh
+        if isinstance(plain_mesh, pv.PolyData)
+        else plain_mesh.extract_surface(algorithm=None)
+    )
 
 
-def _colours(mesh: Any, mapper: Any) -> Bytes | None:
+def _colours(mesh: pv.DataSet, mapper: Any) -> Bytes | None:
     """Return the colours (N, 4) of scalars at points or cells; ``None`` without scalars."""
     if not mapper.GetScalarVisibility():
         return None
@@ -141,37 +146,37 @@ def _colours(mesh: Any, mapper: Any) -> Bytes | None:
     return pv.convert_array(mapped)
 
 
-def _parts_of(surface: Any, prop: Any) -> Iterator[Body]:
-    """Give the faces, lines and points of a surface, and the edges of its faces."""
+def _parts_of(surface: pv.PolyData, prop: vtkProperty) -> Iterator[Body]:
+    """Yield the faces, lines and points of a surface, and the edges of its faces."""
     style, width = prop.GetRepresentationAsString(), prop.GetLineWidth()
-    whole = surface.triangulate() if surface.GetNumberOfStrips() else surface
-    verts, lines, polys = (_cells(whole, kind) for kind in ("Verts", "Lines", "Polys"))
+    simple_surface = surface.triangulate() if surface.GetNumberOfStrips() else surface
+    verts, lines, polys = (_cells(simple_surface, kind) for kind in ("Verts", "Lines", "Polys"))
     if style == "Points":
-        every = np.arange(whole.n_points)
-        yield _body(whole, (every, every, 0 * every), width=prop.GetPointSize())
+        points = np.arange(simple_surface.n_points)
+        yield _body(simple_surface, (points, points, 0 * points), width=prop.GetPointSize())
         return
-    yield _body(whole, (verts[0], verts[0], verts[2]), width=prop.GetPointSize())
-    yield _body(whole, _pieces(lines), width=width)
+    yield _body(simple_surface, (verts[0], verts[0], verts[2]), width=prop.GetPointSize())
+    yield _body(simple_surface, _pieces(lines), width=width)
     if style == "Wireframe":
-        yield _body(whole, _edges(polys), width=width)
+        yield _body(simple_surface, _edges(polys), width=width)
         return
     if not len(polys[0]):
         return
-    triangles = whole.triangulate()
+    triangles = simple_surface.triangulate()
     ids, _, owners = _cells(triangles, "Polys")
     light = {"ambient": prop.GetAmbient(), "diffuse": prop.GetDiffuse()}
     corners = (*ids.reshape(-1, 3).T, owners[::3])
     yield _body(triangles, corners, **(light if prop.GetLighting() else {}))
     if prop.GetEdgeVisibility():
-        yield _body(whole, _edges(polys), width=width, colour=prop.GetEdgeColor())
+        yield _body(simple_surface, _edges(polys), width=width, colour=prop.GetEdgeColor())
 
 
-#: Points of cells one after the other, where those of each begin, and each one's cell.
+#: Points of all cells in a row, the first of each cell, and the cell of each point.
 Cells = tuple[Indices, Indices, Indices]
 
 
-def _cells(mesh: Any, kind: str) -> Cells:
-    """Return the cells of a kind; numbers of cells are those that arrays of cells go by."""
+def _cells(mesh: pv.PolyData, kind: str) -> Cells:
+    """Return the cells of a kind, numbered as in arrays of cell data."""
     before = {"Verts": 0, "Lines": mesh.n_verts, "Polys": mesh.n_verts + mesh.n_lines}[kind]
     cells = getattr(mesh, f"Get{kind}")()
     ids, starts = (
@@ -182,14 +187,14 @@ def _cells(mesh: Any, kind: str) -> Cells:
 
 
 def _pieces(lines: Cells) -> Cells:
-    """Return both ends of the pieces of lines, and whose they are."""
+    """Return both ends of the pieces of lines, and their cells."""
     ids, _, owners = lines
-    same = owners[:-1] == owners[1:]
-    return ids[:-1][same], ids[1:][same], owners[:-1][same]
+    is_joined = owners[:-1] == owners[1:]
+    return ids[:-1][is_joined], ids[1:][is_joined], owners[:-1][is_joined]
 
 
 def _edges(polygons: Cells) -> Cells:
-    """Return both ends of the edges of polygons, each once, and one whose it is."""
+    """Return both ends of the edges of polygons, each once, and one of its cells."""
     ids, starts, owners = polygons
     after = np.arange(1, len(ids) + 1)
     after[starts[1:] - 1] = starts[:-1]
@@ -198,41 +203,48 @@ def _edges(polygons: Cells) -> Cells:
     return ends[:, 0], ends[:, 1], owners[first]
 
 
-def _body(mesh: Any, corners: tuple[Indices, ...], colour: Any = None, **look: Any) -> Body:
-    """Return triangles or pieces of lines, by their corners and the cells that these are of.
+def _body(
+    mesh: pv.PolyData,
+    corners: tuple[Indices, ...],
+    colour: Any = None,
+    **look: float,
+) -> Body:
+    """Return triangles or pieces of lines, given by their corners and their cells.
 
-    Where colours are those of cells, each has its own vertices.
+    With colours of cells, each has its own vertices.
     """
     ends, owners = corners[:-1], corners[-1]
     cells, points = np.stack(ends, axis=1), np.asarray(mesh.points, dtype=float)
     normals = mesh.point_data.active_normals
     if COLOURS in mesh.cell_data:
         colours = np.repeat(np.asarray(mesh.cell_data[COLOURS])[owners], cells.shape[1], axis=0)
-        used = cells.ravel()
+        vertices = cells.ravel()
         cells = np.arange(cells.size).reshape(cells.shape)
     else:
-        used, flat = np.unique(cells, return_inverse=True)
-        cells, colours = flat.reshape(cells.shape), mesh.point_data[COLOURS][used]
+        vertices, numbers = np.unique(cells, return_inverse=True)
+        cells, colours = numbers.reshape(cells.shape), mesh.point_data[COLOURS][vertices]
     if colour is not None:
-        colours = np.concatenate([np.tile(_bytes(colour), (len(used), 1)), colours[:, 3:]], axis=1)
+        colours = np.concatenate(
+            [np.tile(_bytes(colour), (len(vertices), 1)), colours[:, 3:]], axis=1
+        )
     is_face = len(ends) == 3
     faces, pieces = (np.zeros((0, k), np.intp) for k in (3, 2))
     return Body(
-        points[used],
+        points[vertices],
         np.asarray(colours),
         cells if is_face else faces,
         pieces if is_face else cells,
-        normals=None if normals is None else np.asarray(normals, dtype=float)[used],
+        normals=None if normals is None else np.asarray(normals, dtype=float)[vertices],
         **look,
     )
 
 
-def _plain(values: Any) -> tuple[float, ...]:
-    """Return numbers as Python's own."""
+def _plain(values: Iterable[float]) -> tuple[float, ...]:
+    """Return plain Python numbers."""
     return tuple(map(float, values))
 
 
-def _bytes(colour: Any) -> Bytes:
+def _bytes(colour: ArrayLike) -> Bytes:
     return np.rint(255 * np.asarray(colour)).astype(np.uint8)
 
 
@@ -259,11 +271,13 @@ def _labels(actor: Any) -> Iterator[Label]:
         )
 
 
-def _lights(renderer: Any) -> Iterator[Light]:
-    """Give the lights of a renderer; all are taken for distant ones."""
+def _lights(renderer: pv.Renderer) -> Iterator[Light]:
+    """Yield the lights of a renderer, all as distant ones."""
     for light in renderer.lights:
         if light.on:
-            way = np.subtract(light.position, light.focal_point)
-            way = np.array([0.0, 0.0, 1.0]) if light.is_headlight else way / np.linalg.norm(way)
+            direction = np.array([0.0, 0.0, 1.0])
+            if not light.is_headlight:
+                direction = np.subtract(light.position, light.focal_point)
+                direction /= np.linalg.norm(direction)
             color = light.intensity * np.asarray(light.diffuse_color.float_rgb)
-            yield Light(_plain(way), _plain(color), turns=not light.is_scene_light)
+            yield Light(_plain(direction), _plain(color), turns=not light.is_scene_light)

@@ -41,8 +41,8 @@ class FlowtexComponent:
     >>> plotter.close()
     """
 
-    def __init__(self, plotter: Any) -> None:
-        self._plotter = plotter
+    def __init__(self, plotter: pv.BasePlotter) -> None:
+        self._plotter: Any = plotter
         self._handles: list[FlowHandle] = []
 
     @accepts_options(FieldOptions, Appearance)
@@ -135,7 +135,7 @@ class FlowtexComponent:
         return shown.field, self._look_of(shown), bodies
 
     def _look_of(self, handle: FlowHandle) -> dict[str, Any]:
-        """Return arguments that give a view the same appearance."""
+        """Return the arguments that reproduce the appearance of a handle."""
         mapper, prop, image = handle.actor.mapper, handle.actor.prop, handle.scene.image
         name = handle.scene.scalar_name
         colours: dict[str, Any] = {"scalars": False, "color": prop.color}

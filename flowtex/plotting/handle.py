@@ -1,4 +1,4 @@
-"""One flow texture on a plotter: it carries changes of a scene to the graphics card."""
+"""One flow texture on a plotter, which transfers changes of a scene to the graphics card."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from flowtex.scene.options import NO_VALUE_COLOR, Appearance, FieldOptions
 from flowtex.scene.scene import Change, Scene, share_field
 
 #: A lit surface: dark sides stay bright enough to read the texture there.
-LIGHT: dict[str, Any] = {"ambient": AMBIENT_LIGHT, "diffuse": DIFFUSE_LIGHT}
+LIGHT = {"ambient": AMBIENT_LIGHT, "diffuse": DIFFUSE_LIGHT}
 
 _count = itertools.count(1)
 
@@ -159,12 +159,12 @@ class FlowHandle(AppearanceAttributes):
         self._structure.load_in_background(notify)
 
     @property
-    def mesh(self) -> Any:
+    def mesh(self) -> pv.PolyData:
         """PyVista mesh of the surface; of a large one, which has tiles, see :attr:`meshes`."""
         return self.meshes[0]
 
     @property
-    def meshes(self) -> list[Any]:
+    def meshes(self) -> list[pv.PolyData]:
         """PyVista meshes of the last picture; several if the surface is large."""
         return self._surface.meshes
 
@@ -198,7 +198,7 @@ class FlowHandle(AppearanceAttributes):
         self.show_scene(self.scene.showing(share_field(FieldOptions(**options).field(mesh))))
 
     def show_scene(self, scene: Scene) -> None:
-        """Take another scene with the same settings; if tracing fails, all stays as it is."""
+        """Show another scene with the same settings; if tracing fails, nothing changes."""
         try:
             textures = scene.textures
         except BaseException:
@@ -272,7 +272,7 @@ class FlowHandle(AppearanceAttributes):
     def _show_appearance(self, *anew: str) -> None:
         """Follow the appearance; direct changes of the actor stay.
 
-        What follows from the field is shown ``again`` where that is another one.
+        Names in ``anew`` are updated even if they have not changed, as for another field.
         """
         old, new = self._shown, self.scene.appearance
         self._shown = new
@@ -288,10 +288,10 @@ class FlowHandle(AppearanceAttributes):
         if differs("visible"):
             self.actor.SetVisibility(new.visible)
         if differs("lighting"):
-            prop.lighting = lit = self.scene.is_lit
-            usual = pv.global_theme.lighting_params
+            prop.lighting = is_lit = self.scene.is_lit
+            theme_lighting = pv.global_theme.lighting_params
             for name, value in LIGHT.items():
-                setattr(prop, name, value if lit else getattr(usual, name))
+                setattr(prop, name, value if is_lit else getattr(theme_lighting, name))
         on_map = ("coastlines", "graticule", "land", "lighting", "opacity")
         if self._map is not None and differs(*on_map):
             self._map.show()
@@ -317,29 +317,29 @@ class FlowHandle(AppearanceAttributes):
         self._show_bar_colours()
 
     def _show_bar(self) -> None:
-        """Have a legend of the present colours, or none."""
+        """Show a legend of the current colours, or none."""
         plotter, name = self._plotter, self.scene.scalar_name
         self._remove_bar(plotter)
         if name is None or not self.scene.appearance.has_bar:
             return
         title = self.scene.title_of(name)
-        bar = {"title": title, **SCALAR_BAR, **self._bar_options}
+        arguments = {"title": title, **SCALAR_BAR, **self._bar_options}
         renderers = plotter.renderers
         active = renderers.active_index
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(self._place)))
-        made = plotter.add_scalar_bar(mapper=self.actor.mapper, render=False, **bar)
-        if made is not None:  # there was one of this title
-            self._end_arranging = arrange_with(made, plotter.renderer, self._bar_options)
+        bar_actor = plotter.add_scalar_bar(mapper=self.actor.mapper, render=False, **arguments)
+        if bar_actor is not None:  # None if a bar with this title exists
+            self._end_arranging = arrange_with(bar_actor, plotter.renderer, self._bar_options)
         renderers.set_active_renderer(*np.atleast_1d(renderers.index_to_loc(active)))
-        self._bar_title = bar["title"]
+        self._bar_title = arguments["title"]
         self._show_bar_colours()
 
     @property
-    def _settings_of_bar(self) -> tuple[Any, ...]:
+    def _settings_of_bar(self) -> tuple[float, float, str]:
         return self.settings.strength, self.settings.contrast, self.settings.noise
 
     def _show_bar_colours(self) -> None:
-        """Give the bar the colours of the picture, which the texture draws towards the middle."""
+        """Show the mean colours of the picture in the bar, which the texture changes."""
         if self._bar_title is None or self._bar_title not in self._plotter.scalar_bars:
             return
         shown = self.actor.mapper.lookup_table

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkRenderingCore import vtkCamera
 
 from flowtex._util.array_types import Bools
 from flowtex.field import FlowField
@@ -19,7 +20,7 @@ from flowtex.scene.scene import Scene
 
 #: How much farther than the surface land is, as a share of the distance.
 LAND_FARTHER = 2e-4
-#: Pixels by which the globe is lower: coarse triangles sink by up to as many.
+#: Pixels by which the globe is lower: coarse triangles sink by up to this many.
 GLOBE_LOWER_PX = 0.5
 #: Nearest that the front of the globe is drawn, as a share of the farthest.
 NEAREST = 1e-3
@@ -28,9 +29,11 @@ GLOBE_CELLS = 180
 
 
 class MapOverlay(Overlay):
-    """What is drawn of the Earth with one flow, whose field has a projection."""
+    """The Earth behind one flow whose field has a projection."""
 
-    def __init__(self, actor: pv.Actor, renderer: Any, scene: Scene, surface: FlowSurface) -> None:
+    def __init__(
+        self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
+    ) -> None:
         super().__init__(actor, renderer, surface)
         self._scene, self._field = scene, scene.whole
         self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
@@ -38,7 +41,7 @@ class MapOverlay(Overlay):
         self.show()
 
     def show(self) -> None:
-        """Follow the appearance, and the level that is the whole of a large field."""
+        """Follow the appearance, and the coarsest level of a large field."""
         if self._field is not self._scene.whole:
             self._field, self._lines = self._scene.whole, {}
         self._clear()
@@ -50,9 +53,9 @@ class MapOverlay(Overlay):
                 self._add_lines(forms, stroke.width, stroke.color, stroke.opacity)
 
     def _forms_of(self, option: str) -> tuple[tuple[float, pv.PolyData], ...]:
-        """Return the lines of an option, from coarse to fine; all are made together, once.
+        """Return the lines of an option, from coarse to fine; all are made once, together.
 
-        Those of a small field are short, and there are none where no coast comes near it.
+        A field far from any coast has none.
         """
         has_globe = self._radius is not None
         if (option, has_globe) not in self._lines:
@@ -67,7 +70,7 @@ class MapOverlay(Overlay):
         """Draw cells without data, and the globe where the field does not cover it."""
         is_lit = self._scene.is_lit
         meshes = []
-        # Through a flow that is not opaque the background is seen, and no land.
+        # Behind a transparent flow there is the background instead of land.
         tiled = self._scene.pyramid is not None and self._scene.appearance.opacity == 1
         if (land := land_cells(self._field, tiled=tiled)).any():
             meshes.append((_cell_mesh(self._field, land), -LAND_FARTHER))
@@ -90,7 +93,7 @@ class MapOverlay(Overlay):
         super()._clear()
         self._radius = None
 
-    def _look(self, camera: Any) -> None:
+    def _look(self, camera: vtkCamera) -> None:
         if self._radius is None:
             return
         self._include_globe(camera, self._radius)
@@ -99,15 +102,15 @@ class MapOverlay(Overlay):
                 part.actor.SetScale(1 - GLOBE_LOWER_PX * self._horizon_pixel() / self._radius)
 
     def _horizon_pixel(self) -> float:
-        """Length that a pixel covers on the horizon, the farthest that is seen of the globe."""
+        """Return the length of a pixel on the horizon, the farthest visible point of the globe."""
         view, eye = self._surface.view, self._surface.view.eye
         if not eye[3]:
             return view.pixel
-        away = np.sqrt(max(float(eye[:3] @ eye[:3]) - (self._radius or 0.0) ** 2, 0.0))
-        return view.pixel * float(away / np.linalg.norm(eye[:3] - view.focus))
+        horizon = np.sqrt(max(float(eye[:3] @ eye[:3]) - (self._radius or 0.0) ** 2, 0.0))
+        return view.pixel * float(horizon / np.linalg.norm(eye[:3] - view.focus))
 
-    def _include_globe(self, camera: Any, radius: float) -> None:
-        """Let the camera see the globe, which is farther than the flow and has no bounds."""
+    def _include_globe(self, camera: vtkCamera, radius: float) -> None:
+        """Extend the clipping range to the globe, which has no bounds in VTK."""
         near, far = camera.GetClippingRange()
         matrix, view = pv.array_from_vtkmatrix(self._actor.GetMatrix()), read_camera(camera)
         depth = float(np.subtract(matrix[:3, 3], view.position) @ view.axes[2])
@@ -125,8 +128,8 @@ def _line_mesh(lines: MapLines) -> pv.PolyData:
 
 
 def _cell_mesh(field: FlowField, cells: Bools) -> pv.PolyData:
-    """Return some cells of a field's surface."""
+    """Return the mesh of ``cells`` of a field's surface."""
     faces = field.surface.nodes_of(cells)
-    used, numbers = np.unique(faces, return_inverse=True)
+    points, numbers = np.unique(faces, return_inverse=True)
     shape: Any = numbers.reshape(faces.shape)
-    return pv.PolyData.from_regular_faces(field.surface.points.reshape(-1, 3)[used], shape)
+    return pv.PolyData.from_regular_faces(field.surface.points.reshape(-1, 3)[points], shape)

@@ -1,7 +1,7 @@
-"""What is drawn over a flow and under it, as VTK actors that follow its own.
+"""Overlays above and below a flow, as VTK actors that follow the actor of the flow.
 
-They have its visibility and its place. Nothing of them can be picked, and no camera is fitted to
-them. Lines and dots have the same width in pixels everywhere.
+They have its visibility and its place, cannot be picked, and do not affect the bounds. Lines and
+dots have the same width in pixels everywhere.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkDataObject
+from vtkmodules.vtkRenderingCore import vtkCamera
 
 from flowtex._util.array_types import Floats
 from flowtex.rendering.map_overlay import SPACING_PX, USUAL_HEIGHT_PX, WIDTH_RANGE
@@ -21,7 +22,7 @@ from flowtex.rendering.vtk.mesh import FlowMapper
 
 
 class Part(NamedTuple):
-    """One actor: how it is nearer than the surface, its width in pixels, and forms of its mesh."""
+    """One actor, its share of nearness, its width in pixels, and forms of its mesh."""
 
     actor: pv.Actor
     nearer: float
@@ -29,10 +30,10 @@ class Part(NamedTuple):
     forms: tuple[tuple[float, pv.PolyData], ...] = ()
 
 
-#: How much nearer than the surface lines are, as a share of the distance: more than what a surface
-#: comes nearer over the width of a line when seen aslant.
+#: How much nearer than the surface lines are, as a share of the distance: more than an inclined
+#: surface comes nearer over the width of a line.
 LINES_NEARER = 1e-2
-#: How much nearer than others those are that are above them, as a share of that.
+#: Additional nearness of a line for each line below it, as a share of that.
 ABOVE_SHARE = 0.2
 #: Observers of a frame run by falling priority: this one after those that set the clipping range.
 LAST = -1.0
@@ -58,24 +59,24 @@ OTHER, SIDE = "flowtexOther", "flowtexSide"
 class Overlay:
     """Actors that follow the actor of a flow.
 
-    The ``surface`` tells how many pixels there are for one of the settings'.
+    The ``surface`` has the number of pixels for one of the settings.
     """
 
-    def __init__(self, actor: pv.Actor, renderer: Any, surface: FlowSurface) -> None:
+    def __init__(self, actor: pv.Actor, renderer: pv.Renderer, surface: FlowSurface) -> None:
         self._actor, self._renderer = actor, weakref.ref(renderer)
         self._surface = surface
         self._parts: list[Part] = []
-        this = weakref.WeakMethod(self._before_frame)
+        reference = weakref.WeakMethod(self._before_frame)
 
         def follow(caller: Any, event: str) -> None:
             del caller, event
-            if (method := this()) is not None:
+            if (method := reference()) is not None:
                 method()
 
         self._observed = renderer.AddObserver("StartEvent", follow, LAST)
 
     def close(self) -> None:
-        """Take everything out of the renderer."""
+        """Remove everything from the renderer."""
         self._clear()
         if (renderer := self._renderer()) is not None:
             renderer.RemoveObserver(self._observed)
@@ -91,7 +92,7 @@ class Overlay:
     ) -> None:
         """Add lines of a width in pixels, as meshes by the distances of their points.
 
-        Those that are ``above`` this many others hide them; without a number they let them through.
+        Lines ``above`` this many others hide them; without a number they are translucent.
         """
         nearer = LINES_NEARER * (1 + ABOVE_SHARE * (above or 0))
         variant = frozenset() if above is None else frozenset({"FLOWTEX_OPAQUE"})
@@ -102,7 +103,7 @@ class Overlay:
         if above is None:
             actor.ForceTranslucentOn()  # after the flow and its tiles
         else:
-            actor.ForceOpaqueOn()  # VTK mixes what is translucent, whatever lies above
+            actor.ForceOpaqueOn()  # VTK mixes translucent actors regardless of the order
         actor.prop.color, actor.prop.opacity = color, opacity
         actor.prop.lighting = False
 
@@ -135,7 +136,7 @@ class Overlay:
                 renderer.RemoveActor(part.actor)
         self._parts = []
 
-    def _look(self, camera: Any) -> None:
+    def _look(self, camera: vtkCamera) -> None:
         """Follow a camera that sees the flow."""
 
     def _before_frame(self) -> None:
@@ -167,8 +168,8 @@ class Overlay:
                 uniforms.SetUniform4f("flowtexViewport", viewport)
 
 
-def _depth_of_share(camera: Any) -> float:
-    """Change of the depth in clip space that brings a point nearer by its distance."""
+def _depth_of_share(camera: vtkCamera) -> float:
+    """Return the change of the depth in clip space that brings a point nearer by its distance."""
     near, far = camera.GetClippingRange()
     if camera.GetParallelProjection():
         return float(2 * camera.GetDistance() / (far - near))
@@ -176,7 +177,7 @@ def _depth_of_share(camera: Any) -> float:
 
 
 def piece_mesh(start: Floats, end: Floats) -> pv.PolyData:
-    """Return pieces of lines (N, 3) as the shader has them: four points for each.
+    """Return pieces of lines (N, 3) for the shader: four points for each.
 
     A piece whose ends are one is a dot.
     """
@@ -185,6 +186,6 @@ def piece_mesh(start: Floats, end: Floats) -> pv.PolyData:
     faces: Any = np.arange(len(points)).reshape(-1, 4)
     mesh = pv.PolyData.from_regular_faces(points, faces)
     mesh.point_data[OTHER] = other.astype(np.float32)
-    # What is to the left on the way there is to the right on the way back.
+    # Left and right change places at the other end.
     mesh.point_data[SIDE] = np.tile(np.array([1, -1, 2, -2], dtype=np.float32), len(start))
     return mesh

@@ -1,13 +1,14 @@
-"""Scalar bars as large as what is written on them, side by side at the foot of a view."""
+"""Scalar bars as large as their texts, side by side at the bottom of a view."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from vtkmodules.vtkRenderingCore import vtkTextRenderer
+from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
-#: A scalar bar that keeps out of the picture's way.
+#: A scalar bar at the left border of the picture.
 SCALAR_BAR: dict[str, Any] = {
     "fmt": "%.3g",
     "n_labels": 3,
@@ -41,10 +42,12 @@ POINTS = 72
 NAME = "flowtex"
 
 
-def arrange_with(bar: Any, renderer: Any, options: Mapping[str, Any]) -> Callable[[], None]:
+def arrange_with(
+    bar: vtkScalarBarActor, renderer: Any, options: Mapping[str, Any]
+) -> Callable[[], None]:
     """Place a bar beside the others of a renderer whenever it draws, unless options place it.
 
-    Returns what ends it.
+    Returns a function that ends this.
     """
     if not any(name in options for name in BEHIND):
         for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
@@ -79,7 +82,9 @@ def _arrange(renderer: Any) -> None:
         x, row = x + gap + wide, max(row, high + 2 * title + line / 2)
 
 
-def _fit(bar: Any, points: float, view: tuple[int, int], dpi: int) -> tuple[float, float, float]:
+def _fit(
+    bar: vtkScalarBarActor, points: float, view: tuple[int, int], dpi: int
+) -> tuple[float, float, float]:
     """Set the sizes of a bar's texts; return its width, its height, and that of the title."""
     title, labels = bar.GetTitleTextProperty(), bar.GetLabelTextProperty()
     labels.SetFontSize(round(points))
@@ -102,8 +107,8 @@ def _fit(bar: Any, points: float, view: tuple[int, int], dpi: int) -> tuple[floa
     return whole, max(HEIGHT_SHARE * view[1], LEAST_LINES * em), up
 
 
-def _size(text: Any, words: str, dpi: int) -> tuple[int, int]:
-    """Width and height of a text in pixels."""
+def _size(text: vtkTextProperty, words: str, dpi: int) -> tuple[int, int]:
+    """Return the width and height of a text in pixels."""
     box = [0, 0, 0, 0]
     vtkTextRenderer.GetInstance().GetBoundingBox(text, words, box, dpi)
     return box[1] - box[0] + 1, box[3] - box[2] + 1

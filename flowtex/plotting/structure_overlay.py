@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
-from typing import Any
 
 import numpy as np
 import pyvista as pv
@@ -26,18 +25,20 @@ from flowtex.rendering.vtk import FlowSurface
 from flowtex.scene.scene import Scene
 from flowtex.trace.structure import CriticalPoints
 
-#: Structures are found one after the other, beside what else goes on.
+#: Structures are found one after the other, in the background.
 _pool = pool(1, "flowtex-structure")
 
 
 class StructureOverlay(Overlay):
-    """What the settings ask for of the structure of one flow."""
+    """The structure of one flow, as the settings request it."""
 
-    def __init__(self, actor: pv.Actor, renderer: Any, scene: Scene, surface: FlowSurface) -> None:
+    def __init__(
+        self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
+    ) -> None:
         super().__init__(actor, renderer, surface)
         self._shown: tuple[int, ...] = ()
         self._notify: Callable[[], None] | None = None
-        self._asked: tuple[Any, ...] = ()
+        self._request: tuple[object, ...] = ()
         self._found: Future[None] | None = None
         self._scene = scene
         self.show(scene)
@@ -52,7 +53,7 @@ class StructureOverlay(Overlay):
         return self._found is not None and not self._found.done()
 
     @property
-    def _wanted(self) -> tuple[int, ...]:
+    def _key(self) -> tuple[int, ...]:
         scene, settings = self._scene, self._scene.settings
         counts = settings.critical_points, settings.separatrices, int(settings.nullclines)
         return id(scene.field), scene.step, *counts
@@ -60,27 +61,27 @@ class StructureOverlay(Overlay):
     def show(self, scene: Scene) -> None:
         """Follow the settings and the time of a scene."""
         self._scene = scene
-        if self._shown != self._wanted:
+        if self._shown != self._key:
             self._clear()
             self._shown = ()
             self._show()
 
     def _before_frame(self) -> None:
-        if self._shown != self._wanted:
+        if self._shown != self._key:
             self._show()
         super()._before_frame()
 
     def _show(self) -> None:
-        """Draw what is wanted; in the background once it is found."""
+        """Draw the requested structure, or find it in the background first."""
         scene, settings = self._scene, self._scene.settings
-        asked = (scene.step, settings.critical_points, settings.separatrices)
-        if any(asked[1:]) and self._notify is not None and not scene.structure.has(*asked):
-            if self._asked != (scene.structure, asked):
-                self._asked, notify = (scene.structure, asked), self._notify
-                self._found = _pool.submit(scene.structure.find, *asked)
+        request = (scene.step, settings.critical_points, settings.separatrices)
+        if any(request[1:]) and self._notify is not None and not scene.structure.has(*request):
+            if self._request != (scene.structure, request):
+                self._request, notify = (scene.structure, request), self._notify
+                self._found = _pool.submit(scene.structure.find, *request)
                 self._found.add_done_callback(lambda _: notify())
             return
-        self._shown = self._wanted
+        self._shown = self._key
         if settings.nullclines:
             self._add_nullclines(scene.structure.nullclines(scene.step))
         if settings.separatrices:
@@ -101,15 +102,15 @@ class StructureOverlay(Overlay):
 
     def _add_paths(self, by_name: Mapping[str, Sequence[Floats]]) -> None:
         outer, inner = LINE_PX
-        every = [path for paths in by_name.values() for path in paths]
-        self._add_pieces(every, outer, RIM_COLOR, RIM_OPACITY, above=0)
+        all_paths = [path for paths in by_name.values() for path in paths]
+        self._add_pieces(all_paths, outer, RIM_COLOR, RIM_OPACITY, above=0)
         for above, (name, color) in enumerate(LINE_COLORS.items(), 1):
             self._add_pieces(by_name[name], inner, color, above=above)
 
     def _add_points(self, points: CriticalPoints) -> None:
         outer, inner, middle = DOT_PX
-        every = [point.position[None] for point in points]
-        self._add_pieces(every, outer, RIM_COLOR, RIM_OPACITY, above=5)
+        all_dots = [point.position[None] for point in points]
+        self._add_pieces(all_dots, outer, RIM_COLOR, RIM_OPACITY, above=5)
         for kind, mark in KIND_MARKS.items():
             dots = [point.position[None] for point in points.of_kind(kind)]
             self._add_pieces(dots, inner, mark.color, above=6)

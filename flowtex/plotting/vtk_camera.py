@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from vtkmodules.vtkRenderingCore import vtkCamera, vtkRenderer
+
 from flowtex.field import FlowField
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 
 
-def read_camera(vtk_camera: Any) -> Camera:
-    """Return what a VTK camera has, such as ``plotter.camera``; it must see something."""
+def read_camera(vtk_camera: vtkCamera) -> Camera:
+    """Return the camera of a VTK camera, such as ``plotter.camera``, that sees something."""
     return Camera(
         position=vtk_camera.GetPosition(),
         focal_point=vtk_camera.GetFocalPoint(),
@@ -20,8 +22,8 @@ def read_camera(vtk_camera: Any) -> Camera:
     )
 
 
-def apply_camera(camera: Camera, vtk_camera: Any) -> None:
-    """Put a VTK camera where another one stands."""
+def apply_camera(camera: Camera, vtk_camera: vtkCamera) -> None:
+    """Give a VTK camera the attributes of another camera."""
     vtk_camera.SetPosition(*camera.position)
     vtk_camera.SetFocalPoint(*camera.focal_point)
     vtk_camera.SetViewUp(*camera.up)
@@ -42,8 +44,8 @@ def look(
 ) -> None:
     """Point a plotter's camera at a field; :meth:`Camera.fit` has the parameters.
 
-    PyVista leaves a camera that is set as it is, also where it cuts off what is added later; so
-    the clipping range follows the bounds of what is there, and is otherwise left alone.
+    PyVista does not change a camera that is set, even if it clips objects that are added later; so
+    the clipping range follows the bounds of the objects, and otherwise stays.
     """
     aspect = subplot_aspect(plotter)
     camera = Camera.fit(field.surface, aspect, zoom=zoom, focus=focus, margin=margin)
@@ -52,19 +54,19 @@ def look(
     renderer = plotter.renderer
     bounds = renderer.ComputeVisiblePropBounds()
 
-    def follow_bounds(caller: Any, _: str) -> None:
+    def follow_bounds(caller: vtkRenderer, _: str) -> None:
         nonlocal bounds
-        now = caller.ComputeVisiblePropBounds()
-        if now != bounds:
+        new_bounds = caller.ComputeVisiblePropBounds()
+        if new_bounds != bounds:
             caller.ResetCameraClippingRange()
-        bounds = now
+        bounds = new_bounds
 
     renderer.reset_camera_clipping_range()
     renderer.AddObserver("StartEvent", follow_bounds)
 
 
 def subplot_aspect(plotter: Any) -> float:
-    """Width over height of the part of the window that the present subplot fills."""
+    """Return width over height of the part of the window that the present subplot fills."""
     width, height = plotter.window_size
     left, bottom, right, top = plotter.renderer.GetViewport()
     return float(width * (right - left)) / max(float(height * (top - bottom)), 1.0)

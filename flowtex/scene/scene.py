@@ -131,8 +131,8 @@ class Scene:
         field_names = [name for name in FieldOptions.__dataclass_fields__ if name in changes]
         if field_names:
             msg = (
-                f"beside has {', '.join(field_names)}, which selects data; both views show the same "
-                "field, so expected settings"
+                f"beside has {', '.join(field_names)}, which selects data; both views show the "
+                "same field, so expected settings"
             )
             raise FieldError(msg)
         field, settings = field or self.field, dict(self.settings)

@@ -1,7 +1,7 @@
-"""Legends, time, scale bar and title, written on pictures that are drawn already.
+"""Legends, time, scale bar and title, written on finished pictures.
 
-Each stands on its own plate in a corner. What has no room is left out, the title first and the
-legend last. Text grows with the picture, so that small and large ones look alike.
+Each has its own plate in a corner. Plates without room are left out, the title first and the legend
+last. Text grows with the picture, so that small and large ones look alike.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from flowtex.rendering.structure_marks import (
     MIDDLE_COLOR,
     NULLCLINE_COLORS,
     RIM_COLOR,
+    KindMark,
 )
 from flowtex.scene.scene import Scene
 
@@ -46,14 +47,14 @@ SCALE_BAR_WIDTH = 0.2
 PADDING, GAP, RAMP_WIDTH, RAMP_HEIGHT, LINE = 0.4, 0.6, 9.0, 0.65, 0.1
 #: How opaque a plate is, and the lightness from which a background counts as light.
 OPACITY, LIGHT_FROM = 0.8, 0.5
-#: Digits of the ends of a legend: as many as tell them apart.
+#: Digits of the values of a legend: the fewest that distinguish them.
 DIGITS = range(3, 9)
 #: Number from which on the text of one has a power of ten.
 LARGE = 1e6
 #: Share of the range by which a number may lie beyond an end: less than a pixel.
 BEYOND = 0.004
-#: A unit of time with more letters than this is left out where room is scarce, which it is where
-#: the time would have more than this share of the picture's width.
+#: Length above which a unit of time is left out, if the time would take more than this share of
+#: the picture's width.
 UNIT_LENGTH, TIME_WIDTH = 8, 0.4
 #: Widest legend with all of its values, as a share of the width of the picture.
 LEGEND_WIDTH = 0.6
@@ -99,11 +100,11 @@ def plates(
     label: str = "",
     legend: bool = True,
 ) -> list[Plate]:
-    """Return what is written on a picture, the most important first.
+    """Return the plates on a picture, the most important first.
 
-    Size is the width and height of the picture in pixels, and label what the title says beside the
-    name of the field. Plates are light on a light background. There is no legend where the colours
-    tell nothing.
+    ``size`` is the width and height of the picture in pixels, and ``label`` is added to the name of
+    the field in the title. Plates are light on a light background. There is no legend for an image
+    or a plain surface.
     """
     width, height = size
     writer = _Writer(size, background)
@@ -147,7 +148,7 @@ class _Writer:
         self._plate, self._ink = ("white", "black") if is_light else ("black", "white")
 
     def texts(self, text: str, room: tuple[str, ...] = ()) -> Iterator[Image.Image]:
-        """Yield a plate with one line, as wide as the widest that may stand there."""
+        """Yield a plate with one line, with room for the widest of ``room``."""
         if text:
             width = max(map(self._width, (text, *room)))
             image, draw = self._blank(width, self._line)
@@ -167,7 +168,7 @@ class _Writer:
                     yield image
 
     def scale_bars(self, scene: Scene, camera: Camera) -> Iterator[Image.Image]:
-        """Yield a round length, where it is the same all over the picture."""
+        """Yield a scale bar of a round length, if the scale is the same in the whole picture."""
         frame = scene.whole.surface.frame
         if frame is None or not camera.parallel:
             return
@@ -192,7 +193,7 @@ class _Writer:
         yield image
 
     def legends(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield name, colours and round values, and with every second of these."""
+        """Yield a legend with round values, and one with every second of these."""
         name, settings, appearance = scene.scalar_name, scene.settings, scene.appearance
         if name is None or settings.show_level or not appearance.visible:
             return
@@ -204,11 +205,11 @@ class _Writer:
         yield self._legend(title, table, marks[::2], scene.beyond)
 
     def structure(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield what is marked of the structure: critical points with dots, and lines."""
+        """Yield a legend of the marks in the picture: critical points and lines."""
         structure, settings, step = scene.structure, scene.settings, scene.step
         count, saddles = settings.critical_points, settings.separatrices
         points = structure.points(step)[:count] if count else ()
-        rows: dict[str, Any] = {
+        rows: dict[str, KindMark | str] = {
             kind: mark
             for kind, mark in KIND_MARKS.items()
             if any(point.kind == kind for point in points)
@@ -280,8 +281,8 @@ class _Writer:
     def _px(self, heights: float) -> int:
         return max(round(heights * self._em), 1)
 
-    def _blank(self, width: int, height: int) -> tuple[Image.Image, Any]:
-        """Return a plate with so much room, and what draws on it."""
+    def _blank(self, width: int, height: int) -> tuple[Image.Image, ImageDraw.ImageDraw]:
+        """Return a plate with room for a width and height, and the object that draws on it."""
         size = (width + 2 * self._pad, height + 2 * self._pad)
         image = Image.new("RGBA", size, self._plate)
         image.putalpha(round(255 * OPACITY))
@@ -291,8 +292,8 @@ class _Writer:
         left, _, right, _ = self._font.getbbox(text)
         return math.ceil(right - left)
 
-    def _write(self, draw: Any, x: int, y: int, text: str) -> None:
-        left = self._font.getbbox(text)[0]  # a letter may begin beside its place
+    def _write(self, draw: ImageDraw.ImageDraw, x: int, y: int, text: str) -> None:
+        left = self._font.getbbox(text)[0]  # a letter may begin beside its position
         draw.text((self._pad + x - left, self._pad + y), text, self._ink, self._font)
 
 
@@ -302,18 +303,18 @@ def _font(height: int) -> ImageFont.FreeTypeFont:
     from matplotlib import get_data_path
 
     path = Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
-    # The layout that every Pillow has.
+    # Every Pillow has the basic layout.
     return ImageFont.truetype(path, height, layout_engine=ImageFont.Layout.BASIC)
 
 
 def _printable(text: str) -> str:
-    """Return a text in one line, without what cannot be drawn."""
+    """Return a text in one line, without unprintable characters."""
     return "".join(letter if letter.isprintable() else " " for letter in text).strip()
 
 
-def _apart(one: Plate, other: Plate, gap: int) -> bool:
+def _apart(plate: Plate, other: Plate, gap: int) -> bool:
     """Return whether there is a gap between two plates."""
-    (left, top, right, bottom), (to_left, above, to_right, below) = one.box, other.box
+    (left, top, right, bottom), (to_left, above, to_right, below) = plate.box, other.box
     return max(to_left - right, left - to_right, above - bottom, top - below) >= gap
 
 
@@ -326,18 +327,18 @@ def _number_text(value: float, digits: int) -> str:
 
 
 def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[float, str]]:
-    """Return three or more round values in a range, if there are, and their shares of it.
+    """Return three or more round values in a range, if possible, and their shares of it.
 
     They are the ends of the range if fewer than two are in it.
     """
     from matplotlib.ticker import LogLocator, MaxNLocator
 
-    where = np.log10 if log_scale else np.asarray
+    scaled = np.log10 if log_scale else np.asarray
     slack = 0.0 if log_scale else BEYOND * (high - low)
     values = np.empty(0)
     for most in (3, 4, 5):
-        evenly = MaxNLocator(most, steps=[1, 2, 2.5, 5, 10])
-        locator = LogLocator(numticks=4) if log_scale else evenly
+        even_locator = MaxNLocator(most, steps=[1, 2, 2.5, 5, 10])
+        locator = LogLocator(numticks=4) if log_scale else even_locator
         values = np.asarray(locator.tick_values(low, high))
         values = values[(values >= low - slack) & (values <= high + slack)]
         if len(values) >= 3:
@@ -348,13 +349,13 @@ def _value_marks(low: float, high: float, *, log_scale: bool) -> list[tuple[floa
         texts = [_number_text(value, digits) for value in values]
         if len(set(texts)) == len(texts):
             break
-    ends = where([low, high])
-    shares = (where(values) - ends[0]) / max(ends[1] - ends[0], float(np.finfo(float).tiny))
+    ends = scaled([low, high])
+    shares = (scaled(values) - ends[0]) / max(ends[1] - ends[0], float(np.finfo(float).tiny))
     return list(zip(map(float, shares), texts, strict=True))
 
 
 def time_text(field: FlowField, time: float, longest_unit: int = UNIT_LENGTH) -> str:
-    """Return a time of a field: its date, or with decimals that tell its steps apart.
+    """Return a time of a field: its date, or a number that distinguishes its steps.
 
     A unit is shown up to this length.
     """

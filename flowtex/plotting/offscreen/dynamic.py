@@ -1,4 +1,4 @@
-"""A flow in HoloViews, drawn again for the range and the size of the plot that shows it."""
+"""A flow in HoloViews, redrawn for the range and the size of its plot."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def dynamic_map(
     supersampling: int = 1,
     **options: Any,
 ) -> Any:
-    """Return a flat flow as a HoloViews element that is drawn for what its plot shows.
+    """Return a flat flow as a HoloViews element that is redrawn for the range of its plot.
 
     The flow is redrawn for each range and size of the plot, so that its texture stays sharp. A
     field with several times has the dimension ``time``, for which HoloViews and Panel show a
@@ -61,22 +61,22 @@ def dynamic_map(
         raise FieldError(msg) from error
     from matplotlib.figure import Figure
 
-    # What matplotlib's axes show is what a plot of HoloViews shows.
+    # Matplotlib's axes stand for the plot of HoloViews.
     figure = Figure()
     ax = figure.add_axes((0, 0, 1, 1), facecolor="none")
     image = axes(ax, mesh, clock=clock, supersampling=supersampling, **options)
     left, right, bottom, top = image.get_extent()
     field = image.flow
 
-    def draw(*chosen: float, **seen: Any) -> Any:
-        x, y = seen["x_range"] or (left, right), seen["y_range"] or (bottom, top)
-        size = seen["width"] or FIRST_SIZE[0], seen["height"] or FIRST_SIZE[1]
+    def draw(*moment: float, **plot: Any) -> Any:
+        x, y = plot["x_range"] or (left, right), plot["y_range"] or (bottom, top)
+        size = plot["width"] or FIRST_SIZE[0], plot["height"] or FIRST_SIZE[1]
         # The pixels of a plot are the page's, of which the screen may have several.
-        figure.set_dpi(USUAL_DPI * seen["scale"])
+        figure.set_dpi(USUAL_DPI * plot["scale"])
         figure.set_size_inches(size[0] / USUAL_DPI, size[1] / USUAL_DPI)
         ax.set(xlim=sorted(x), ylim=sorted(y))
-        if chosen:
-            image.time = float(chosen[0])
+        if moment:
+            image.time = float(moment[0])
         pixels = image.make_image(None)[0]
         bounds = (min(x), min(y), max(x), max(y))
         return hv.RGB(pixels[::-1], bounds=bounds, label=field.name)

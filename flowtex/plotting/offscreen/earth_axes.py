@@ -1,4 +1,4 @@
-"""Axes of maps: the unit that they count in, ticks in degrees, and the projections of cartopy."""
+"""Axes of maps: their unit, ticks in degrees, and the projections of cartopy."""
 
 from __future__ import annotations
 
@@ -34,29 +34,29 @@ DegreeText = Callable[..., str]
 
 @dataclass(frozen=True)
 class AxesUnit:
-    """What axes count in: a position of the map is ``scale * value + offset``, of x and y."""
+    """Unit of axes: a position of the map is ``scale * value + offset``, of x and y."""
 
     scale: tuple[float, float] = (1.0, 1.0)
     offset: tuple[float, float] = (0.0, 0.0)
 
-    def on_map(self, values: Any) -> Floats:
+    def on_map(self, values: Floats) -> Floats:
         """Return positions (..., 2) on the map of values of the axes."""
         return np.asarray(values * np.array(self.scale) + self.offset)
 
-    def on_axes(self, positions: Any) -> Floats:
+    def on_axes(self, positions: Floats) -> Floats:
         """Return values (..., 2) of the axes of positions on the map."""
         return np.asarray((np.asarray(positions) - self.offset) / self.scale)
 
 
 def is_geo(ax: Axes) -> bool:
-    """Whether axes are cartopy's."""
+    """Return whether axes are cartopy's."""
     return hasattr(ax, "projection") and hasattr(ax.projection, "proj4_init")
 
 
 def projection_of_axes(ax: Any) -> tuple[str, AxesUnit]:
-    """Return the projection of cartopy's axes, as PROJ takes it, and what they count in.
+    """Return the projection of cartopy's axes, as PROJ takes it, and their unit.
 
-    Some count in degrees: what they show is a plate carrée in metres.
+    Axes in degrees show a plate carrée in metres.
     """
     text = str(ax.projection.proj4_init)
     if ax.projection.is_projected:
@@ -70,7 +70,7 @@ def projection_of_axes(ax: Any) -> tuple[str, AxesUnit]:
 
 
 def unit_of(projection: Projection | None) -> AxesUnit:
-    """Return what straight axes count in: degrees on a plate carrée, else the unit of the data."""
+    """Return the unit of straight axes: degrees on a plate carrée, else that of the data."""
     if projection is None or projection.name != "platecarree":
         return AxesUnit()
     lon, standard = projection.center
@@ -90,7 +90,7 @@ def label_degrees(ax: Axes, projection: Projection, unit: AxesUnit) -> None:
             axis.set_major_formatter(FuncFormatter((longitude_text, latitude_text)[number]))
 
 
-def longitude_text(degrees: float, position: Any = None) -> str:
+def longitude_text(degrees: float, position: int | None = None) -> str:
     """Return a longitude as ``"30°E"``."""
     del position
     turned = (degrees + 180.0) % 360.0 - 180.0
@@ -98,7 +98,7 @@ def longitude_text(degrees: float, position: Any = None) -> str:
     return f"{abs(turned):.6g}°{'' if half or abs(turned) < 1e-6 else 'E' if turned > 0 else 'W'}"
 
 
-def latitude_text(degrees: float, position: Any = None) -> str:
+def latitude_text(degrees: float, position: int | None = None) -> str:
     """Return a latitude as ``"60°N"``."""
     del position
     return f"{abs(degrees):.6g}°{'' if abs(degrees) < 1e-6 else 'N' if degrees > 0 else 'S'}"
@@ -111,45 +111,45 @@ def _room(axis: Any) -> int:
 
 
 def _step(degrees: float, most: float) -> float:
-    """Return the degrees between ticks of which there is room for so many."""
+    """Return the degrees between ticks, of which ``most`` have room."""
     return next((step for step in TICKS[::-1] if degrees / step <= most), TICKS[0])
 
 
 class _Border:
-    """Where meridians meet the lower border of axes (0), or parallels the left one (1)."""
+    """Crossings of meridians with the lower border of axes (0), or parallels with the left (1)."""
 
     def __init__(self, ax: Axes, projection: Projection, number: int) -> None:
         self._ax, self._projection, self._number = ax, projection, number
         self._find = lru_cache(maxsize=1)(self._crossings)  # each tick asks
 
     def crossings(self) -> tuple[Floats, Floats, DegreeText]:
-        """Return the places along the border, the degrees there, and what writes them."""
+        """Return the places along the border, their degrees, and the function for their text."""
         axis = (self._ax.xaxis, self._ax.yaxis)[self._number]
         most = _room(axis)
         return self._find((self._ax.get_xlim(), self._ax.get_ylim()), most)
 
-    def text(self, x: float, position: Any = None) -> str:
+    def text(self, x: float, position: int | None = None) -> str:
         """Return the degrees at the nearest crossing."""
         del position
         places, values, text = self.crossings()
         return text(values[np.argmin(np.abs(places - x))]) if len(places) else ""
 
     def _crossings(
-        self, both: tuple[tuple[float, float], tuple[float, float]], most: int
+        self, axis_limits: tuple[tuple[float, float], tuple[float, float]], most: int
     ) -> tuple[Floats, Floats, DegreeText]:
-        limits = np.array(both)
+        limits = np.array(axis_limits)
         (start, end), (border, other) = limits[self._number], limits[1 - self._number]
         along, inwards = np.linspace(start, end, ALONG), np.linspace(border, other, INWARDS)
         grid = np.zeros((ALONG, INWARDS, 3))
         grid[..., self._number], grid[..., 1 - self._number] = along[:, None], inwards
         lon, lat = self._projection.lonlat(grid)
-        # Beside a map with an outline PROJ returns places of the other side.
-        back = self._projection.positions(lon, lat)
+        # Outside of a map with an outline, PROJ returns places of the other side.
+        mapped_back = self._projection.positions(lon, lat)
         with np.errstate(invalid="ignore"):
-            known = np.linalg.norm(back - grid, axis=-1) <= NEAR * np.ptp(limits)
+            on_map = np.linalg.norm(mapped_back - grid, axis=-1) <= NEAR * np.ptp(limits)
         # A map with an outline begins further in.
-        first, some = (np.arange(ALONG), np.argmax(known, axis=1)), known.any(axis=1)
-        along, lon, lat = along[some], lon[first][some], lat[first][some]
+        first, has_place = (np.arange(ALONG), np.argmax(on_map, axis=1)), on_map.any(axis=1)
+        along, lon, lat = along[has_place], lon[first][has_place], lat[first][has_place]
         if len(along) < 2:
             return np.zeros(0), np.zeros(0), longitude_text
         steps = np.diff(lat)

@@ -1,7 +1,7 @@
 """Movies in files, written picture by picture: MP4 by PyAV, GIF and animated WebP by Pillow.
 
-The pictures of an MP4 are encoded as they come: H.264 as every browser plays it, with matrix,
-primaries, curve and range of the colours in the file, so that players show those that were drawn.
+The pictures of an MP4 are encoded one by one: H.264 as every browser plays it, with matrix,
+primaries, curve and range of the colours in the file, so that players show the original colours.
 Pillow takes all pictures at once, so they wait in a temporary file on the disk.
 """
 
@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from flowtex._util.extras import install_extra
 from flowtex._util.progress import Stopped
 from flowtex._util.whole_file import WholeFile
 from flowtex.errors import FieldError
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 Size = tuple[int, int]
 
@@ -87,17 +90,17 @@ class MP4Encoder:
         self._movie.mux(self._stream.encode(frame))
 
     def finish(self, cancelled: Callable[[], bool]) -> None:
-        """Write what is left to write."""
+        """Write the remaining packets."""
         del cancelled
         self._movie.mux(self._stream.encode(None))
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._movie.close()
 
 
 def _pyav() -> Any:
-    """Return PyAV, which must be there and know H.264."""
+    """Return PyAV; raise an error if it is missing or has no H.264."""
     try:
         import av
     except ModuleNotFoundError as error:
@@ -128,7 +131,7 @@ class PillowEncoder:
         self._spool = tempfile.TemporaryFile()  # noqa: SIM115 closed by close()
 
     def add(self, picture: Bytes) -> None:
-        """Keep a picture."""
+        """Store a picture."""
         if (self._count + 1) * picture.shape[0] * picture.shape[1] > PILLOW_MAX_PIXELS:
             most = f"{PILLOW_MAX_PIXELS:,} pixels in all"
             msg = f"a {self._format} can have at most {most}; write an MP4, or a smaller movie"
@@ -149,23 +152,23 @@ class PillowEncoder:
             self._save(pictures, unit=1, quality=self._quality, method=2)
 
     def close(self) -> None:
-        """Let go of the pictures."""
+        """Remove the temporary file."""
         self._spool.close()
 
-    def _picture(self, number: int) -> Any:
+    def _picture(self, number: int) -> Image.Image:
         from PIL import Image
 
         width, height = self._size
         self._spool.seek(number * width * height * 3)
         return Image.frombytes("RGB", self._size, self._spool.read(width * height * 3))
 
-    def _pictures(self, cancelled: Callable[[], bool]) -> Iterator[Any]:
+    def _pictures(self, cancelled: Callable[[], bool]) -> Iterator[Image.Image]:
         for number in range(self._count):
             if cancelled():
                 raise Stopped
             yield self._picture(number)
 
-    def _save(self, pictures: Iterator[Any], unit: int, **options: Any) -> None:
+    def _save(self, pictures: Iterator[Image.Image], unit: int, **options: Any) -> None:
         """Save pictures whose durations are whole units of this many milliseconds."""
         ends = [round(1000 * n / self._fps / unit) * unit for n in range(self._count + 1)]
         durations = [after - before for before, after in pairwise(ends)]
@@ -179,8 +182,8 @@ class PillowEncoder:
             **options,
         )
 
-    def _palette(self) -> Any:
-        """Make one palette of pictures from the whole movie, seen coarsely."""
+    def _palette(self) -> Image.Image:
+        """Return an image with one palette for pictures from the whole movie."""
         from PIL import Image
 
         chosen = np.linspace(0, self._count - 1, min(self._count, PALETTE_PICTURES)).round()
@@ -193,23 +196,25 @@ class PillowEncoder:
 
 
 def default_fps(path: str | Path) -> float:
-    """Return frames in a second where none are requested; a GIF counts whole hundredths."""
+    """Return the default frames per second; a GIF counts in hundredths of a second."""
     return 20.0 if checked_path("path", path).suffix.lower() == ".gif" else 30.0
 
 
 def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT_QUALITY) -> None:
-    """Refuse a movie that cannot be written, before anything is drawn.
+    """Check that a movie can be written, before anything is drawn.
 
-    The parameters are those of :class:`MovieWriter`. Raises a MovieError, whose text says how it
-    can be, and for an MP4 without PyAV a ModuleNotFoundError with the command that installs it.
+    The parameters are those of :class:`MovieWriter`. Raises a MovieError with the remedy, and for
+    an MP4 without PyAV a ModuleNotFoundError with the command that installs it.
     """
     path = checked_target(path)
     suffix = path.suffix.lower()
     width, height = checked_size(size, low=0)
     shown = f"size is {width} x {height}"
     if suffix not in FORMATS:
-        what = f"{path.suffix!r} is not a movie format" if suffix else "the file name has no suffix"
-        msg = f"{path}: {what}; expected {', '.join(FORMATS)}"
+        fault = (
+            f"{path.suffix!r} is not a movie format" if suffix else "the file name has no suffix"
+        )
+        msg = f"{path}: {fault}; expected {', '.join(FORMATS)}"
     elif not (is_number(quality) and 1 <= quality <= 100):
         msg = f"quality is {quality!r}; expected a number from 1 to 100, such as {DEFAULT_QUALITY}"
     elif not (is_number(fps) and fps > 0):
@@ -233,7 +238,7 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
 
 
 class MovieWriter:
-    """Takes pictures and makes a file of them, which is there whole or not at all.
+    """Writes pictures to a file, which exists completely or not at all.
 
     The file is ``.mp4``, with even sides in pixels, ``.gif``, with at most 50 frames in a second,
     or ``.webp``. The higher the quality, 1 to 100, the truer and the larger; a GIF has this many
@@ -253,7 +258,7 @@ class MovieWriter:
             raise
 
     def add(self, picture: Bytes) -> None:
-        """Take the next picture, (H, W, 3) uint8.
+        """Add the next picture, (H, W, 3) uint8.
 
         Raises a MovieError when its size is not that of the movie.
         """
@@ -265,7 +270,7 @@ class MovieWriter:
         self._encoder.add(picture)
 
     def finish(self, cancelled: Callable[[], bool]) -> None:
-        """Write what is left to write, and put the file in its place.
+        """Complete the file, and put it in its place.
 
         Raises :class:`Stopped` when ``cancelled()`` became true before.
         """
@@ -276,7 +281,7 @@ class MovieWriter:
         self._file.keep()
 
     def abandon(self) -> None:
-        """Leave nothing behind; after :meth:`finish` there is nothing to do."""
+        """Remove an incomplete file; does nothing after :meth:`finish`."""
         try:
             self._encoder.close()
         except OSError:  # a full disk: it has failed before, and the file goes

@@ -1,4 +1,4 @@
-"""Flat flows in data coordinates: what a picture shows, and matplotlib axes that draw a flow."""
+"""Flat flows in data coordinates: the extent of a picture, and matplotlib axes with a flow."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap, LogNorm, Normalize
+from matplotlib.backend_bases import RendererBase
+from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
 from matplotlib.image import AxesImage
 from PIL import Image
 
@@ -41,13 +42,13 @@ from flowtex.scene.scene import Scene
 #: Left, right, bottom and top.
 Extent = tuple[float, float, float, float]
 
-#: Ends of a colour bar beyond which values lie, below and above, in matplotlib's words.
+#: Matplotlib's ``extend`` of a colour bar, by whether values lie below and above its ends.
 EXTENDED = {(False, True): "max", (True, False): "min", (True, True): "both"}
 #: Kind of axes, and names of the scales of usual ones.
 LINEAR = ("rectilinear", "linear", "linear")
-#: Dots per inch at which a grain has the pixels that the settings speak of.
+#: Dots per inch at which a grain has the pixels of the settings.
 USUAL_DPI = 100.0
-#: Longest side of what is drawn where the scales of the axes differ, in pixels.
+#: Longest side of the drawn picture where the scales of the axes differ, in pixels.
 LONGEST_SIDE_PX = 8192
 
 
@@ -219,12 +220,12 @@ class FlowImage(AxesImage):
             self._unit = unit_of(projection)
         surface = scene.whole.surface
         self._frame = frame = _frame(surface)
-        # The scene keeps alive what each drawing shares with it.
+        # The scene keeps alive the data that each drawing shares with it.
         self._options = replace(options, field=FieldOptions())
         self._flow = scene.field
         self._scales: AxesScales | None = None
         self._supersampling, self._clock = supersampling, 0.0
-        self._shown: tuple[Any, ...] = ()
+        self._shown: tuple[object, ...] = ()
         self._picture = np.zeros((1, 1, 4), np.uint8)
         middle, half = frame @ surface.center, surface.plane_size / 2
         corners = self._unit.on_axes(np.stack([middle - half, middle + half]))
@@ -236,7 +237,7 @@ class FlowImage(AxesImage):
             self._follow_scales(AxesScales(ax, framed=False))
             scene = self._scene
         super().__init__(ax, extent=(left, right, bottom, top))
-        # Pixels have no values, but a colour bar asks for some.
+        # Pixels have no values, but a colour bar needs some.
         self.set_data([[scene.scalar_limits[0] if scene.scalar_name else 0.0]])
         self.mouseover = False
         if scene.scalar_name is not None:
@@ -246,14 +247,14 @@ class FlowImage(AxesImage):
         self._first_clim = self.get_clim()
         self._title = ""
 
-    def _bar_colours(self) -> Any:
+    def _bar_colours(self) -> ListedColormap:
         """Return the colours of a colour bar, which are those of the picture."""
-        # The colours to extend a bar with are a word in matplotlib, and a bool in its types.
+        # In matplotlib colorbar_extend is a word, in its type a bool.
         colours: Any = ListedColormap(self._scene.legend_colours[:, :3] / 255)
         colours.colorbar_extend = EXTENDED.get(self._scene.beyond, "neither")
         return colours
 
-    def set_cmap(self, cmap: Any) -> None:
+    def set_cmap(self, cmap: str | Colormap) -> None:
         """Draw the scalars with another colour map, by its name or a colour map of matplotlib."""
         if self._scene.scalar_name is None:
             return
@@ -264,7 +265,7 @@ class FlowImage(AxesImage):
         super().set_cmap(self._bar_colours())
 
     def _follow_scales(self, scales: AxesScales | None) -> None:
-        """Show the flow as the scales of the axes take it."""
+        """Transform the flow to the scales of the axes."""
         if (scales and scales.key) == (self._scales and self._scales.key):
             return
         if scales is not None and self._projection is not None:
@@ -300,7 +301,7 @@ class FlowImage(AxesImage):
     @time.setter
     def time(self, value: float | str) -> None:
         self._scene.time = value
-        self._tell()
+        self._update_title()
         self.stale = True
 
     @property
@@ -316,7 +317,7 @@ class FlowImage(AxesImage):
     def frame_axes(self) -> None:
         """Set title, aspect and ticks of the axes."""
         ax: Any = self.axes
-        self._tell()
+        self._update_title()
         if (section := self._flow.section) is not None:
             self._frame_section(section)
         if is_geo(ax) or self._scales is not None or section is not None:
@@ -334,7 +335,7 @@ class FlowImage(AxesImage):
             ax.invert_yaxis()
         ax.set(xlabel=ax.get_xlabel() or section.x, ylabel=ax.get_ylabel() or section.y)
 
-    def _tell(self) -> None:
+    def _update_title(self) -> None:
         """Show level and time of data of the Earth in the title, unless one has been set."""
         field, ax = self._scene.field, self.axes
         if self._projection is None or ax.get_title() != self._title:
@@ -349,21 +350,21 @@ class FlowImage(AxesImage):
 
     def make_image(
         self,
-        renderer: Any,
+        renderer: RendererBase | None,
         magnification: float = 1.0,
         unsampled: bool = False,  # noqa: FBT001, FBT002
     ) -> tuple[Any, float, float, Any]:
         """Return the pixels of the axes and their position, for matplotlib."""
         del renderer, unsampled
-        self._tell()  # another title may have been set meanwhile
+        self._update_title()  # another title may have been set meanwhile
         if self._projection is None:
             straight = self.axes.get_aspect() != "auto" and _kind(self.axes) == LINEAR
             try:
                 self._follow_scales(None if straight else AxesScales(self.axes))
-            except FieldError:  # nothing of the flow is on the axes now
+            except FieldError:  # no part of the flow is on the axes now
                 return np.zeros((1, 1, 4), np.uint8), 0.0, 0.0, None
         box = self.axes.bbox
-        # Whole pixels, of which matplotlib cuts those at the border.
+        # Whole pixels; matplotlib clips those at the border.
         low = np.floor(np.multiply(box.min, magnification))
         high = np.ceil(np.multiply(box.max, magnification))
         pixels = np.stack([low, high]) / magnification
@@ -383,7 +384,7 @@ class FlowImage(AxesImage):
         return self._picture, float(left), float(bottom), None
 
     def _draw(self, corners: Floats, size: tuple[int, int], density: float) -> Bytes:
-        """Draw what lies between two corners, (2, 2), row 0 at the bottom.
+        """Draw the rectangle between two corners, (2, 2), row 0 at the bottom.
 
         It is opaque, except on axes without a background colour.
         """
@@ -391,7 +392,7 @@ class FlowImage(AxesImage):
         scale = min(float(np.max(size / spans)), LONGEST_SIDE_PX / float(spans.max()))
         width, height = (max(round(float(n)), 1) for n in spans * scale)
         look = self._options.appearance
-        if self.get_clim() != self._first_clim:  # by matplotlib's own means
+        if self.get_clim() != self._first_clim:  # set by matplotlib
             look = replace(look, clim=self.get_clim())
         if (alpha := self.get_alpha()) is not None:
             look = replace(look, opacity=look.opacity * float(alpha))
@@ -408,7 +409,7 @@ class FlowImage(AxesImage):
             still=True,
         )
         with closing(plotter), warnings.catch_warnings():
-            warnings.filterwarnings("ignore", NOTHING_SEEN)  # axes may be elsewhere
+            warnings.filterwarnings("ignore", NOTHING_SEEN)  # axes may lie beside the flow
             transparent = view.background[-1] == 0
             picture = plotter.picture(time=self.time, clock=self.clock, transparent=transparent)
         if transparent:  # edge pixels are premultiplied, on black
@@ -417,7 +418,7 @@ class FlowImage(AxesImage):
             picture = picture.clip(0, 255).astype(np.uint8)
         across, up = np.sign(corners[1] - corners[0]).astype(int)
         shot = Image.fromarray(picture[::-up, ::across]).convert("RGBA").resize(size)
-        return np.array(shot)  # matplotlib wants one that can be written
+        return np.array(shot)  # matplotlib needs a writable array
 
     def _camera(self, middle: Floats, height: float) -> Camera:
         surface = self._scene.whole.surface

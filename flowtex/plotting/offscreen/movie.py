@@ -2,7 +2,7 @@
 
 A steady flow streams round: its frames lie evenly in one period, and after the last one comes the
 first again, bit for bit. A field that varies in time is shown from its first to its last time;
-where that is its own period, the last time is left out, because it is the first again.
+if these are equal, as after one period, the last time is left out.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ SAME_SHARE = 1e-6
 
 @dataclass(frozen=True)
 class FrameTimes:
-    """What each frame of a movie shows."""
+    """Time or clock of each frame of a movie."""
 
     #: Times of a field that varies, in its own unit; empty for a steady flow.
     times: tuple[float, ...]
@@ -59,9 +59,9 @@ class FrameTimes:
 def frame_times(
     field: FlowField, settings: Settings, *, fps: float, seconds: float | None = None
 ) -> FrameTimes:
-    """Return what each frame of a movie shows; :func:`flowtex.movie` has the parameters.
+    """Return the time or clock of each frame; :func:`flowtex.movie` has the parameters.
 
-    Of the settings ``motion``, ``noise`` and ``period`` of a steady flow count. Raises a MovieError
+    For a steady flow the settings ``motion``, ``noise`` and ``period`` matter. Raises a MovieError
     when a number is out of its range, or a steady flow would stand still.
     """
     expected = f"more than 0 and at most {MAX_FPS:g} frames per second"
@@ -86,7 +86,7 @@ def frame_times(
 
 
 def run_seconds(times: int) -> float:
-    """Seconds for one run through so many times of a field, in a movie and on a page."""
+    """Return the seconds for one run through the times of a field, in a movie and on a page."""
     return min(max(STEP_S * (times - 1), SHORTEST_RUN_S), LONGEST_RUN_S)
 
 
@@ -100,7 +100,7 @@ def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> flo
 
 
 def _check_motion(field: FlowField, settings: Settings) -> None:
-    """Refuse a steady flow that would stand still."""
+    """Raise a MovieError for a steady flow that would stand still."""
     if field.sign_free:
         msg = "the field is sign-free, so it cannot stream; a movie of it needs several times"
     elif settings.noise != "procedural":
@@ -231,8 +231,8 @@ def movie(
     fps = default_fps(path) if fps is None else fps
     check_movie(path, size, fps, quality)
     field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
-    drawn = {"size": size, "supersampling": supersampling, "annotations": annotations}
-    pictures = _draw(field, chosen, shown, **drawn)
+    drawing = {"size": size, "supersampling": supersampling, "annotations": annotations}
+    pictures = _draw(field, chosen, shown, **drawing)
     try:
         tracked = track(pictures, len(shown), "Drawing the movie", show=progress)
         write_movie(path, tracked, fps, quality, cancelled=cancelled)
@@ -266,21 +266,21 @@ def frames(
     [(48, 64, 3), (48, 64, 3)]
     """
     field, chosen, shown = _prepare(mesh, Options.split(**options), fps, seconds)
-    drawn = {"size": size, "supersampling": supersampling, "annotations": annotations}
-    return _draw(field, chosen, shown, **drawn)
+    drawing = {"size": size, "supersampling": supersampling, "annotations": annotations}
+    return _draw(field, chosen, shown, **drawing)
 
 
 def _prepare(
     mesh: Any, options: Options, fps: float, seconds: float | None
 ) -> tuple[FlowField, Options, FrameTimes]:
-    """Return the field, the options with the motion in them, and what the frames show."""
+    """Return the field, the options with the motion, and the times of the frames."""
     field = options.field.field(mesh)
     settings = options.make_settings(field, **({"motion": "speed"} if field.steady else {}))
     shown = frame_times(field, settings, fps=fps, seconds=seconds)
-    own = dict(options.settings)
+    values = dict(options.settings)
     if field.steady:
-        own |= {"motion": settings.motion, "period": shown.seconds}
-    return field, replace(options, field=FieldOptions(), settings=own), shown
+        values |= {"motion": settings.motion, "period": shown.seconds}
+    return field, replace(options, field=FieldOptions(), settings=values), shown
 
 
 def _draw(

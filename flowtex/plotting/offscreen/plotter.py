@@ -23,9 +23,9 @@ from flowtex.scene.options import FieldOptions, Options, ViewOptions
 from flowtex.scene.scene import Scene, share_field
 from flowtex.textures.images import averaged
 
-#: Longest side of what is drawn at once, in pixels.
+#: Longest side of a drawing, in pixels.
 LONGEST_SIDE = 16_384
-#: Pixels that are drawn for one of the picture along a side, at most.
+#: Most pixels drawn for one of the picture, along a side.
 MAX_SUPERSAMPLING = 8
 #: Samples of a pixel for smooth outlines, where the picture is not supersampled.
 OUTLINE_SAMPLES = 4
@@ -58,26 +58,30 @@ class OffscreenPlotter:
     ) -> None:
         begin_trial()
         _check_size(size, supersampling)
-        # Whoever draws the same numbers once more finds what was traced of them.
+        # Equal fields share their traces.
         field = share_field(options.field.field(mesh))
         notify_section(field.section)
-        # Asked for as late as this, the trial has run beside the reading of the field.
+        # The trial has run while the field was read.
         require_opengl()
         options = replace(options, field=FieldOptions())
         appearance = options.appearance
         self._legend = appearance.has_bar
         if scalar_bar_args and (annotations or not appearance.show_scalar_bar):
-            how = "without annotations" if annotations else "with show_scalar_bar=True"
-            notify(f"scalar_bar_args is given, but this bar is drawn only {how}; it is not used")
+            condition = "without annotations" if annotations else "with show_scalar_bar=True"
+            notify(
+                f"scalar_bar_args is given, but this bar is drawn only {condition}; it is not used"
+            )
         if annotations or appearance.show_scalar_bar is None:
             options = replace(options, appearance=replace(appearance, show_scalar_bar=False))
         self._supersampling = supersampling
         self._view, self._annotations = options.view, annotations
         large = (size[0] * supersampling, size[1] * supersampling)
-        two = options.view.beside is not None
-        self._plotter = new_plotter(large, two_views=two, off_screen=True, lighting="light kit")
+        two_views = options.view.beside is not None
+        self._plotter = new_plotter(
+            large, two_views=two_views, off_screen=True, lighting="light kit"
+        )
         try:
-            if supersampling == 1:  # which smooths the outline as well
+            if supersampling == 1:  # supersampling smooths outlines as well
                 self._plotter.enable_anti_aliasing("msaa", multi_samples=OUTLINE_SAMPLES)
             else:
                 self._plotter.disable_anti_aliasing()
@@ -101,7 +105,7 @@ class OffscreenPlotter:
 
         A ``transparent`` one has a fourth channel, which is 0 outside the flow.
         """
-        # One picture for all that changes.
+        # Render once after all changes.
         self._plotter.suppress_rendering = True
         for handle in self.handles:
             if time is not None:
@@ -109,8 +113,10 @@ class OffscreenPlotter:
             handle.clock = clock
         self._plotter.suppress_rendering = False
         self._plotter.render()
-        shot: Any = self._plotter.screenshot(return_img=True, transparent_background=transparent)
-        pixels = np.asarray(shot[..., : 4 if transparent else 3], dtype=np.uint8)
+        screenshot: Any = self._plotter.screenshot(
+            return_img=True, transparent_background=transparent
+        )
+        pixels = np.asarray(screenshot[..., : 4 if transparent else 3], dtype=np.uint8)
         visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
         if visible and (pixels[..., :3] == self._plotter.background_color.int_rgb).all():
             notify(NOTHING_SEEN, UserWarning)
@@ -185,9 +191,9 @@ def add_scenes(
 def point_camera(
     plotter: Any, scene: Scene, view: ViewOptions, margin: float = CAMERA_LIMITS.margin
 ) -> None:
-    """Point a plotter's camera where a view asks for.
+    """Point a plotter's camera as a view requests.
 
-    Raises a FieldError when the view's camera, zoom or focus is none, or the margin.
+    Raises a FieldError when the view's camera, zoom or focus, or the margin, is invalid.
     """
     if view.camera is None:
         look(plotter, scene.whole, zoom=view.zoom, focus=view.focus, margin=margin)
@@ -205,7 +211,7 @@ def point_camera(
 
 
 def _label(plotter: Any, text: str) -> None:
-    """Write what one of two views shows."""
+    """Write a label on one of two views."""
     label = plotter.add_text(text, font_size=9, color="black")
     label.prop.background_color, label.prop.background_opacity = "white", 0.8
 

@@ -103,7 +103,7 @@ def render(
 
 
 class _Drawn(NamedTuple):
-    """A field that was drawn, and what was traced of it."""
+    """A field that was drawn, and its traces."""
 
     field: FlowField
     store: SliceStore
@@ -121,8 +121,8 @@ def _keep(scene: Scene) -> None:
     """Keep the field of a scene and its traces, for a script that draws the same numbers again.
 
     :func:`flowtex.scene.scene.share_field` finds the field, and a store of the same numbers its
-    slices. What was drawn longest ago is dropped first. Of a field that reads its steps late,
-    and so holds a file open, only the slices are kept.
+    slices. The least recently drawn is dropped first. For a field with lazy steps, which holds a
+    file open, only the slices are kept.
     """
     field, store = scene.field, scene.store
     if any(isinstance(steps, LazySteps) for steps in (field.velocity, *field.scalars.values())):

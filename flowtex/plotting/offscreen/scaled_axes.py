@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
@@ -17,7 +18,7 @@ from flowtex.scene.options import SPEED
 
 #: Relative step of the derivative of a scale, and least step over the range of the axis.
 STEP, LEAST_STEP = 1e-6, 1e-12
-#: Scales that matplotlib clips: the logarithm of what is not positive is -1000.
+#: Scales that matplotlib clips: the logarithm of values that are not positive is -1000.
 CLIPPED, BEYOND = ("log", "logit"), 999.0
 
 
@@ -26,16 +27,16 @@ STRETCH_STEP = 0.5
 
 
 class AxesScales:
-    """Scales of axes, which take x and y to where the axes show them.
+    """Scales of axes, which transform x and y to positions on the axes.
 
-    Polar axes take the angle and the radius to the positions around their centre.
+    Polar axes transform the angle and the radius to positions around their centre.
 
     Attributes
     ----------
     names
         Names of the scales.
     polar
-        What else places data on polar axes: the zero and the sign of the angle, the radius of the
+        Parameters of polar axes: the zero and the sign of the angle, the radius of the
         centre, and the sign of the radius. Empty on others.
     stretch
         Factor of the scaled y, so that a picture has about as many pixels for a unit of both.
@@ -45,7 +46,7 @@ class AxesScales:
         self.names = ax.get_xscale(), ax.get_yscale()
         self.polar: tuple[float, ...] = ()
         self.stretch = 1.0
-        # What is scaled, and then moved to the figure: together they are ``ax.transData``.
+        # Scaling, and the transform to the figure after it: together they are ``ax.transData``.
         self._scale = self._scaled = ax.transScale
         if ax.name == "polar":
             turn = ax.get_theta_offset(), ax.get_theta_direction()
@@ -60,11 +61,11 @@ class AxesScales:
             self.stretch = float(2.0 ** (STRETCH_STEP * np.round(power)))
 
     @property
-    def key(self) -> tuple[Any, ...]:
-        """The same for axes on which a flow is the same."""
+    def key(self) -> tuple[object, ...]:
+        """Equal for axes on which a flow is the same."""
         return *self.names, *self.polar, self.stretch
 
-    def on_map(self, values: Any) -> Floats:
+    def on_map(self, values: ArrayLike) -> Floats:
         """Return scaled positions (..., 2) of values of the axes, NaN where a scale has none."""
         points = np.asarray(values, dtype=float)
         with np.errstate(all="ignore"):
@@ -76,7 +77,7 @@ class AxesScales:
         beyond = (np.abs(scaled) >= BEYOND) & [name in CLIPPED for name in self.names]
         return np.where(beyond, np.nan, scaled)
 
-    def shown(self, pixels: Any) -> Floats:
+    def shown(self, pixels: ArrayLike) -> Floats:
         """Return scaled positions (..., 2) of pixels of the figure."""
         return np.asarray(self._placed.inverted().transform(pixels) * (1.0, self.stretch))
 
@@ -90,10 +91,10 @@ class AxesScales:
         """
         values = (field.points @ frame.T).reshape(-1, 2)
         with np.errstate(all="ignore"):
-            known = np.isfinite(self._within(self._scale.transform(values))).all(axis=-1)
-        if not known.any():
+            is_shown = np.isfinite(self._within(self._scale.transform(values))).all(axis=-1)
+        if not is_shown.any():
             raise _missed(values)
-        return np.stack([values[known].min(axis=0), values[known].max(axis=0)])
+        return np.stack([values[is_shown].min(axis=0), values[is_shown].max(axis=0)])
 
     def _slope(self, points: Floats, step: Floats) -> Floats:
         """Return the Jacobian of positions on the axes, (..., 2, 2), by central differences."""
@@ -105,8 +106,8 @@ class AxesScales:
         # Column n is the derivative along coordinate n.
         slope = np.stack(
             [
-                (self.on_map(near + way) - self.on_map(near - way)) / (2 * step[..., n, None])
-                for n, way in enumerate(np.moveaxis(step[..., None] * np.eye(2), -1, 0))
+                (self.on_map(near + delta) - self.on_map(near - delta)) / (2 * step[..., n, None])
+                for n, delta in enumerate(np.moveaxis(step[..., None] * np.eye(2), -1, 0))
             ],
             axis=-1,
         )
@@ -116,7 +117,7 @@ class AxesScales:
         return slope
 
     def field(self, field: FlowField, frame: Floats) -> FlowField:
-        """Return a flat field as the axes show it; nodes that these do not have are blanked.
+        """Return a flat field as the axes show it; nodes outside of the scales are blanked.
 
         ``frame`` are the directions of x and y, (2, 3). The speed stays that of the field.
 
@@ -136,37 +137,42 @@ class AxesScales:
             raise _missed(points)
         slope[~valid] = 0.0
 
-        def planar(two: AnyArray, blank: AnyArray) -> Floats:
+        def planar(components: AnyArray, blank: AnyArray) -> Floats:
             """Return vectors (..., 3) of two components, with others at nodes that are blanked."""
-            known = np.where(valid[..., None], two, blank)
-            return np.concatenate([known, np.zeros_like(known[..., :1])], axis=-1)
+            vectors = np.where(valid[..., None], components, blank)
+            return np.concatenate([vectors, np.zeros_like(vectors[..., :1])], axis=-1)
 
-        def moved(steps: Any) -> Floats:
+        def transformed(steps: Any) -> Floats:
             return planar((slope @ (steps @ frame.T)[..., None])[..., 0], np.zeros(2))
 
         velocity: Any = field.velocity
         if isinstance(velocity, LazySteps):  # those of a long series are read when they are drawn
             read = velocity
-            velocity = LazySteps(len(read), lambda step: moved(np.asarray(read[step])))
+            velocity = LazySteps(len(read), lambda step: transformed(np.asarray(read[step])))
         else:
-            velocity = moved(velocity)
-        known = {SPEED: field.speed, **field.scalars}
+            velocity = transformed(velocity)
+        scalars = {SPEED: field.speed, **field.scalars}
         shown = replace(
             field,
             points=planar(scaled, scaled[valid][0]),
             velocity=velocity,
             valid=valid,
             has_position=valid if field.has_position is None else field.has_position & valid,
-            scalars=known,
+            scalars=scalars,
             units={SPEED: field.unit_of(SPEED), **field.units},
             formula=None,
             section=None,
         )
         if not self.polar or field.triangles is not None:
             return shown
-        # The angle may go around.
-        given: dict[str, Any] = {"valid": valid, "scalars": known, "sign_free": field.sign_free}
-        closed = FlowField.from_arrays(shown.points, shown.velocity, **given)
+        # The angle may be periodic.
+        closed = FlowField.from_arrays(
+            shown.points,
+            shown.velocity,
+            valid=valid,
+            scalars=scalars,
+            sign_free=field.sign_free,
+        )
         names = ("points", "velocity", "valid", "has_position", "scalars", "periodic")
         return replace(shown, **{name: getattr(closed, name) for name in names})
 
@@ -176,7 +182,7 @@ def with_polar_scalars(field: FlowField, frame: Floats, name: str | None) -> Flo
     if name not in DERIVED or name in field.scalars or field.sign_free:
         return field
     plane = AxesScales(Figure().add_subplot(projection="polar")).field(field, frame)
-    rows, columns = field.shape  # the plane may have a line more, which closes it
+    rows, columns = field.shape  # the plane may have one more line, which closes it
     values = np.stack([np.asarray(step)[:rows, :columns] for step in plane.derive(name)])
     units = {**field.units, name: derived_unit(name, field.time_unit)}
     return replace(field, scalars={**field.scalars, name: values}, units=units)
