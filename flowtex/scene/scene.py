@@ -139,11 +139,8 @@ class Scene:
         if "image" in changes:  # an image keeps its own colours
             del settings["noise"], settings["strength"]
         options = Options.split("appearance", **{**settings, **changes})
-        own_appearance = {n: v for n, v in vars(options.appearance).items() if n in changes}
-        look, image = (
-            _look_beside(self, own_appearance, field),
-            None if "image" in own_appearance else self.image,
-        )
+        chosen = {n: v for n, v in vars(options.appearance).items() if n in changes}
+        look, image = _look_beside(self, chosen, field), None if "image" in chosen else self.image
         return Scene(field, options.make_settings(), look, image=image)
 
     @property
@@ -319,12 +316,10 @@ class Scene:
         before, after, share = self.moment
         if len(steps) == 1:
             return np.asarray(steps[0])
-        values_before, values_after = steps[before], steps[after]
-        mixed = values_before * (1 - share) + values_after * share
+        earlier, later = steps[before], steps[after]
+        mixed = earlier * (1 - share) + later * share
         # Where one step has no value, that of the nearer step is shown.
-        return np.asarray(
-            np.where(np.isnan(mixed), values_before if share < 0.5 else values_after, mixed)
-        )
+        return np.asarray(np.where(np.isnan(mixed), earlier if share < 0.5 else later, mixed))
 
     def _limits(self, appearance: Appearance) -> tuple[float, float]:
         name, chosen = appearance.scalar_name, appearance.clim

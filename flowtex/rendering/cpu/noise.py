@@ -151,10 +151,8 @@ class SpaceNoise(Lookup):
         octaves = np.clip(2.0 * np.log2(grain / values["u_noiseFinest"]), 0.0, const.LAST_OCTAVE)
         whole = octaves.astype(np.int64)
         self._late = octaves - whole
-        position_from_origin = position.value - np.asarray(values["u_noiseOrigin"])
-        self._fine, self._coarse = (
-            noise_lattice(position_from_origin, whole + k, values) for k in range(2)
-        )
+        offset = position.value - np.asarray(values["u_noiseOrigin"])
+        self._fine, self._coarse = (noise_lattice(offset, whole + k, values) for k in range(2))
 
     def move(self, slope: Floats, speed: Floats) -> None:
         """Choose the two rates between which the motion of each fragment lies."""
@@ -184,10 +182,8 @@ class SpaceNoise(Lookup):
         """Both octaves, (N, 2)."""
         motion = None if self._motion is None else self._motion.after(length)
         octaves = (
-            octave(
-                lattice, displacement, motion, planar=self._planar, sparse=self._values["sparse"]
-            )
-            for lattice in (self._fine, self._coarse)
+            octave(each, displacement, motion, planar=self._planar, sparse=self._values["sparse"])
+            for each in (self._fine, self._coarse)
         )
         return np.stack(list(octaves), axis=-1)
 
