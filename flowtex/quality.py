@@ -15,10 +15,11 @@ visualizations, IEEE TVCG 19(7), 2013).
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy
+from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
@@ -65,7 +66,12 @@ class Grain(NamedTuple):
 
 
 def alignment(
-    picture: Any, u: Any, v: Any, mask: Any = None, *, window: float = WINDOW_PIXELS
+    picture: ArrayLike,
+    u: ArrayLike,
+    v: ArrayLike,
+    mask: ArrayLike | None = None,
+    *,
+    window: float = WINDOW_PIXELS,
 ) -> Alignment:
     """Compare the direction of streaks with that of the flow.
 
@@ -118,7 +124,9 @@ def alignment(
     return Alignment(float(np.degrees(between[mask].mean())), float(coherence[mask].mean()))
 
 
-def grain(picture: Any, u: Any, v: Any, mask: Any = None, *, seed: int = 0) -> Grain:
+def grain(
+    picture: ArrayLike, u: ArrayLike, v: ArrayLike, mask: ArrayLike | None = None, *, seed: int = 0
+) -> Grain:
     """Measure the length of streaks along the flow, which may be curved, and their width.
 
     Parameters
@@ -151,12 +159,12 @@ def grain(picture: Any, u: Any, v: Any, mask: Any = None, *, seed: int = 0) -> G
     flat = filled - scipy.ndimage.gaussian_filter(filled, SHADE_PIXELS)
     rows, columns = np.nonzero(mask)
     pick = np.random.default_rng(seed).integers(0, len(rows), min(GRAIN_POINTS, 4 * len(rows)))
-    at = np.stack([rows[pick], columns[pick]]).astype(float)
+    start = np.stack([rows[pick], columns[pick]]).astype(float)
     length = np.maximum(np.hypot(u, v), np.finfo(float).tiny)
     right, down = u / length, -v / length
     return Grain(
-        _half_width(flat, at, np.stack([down, right])),
-        _half_width(flat, at, np.stack([right, -down])),
+        _half_width(flat, start, np.stack([down, right])),
+        _half_width(flat, start, np.stack([right, -down])),
     )
 
 
@@ -165,26 +173,26 @@ def _half_width(flat: Floats, start: Floats, direction: Floats) -> float:
 
     Lines are followed from ``start``, (2, N) as (row, column), along unit vectors (2, H, W).
     """
-    here = scipy.ndimage.map_coordinates(flat, start, order=1, mode="nearest")
-    power = float(np.mean(here * here))
+    first_values = scipy.ndimage.map_coordinates(flat, start, order=1, mode="nearest")
+    power = float(np.mean(first_values * first_values))
     if power == 0:
         return float(MAX_DISTANCE_PIXELS)
-    at, distance, before = start.copy(), 0.0, 1.0
+    position, distance, before = start.copy(), 0.0, 1.0
     while distance < MAX_DISTANCE_PIXELS:
         # Quarters of a pixel close by, where fine grain falls quickly; coarser steps farther off.
         step = 0.25 if distance < 4 else 1.0
-        nearest = np.rint(at).astype(np.intp)
+        nearest = np.rint(position).astype(np.intp)
         row, column = (np.clip(nearest[a], 0, flat.shape[a] - 1) for a in (0, 1))
-        at = at + step * direction[:, row, column]
-        there = scipy.ndimage.map_coordinates(flat, at, order=1, mode="nearest")
-        now = float(np.mean(here * there)) / power
-        if now < 0.5:
-            return distance + step * (before - 0.5) / (before - now)
-        distance, before = distance + step, now
+        position = position + step * direction[:, row, column]
+        values = scipy.ndimage.map_coordinates(flat, position, order=1, mode="nearest")
+        correlation = float(np.mean(first_values * values)) / power
+        if correlation < 0.5:
+            return distance + step * (before - 0.5) / (before - correlation)
+        distance, before = distance + step, correlation
     return float(MAX_DISTANCE_PIXELS)
 
 
-def sense(picture: Any, u: Any, v: Any, mask: Any = None) -> float:
+def sense(picture: ArrayLike, u: ArrayLike, v: ArrayLike, mask: ArrayLike | None = None) -> float:
     """Return the share of the pixels of strokes that show the sense of the flow.
 
     A stroke with a head brightens slowly towards the head and ends there, so along the flow the
@@ -226,7 +234,9 @@ def sense(picture: Any, u: Any, v: Any, mask: Any = None) -> float:
     return float((cubes[strokes] < 0).mean()) if strokes.any() else 0.5
 
 
-def sticking(first: Any, second: Any, dx: Any, dy: Any, mask: Any = None) -> float:
+def sticking(
+    first: ArrayLike, second: ArrayLike, dx: ArrayLike, dy: ArrayLike, mask: ArrayLike | None = None
+) -> float:
     """Return how well a texture moves as it should from one picture to the next.
 
     Parameters
@@ -234,8 +244,8 @@ def sticking(first: Any, second: Any, dx: Any, dy: Any, mask: Any = None) -> flo
     first, second
         The pictures, (H, W) or (H, W, 3).
     dx, dy
-        Displacement of what each pixel of the second picture shows, in pixels to the right and
-        down: (H, W), or numbers. It is that of the surface under a moving camera, or of the flow.
+        Displacement of the point that each pixel of the second picture shows, in pixels to the
+        right and down: (H, W), or numbers, as of the surface under a moving camera, or of the flow.
     mask
         Pixels to measure, (H, W).
 
@@ -259,7 +269,9 @@ def sticking(first: Any, second: Any, dx: Any, dy: Any, mask: Any = None) -> flo
     """
     a, b = _pair(first=first, second=second)
     ones = np.ones(a.shape)
-    _, dx, dy, mask = _checked(b, dx * ones, dy * ones, ones > 0 if mask is None else mask)
+    _, dx, dy, mask = _checked(
+        b, np.multiply(dx, ones), np.multiply(dy, ones), ones > 0 if mask is None else mask
+    )
     rows, columns = np.indices(a.shape)
     place = [rows - dy, columns - dx]
     inside = mask & (place[0] >= 0) & (place[0] <= a.shape[0] - 1)
@@ -268,7 +280,7 @@ def sticking(first: Any, second: Any, dx: Any, dy: Any, mask: Any = None) -> flo
     return float(np.corrcoef(moved[inside], b[inside])[0, 1])
 
 
-def aliasing(picture: Any, reference: Any, mask: Any = None) -> float:
+def aliasing(picture: ArrayLike, reference: ArrayLike, mask: ArrayLike | None = None) -> float:
     """Return the error relative to a picture with many samples per pixel.
 
     Parameters
@@ -303,7 +315,7 @@ def aliasing(picture: Any, reference: Any, mask: Any = None) -> float:
     return float(np.sqrt(np.mean(error**2)) / max(float(b[mask].std()), 1e-12))
 
 
-def spacing(points: Any) -> float:
+def spacing(points: ArrayLike) -> float:
     """Return how unevenly marks such as arrows are spaced.
 
     Parameters
@@ -337,8 +349,8 @@ def spacing(points: Any) -> float:
     return float(nearest.std() / max(nearest.mean(), np.finfo(float).tiny))
 
 
-def _grey(name: str, picture: Any) -> Floats:
-    """Return the mean of the channels, with the mean of all where there is no value."""
+def _grey(name: str, picture: ArrayLike) -> Floats:
+    """Return the mean of the channels; missing values are replaced by the mean of all."""
     array = np.asarray(picture)
     if array.dtype.kind not in "biuf" or array.ndim not in (2, 3) or array.size == 0:
         msg = (
@@ -351,20 +363,22 @@ def _grey(name: str, picture: Any) -> Floats:
     if missing.all():
         msg = f"{name} is NaN everywhere; expected a picture"
         raise FieldError(msg)
-    # A filter does not spread what is missing.
+    # Filters would spread missing values.
     return np.where(missing, np.mean(grey[~missing]), grey) if missing.any() else grey
 
 
-def _pair(**pictures: Any) -> tuple[Floats, Floats]:
-    (one, first), (other, second) = pictures.items()
-    a, b = _grey(one, first), _grey(other, second)
+def _pair(**pictures: ArrayLike) -> tuple[Floats, Floats]:
+    (name, first), (other_name, second) = pictures.items()
+    a, b = _grey(name, first), _grey(other_name, second)
     if a.shape != b.shape:
-        msg = f"{one} has shape {a.shape} and {other} {b.shape}; expected the same"
+        msg = f"{name} has shape {a.shape} and {other_name} {b.shape}; expected the same"
         raise FieldError(msg)
     return a, b
 
 
-def _checked(picture: Any, u: Any, v: Any, mask: Any) -> tuple[Floats, Floats, Floats, Bools]:
+def _checked(
+    picture: ArrayLike, u: ArrayLike, v: ArrayLike, mask: ArrayLike | None
+) -> tuple[Floats, Floats, Floats, Bools]:
     grey = _grey("picture", picture)
     u, v = np.asarray(u, dtype=float), np.asarray(v, dtype=float)
     for name, array in {"u": u, "v": v, "mask": np.asarray(mask)}.items():
@@ -375,9 +389,9 @@ def _checked(picture: Any, u: Any, v: Any, mask: Any) -> tuple[Floats, Floats, F
         inside = np.zeros(grey.shape, bool)
         inside[BORDER:-BORDER, BORDER:-BORDER] = True
         mask = inside & (np.hypot(u, v) > 0)
-    known = np.isfinite(u) & np.isfinite(v)
-    mask = np.asarray(mask, dtype=bool) & known
-    if not mask.any():
+    has_flow = np.isfinite(u) & np.isfinite(v)
+    measured = np.asarray(mask, dtype=bool) & has_flow
+    if not measured.any():
         msg = "mask is False everywhere; expected pixels to judge"
         raise FieldError(msg)
-    return grey, np.where(known, u, 0.0), np.where(known, v, 0.0), mask
+    return grey, np.where(has_flow, u, 0.0), np.where(has_flow, v, 0.0), measured

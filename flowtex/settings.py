@@ -120,7 +120,7 @@ class Setting:
 
     @property
     def condition(self) -> str:
-        """When the setting has an effect, as a sentence; empty if it always has."""
+        """Condition under which the setting has an effect, as a sentence; empty if always."""
         needs = [
             f"{TABLE[name].label} is {'not ' if sign == '!=' else ''}{TABLE[name].format(value)}"
             for name, sign, value in NEEDS.get(self.name, ())
@@ -371,7 +371,7 @@ class Settings:
         return Settings(**dict(self))
 
     def __iter__(self) -> Iterator[tuple[str, Any]]:
-        """Give (name, value) of every setting."""
+        """Yield (name, value) of every setting."""
         return ((name, getattr(self, name)) for name in TABLE)
 
 
@@ -390,7 +390,7 @@ def named_values(values: Mapping[str, Any]) -> str:
 
 _KINDS: dict[str, type] = {"int": int, "float": float, "bool": bool, "str": str}
 
-#: Every setting by name, in the order in which people meet them.
+#: Every setting by name, in the order of panels and documentation.
 TABLE: dict[str, Setting] = {
     f.name: Setting(name=f.name, kind=_KINDS[str(f.type)], default=f.default, **f.metadata)
     for f in fields(Settings)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
+from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -28,8 +29,11 @@ from flowtex.field.point_values import PointValues, values_at
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from flowtex._util.array_types import Bytes
     from flowtex.plotting.offscreen.figure import FlowImage
+    from flowtex.plotting.offscreen.movie import Movie
     from flowtex.pyramid import Built
+    from flowtex.web.export import Page
     from flowtex.widget import FlowWidget
 
 __all__ = ["FlowtexAccessor"]
@@ -62,15 +66,15 @@ class FlowtexAccessor:
         """Show the flow, as :func:`flowtex.show` does."""
         return flowtex.show(self._dataset, **options)
 
-    def render(self, **options: Any) -> Any:
+    def render(self, **options: Any) -> Bytes:
         """Draw the flow as a picture, as :func:`flowtex.render` does."""
         return flowtex.render(self._dataset, **options)
 
-    def movie(self, *file: Any, **options: Any) -> Any:
+    def movie(self, *file: str | Path, **options: Any) -> Movie:
         """Write the flow as a movie, as :func:`flowtex.movie` does."""
         return flowtex.movie(self._dataset, *file, **options)
 
-    def export(self, *file: Any, **options: Any) -> Any:
+    def export(self, *file: str | Path, **options: Any) -> Page:
         """Write the flow as a page, as :func:`flowtex.export` does."""
         return flowtex.export(self._dataset, *file, **options)
 
@@ -172,11 +176,11 @@ class FlowtexAccessor:
                 subplot_kws=dict(subplot_kws or {}),
             )
             pairs = zip(panels.axs.flat, panels.name_dicts.flat, strict=True)
-            shown = [(one, self._dataset.loc[place]) for one, place in pairs if place is not None]
+            shown = [(panel, self._dataset.loc[n]) for panel, n in pairs if n is not None]
         else:
             msg = "ax is given, but row and col make their own axes; omit ax, or row and col"
             raise flowtex.FieldError(msg)
-        images = [flowtex.axes(one, data, **options) for one, data in shown]
+        images = [flowtex.axes(panel, data, **options) for panel, data in shown]
         label = images[0].colour_label
         if label:
             ends = np.array([image.get_clim() for image in images])
@@ -184,9 +188,9 @@ class FlowtexAccessor:
                 low, high = ends[:, 0].min(), ends[:, 1].max()
                 image.set_clim(low if vmin is None else vmin, high if vmax is None else vmax)
         if panels is not None:
-            for one in panels.axs.flat:
-                one.set_title("")
-                one.set_visible(any(one is some for some, _ in shown))
+            for panel in panels.axs.flat:
+                panel.set_title("")
+                panel.set_visible(any(panel is used for used, _ in shown))
             panels.set_titles()
             panels.fig.set_layout_engine("constrained")
         if label and add_colorbar:
@@ -244,16 +248,16 @@ class FlowtexAccessor:
         >>> f"{values.eastward:.0f} m/s to the east, {values.northward:.0f} m/s to the north"
         '22 m/s to the east, -17 m/s to the north'
         """
-        field, expected = self.field(**options), "a finite number"
-        point = np.array(
-            [checked_number(*one, -1e300, 1e300, expected=expected) for one in (("x", x), ("y", y))]
-        )
+        field = self.field(**options)
+        for name, value in (("x", x), ("y", y)):
+            checked_number(name, value, -1e300, 1e300, expected="a finite number")
+        point = np.array([x, y], dtype=float)
         if field.projection is not None:
             point = field.projection.positions(*point)
-        at = locate(field, point) if np.isfinite(point).all() else None
-        return None if at is None else values_at(field, at)
+        index = locate(field, point) if np.isfinite(point).all() else None
+        return None if index is None else values_at(field, index)
 
-    def pyramid(self, store: Any, **options: Any) -> Built:
+    def pyramid(self, store: str | Path, **options: Any) -> Built:
         """Build a pyramid of the flow, as :func:`flowtex.pyramid.build` does."""
         return flowtex.pyramid.build(self._dataset, store, **options)
 
@@ -282,7 +286,7 @@ def _axes(
 
 
 def _is_geodetic(transform: Any) -> bool:
-    """Whether a cartopy projection describes longitudes and latitudes."""
+    """Return whether a cartopy projection describes longitudes and latitudes."""
     name = type(transform).__name__
     turned = getattr(transform, "proj4_params", {}).get("pm", 0)
     return name == "Geodetic" or (name == "PlateCarree" and not float(turned))

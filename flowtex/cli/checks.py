@@ -23,8 +23,8 @@ def check_picture_file(output: Path) -> None:
     suffixes = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
     if output.suffix.lower() not in suffixes:
         suffix = output.suffix
-        what = f"{suffix!r} is not a picture format" if suffix else "the file name has no suffix"
-        msg = f"{output}: {what}; expected .png, .jpg, .webp or .tiff"
+        fault = f"{suffix!r} is not a picture format" if suffix else "the file name has no suffix"
+        msg = f"{output}: {fault}; expected .png, .jpg, .webp or .tiff"
         raise UsageError(msg)
     checked_target(output)
 
@@ -49,7 +49,7 @@ def check_movie_file(output: Path, size: tuple[int, int], fps: float | None, qua
         raise UsageError(str(error)) from error
 
 
-def drawing(*groups: Any) -> dict[str, Any]:
+def drawing(*groups: object) -> dict[str, Any]:
     """Return the drawing options of flags; raise an error if they conflict."""
     values = arguments(*groups)
     if values.get("noise") == "image" and "image" not in values:
@@ -63,14 +63,14 @@ def drawing(*groups: Any) -> dict[str, Any]:
 
 
 def check_lines(choice: Mapping[str, Any], values: Mapping[str, Any]) -> None:
-    """Refuse pathlines of one time that is read alone."""
+    """Raise an error for pathlines of a single time."""
     if "time" in choice and values.get("lines") == "pathlines":
         msg = "--lines is pathlines, which need all times; omit --time, or use flowtex render"
         raise UsageError(msg)
 
 
 def require_app() -> None:
-    """Refuse to serve a page where what it needs is not installed."""
+    """Raise an error if a package that pages need is not installed."""
     packages = ("trame", "trame_vuetify", "trame_rca")
     missing = [name for name in packages if importlib.util.find_spec(name) is None]
     if missing:
@@ -83,7 +83,7 @@ def require_app() -> None:
 
 @contextmanager
 def writing(output: object) -> Iterator[None]:
-    """Turn what the disk refuses into an error that names the file."""
+    """Turn errors of the disk into one that names the file."""
     try:
         yield
     except OSError as error:

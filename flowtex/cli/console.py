@@ -1,4 +1,4 @@
-"""What the command line reads and says: files as flows, results on stdout, errors on stderr."""
+"""Input and output of the command line: files as flows, results on stdout, errors on stderr."""
 
 from __future__ import annotations
 
@@ -57,13 +57,13 @@ def say(*parts: str | tuple[str, str], stderr: bool = False) -> None:
 def announcer(
     description: str, host: str, end_waiting: Callable[[], None] | None = None
 ) -> Callable[[str], None]:
-    """Return a function that prints the address of a page, once nothing is waited for."""
+    """Return a function that ends the waiting and prints the address of a page."""
 
     def announce(address: str) -> None:
         if end_waiting is not None:
             end_waiting()
         say(("flowtex", "bold"), f"  {description}\n")
-        # A link that is wrapped or coloured in pieces cannot be clicked.
+        # A link that is wrapped or has several colours cannot be clicked.
         say("  ", (address, "cyan"), "\n")
         if host not in ("127.0.0.1", "localhost", "::1"):
             warning = (
@@ -88,15 +88,15 @@ def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
     if not files:
         msg = "no file is given; name one"
         raise UsageError(msg)
-    options, whole = dict(choice), files[0] if len(files) == 1 else files
+    options, mesh = dict(choice), files[0] if len(files) == 1 else files
     time = options.pop("time", None)
     with waiting(f"Reading {files[0].name}"), notices():
-        return FieldOptions(**options).field(whole, time)
+        return FieldOptions(**options).field(mesh, time)
 
 
 @contextmanager
 def notices() -> Iterator[None]:
-    """Say what was chosen of the data in plain words, and pass on all other warnings."""
+    """Print notices on the choice of data, and pass on all other warnings."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", Notice)
         yield

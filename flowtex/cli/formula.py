@@ -25,7 +25,7 @@ from flowtex.cli.write import write_picture
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 
-#: What errors say in Python, and in a shell.
+#: Patterns in messages for Python, and their forms for a shell.
 _IN_SHELL = (
     (r"its value, as in (\w+)=1", r"its value, as in --set \1=1"),
     (r"times=, such as times=np\.linspace\(0, 10, 41\)", "--times 0,10,41"),
@@ -35,7 +35,7 @@ _IN_SHELL = (
 )
 
 
-def _flag(text: str) -> Any:
+def _flag(text: str) -> Parameter:
     return Parameter(group=FLOW, help=text, allow_leading_hyphen=True)
 
 
@@ -90,11 +90,11 @@ def formula(
     is_page = output is not None and output.suffix.lower() in (".html", ".htm")
     if output is not None:
         (check_page_file if is_page else check_picture_file)(output)
-    given = {"x": x, "y": y, "u": u, "v": v}
-    choice: dict[str, Any] = {n: _numbers(n, text, 2) for n, text in given.items() if text}
+    ranges = {"x": x, "y": y, "u": u, "v": v}
+    choice: dict[str, Any] = {n: _numbers(n, text, 2) for n, text in ranges.items() if text}
     for text in set:
         name, equals, value = text.partition("=")
-        if not equals or not name.isidentifier() or name in ("surface", "times", *given):
+        if not equals or not name.isidentifier() or name in ("surface", "times", *ranges):
             msg = f"--set is {text!r}; expected a parameter and its value, such as b=0.2"
             raise UsageError(msg)
         ends = _numbers(f"set {name}", value, 1, 3)
@@ -106,7 +106,7 @@ def formula(
         choice["times"] = np.linspace(first, last, int(min(max(count, 1), 10_000)))
     if resolution is not None:
         choice["resolution"] = resolution
-    field = _made(expressions, choice)
+    field = _field(expressions, choice)
     if output is None:
         from flowtex import show
 
@@ -117,14 +117,14 @@ def formula(
 
         with writing(output):
             size = export(field, output, **options).nbytes
-        told = f"{size / 1e6:.2f} MB"
+        result = f"{size / 1e6:.2f} MB"
     else:
         from flowtex import render
 
         frames = {**vars(frame), "size": pixels(frame.size)}
         write_picture(render(field, **options, **frames), output)
-        told = frame.size
-    say((str(output), "bold"), f"  {describe(field)}  ", (told, "dim"))
+        result = frame.size
+    say((str(output), "bold"), f"  {describe(field)}  ", (result, "dim"))
     return 0
 
 
@@ -137,7 +137,7 @@ def _numbers(name: str, text: str, *counts: int) -> tuple[float, ...]:
         raise UsageError(msg) from error
 
 
-def _made(expressions: tuple[str, ...], choice: dict[str, Any]) -> FlowField:
+def _field(expressions: tuple[str, ...], choice: dict[str, Any]) -> FlowField:
     from flowtex.field.formula.make import formula as make
 
     try:

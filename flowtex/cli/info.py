@@ -124,9 +124,9 @@ def _file_table(summary: FileSummary) -> Table:
     if summary.blocks:
         table.add_row("blocks", str(len(summary.blocks)))
     if summary.times:
-        few = len(summary.times) <= MOST_TIMES
+        is_short = len(summary.times) <= MOST_TIMES
         ends = f"{summary.times[0]:g} to {summary.times[-1]:g}"
-        listed = ", ".join(f"{time:g}" for time in summary.times) if few else ends
+        listed = ", ".join(f"{time:g}" for time in summary.times) if is_short else ends
         table.add_row("times", f"{len(summary.times)}: {listed}")
     table.add_row("velocity", ", ".join(summary.candidates) or "none found")
     return table
@@ -148,8 +148,8 @@ def _array_table(summary: FileSummary) -> Table:
     numbers = ("numbers", f"least{moment}", "greatest")
     table = _table("array", "on", *numbers, right=numbers)
     for array in summary.arrays:
-        made = f" = {', '.join(array.parts)}" if array.parts else ""
-        table.add_row(f"{array.name}{made}", array.where, str(array.components), *_span(array))
+        parts = f" = {', '.join(array.parts)}" if array.parts else ""
+        table.add_row(f"{array.name}{parts}", array.where, str(array.components), *_span(array))
     return table
 
 
@@ -215,7 +215,7 @@ def _lines(field: FlowField) -> str:
 
 
 def _megabytes(field: FlowField) -> float:
-    """Size of the slices of one time: single precision, two or three components, both sides."""
+    """Return the size of the slices of one time, in single precision, for both sides."""
     from flowtex.trace import chosen_lines
     from flowtex.trace.lags import choose_lags
 

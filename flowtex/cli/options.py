@@ -84,7 +84,7 @@ def _flags(name: str, text: str, flags: dict[str, Any]) -> Any:
         name,
         [(flag, kind, data_field(default=None)) for flag, kind in flags.items()],
         kw_only=True,
-        # Annotations are looked up in the module that a class says it comes from.
+        # Annotations are resolved in the module that the class names.
         namespace={"__module__": __name__, "__doc__": text},
     )
 
@@ -198,7 +198,7 @@ class ServeFlags(AddressFlags):
     ] = 15.0
 
 
-def arguments(*groups: Any) -> dict[str, Any]:
+def arguments(*groups: object) -> dict[str, Any]:
     """Return the flags that were set, as arguments of Python functions."""
     options = (f for kind in (FieldOptions, Appearance, ViewOptions) for f in fields(kind))
     forms = {option.name: option.metadata["form"] for option in options}

@@ -24,12 +24,13 @@ from flowtex.rendering import diagnostics
 
 if TYPE_CHECKING:
     from flowtex.app import Library
+    from flowtex.app.server.sessions.local import MakeApp
     from flowtex.app.server.site import Site
 
-#: What makes the session of a process that was forked, and modules that it has at once.
+#: Entry point of a forked session, and modules that are loaded before the fork.
 ENTRY = "flowtex.cli.commands:hosted"
 PRELOAD = (
-    "flowtex.field.remote:prepare_readers",  # sessions share what reads files for them
+    "flowtex.field.remote:prepare_readers",  # sessions share the processes that read files
     *("flowtex.cli.commands", "flowtex.cli.show", "flowtex.app.flow_app", "trame.widgets.vuetify3"),
     *("trame_client.module.vue3", "trame_vuetify.module.v3", "vtkmodules.vtkInteractionWidgets"),
     *("scipy.interpolate", "xarray", "cf_xarray", "netCDF4", "pyproj", "dask.array"),
@@ -37,8 +38,8 @@ PRELOAD = (
 
 #: The arguments of the running command.
 words: ContextVar[Sequence[str]] = ContextVar("words", default=())
-#: Called with what a page shows, in a process that is a session.
-_host: ContextVar[Callable[[Any, str], None] | None] = ContextVar("host", default=None)
+#: Called with the application of a page and its description, in the process of a session.
+_host: ContextVar[Callable[[MakeApp, str], None] | None] = ContextVar("host", default=None)
 
 
 def begin() -> None:
@@ -49,7 +50,7 @@ def begin() -> None:
 
 
 def serve_processes(page: ServeFlags | None) -> bool:
-    """Serve the page of the command that runs; whether that was done by processes."""
+    """Serve the page of the running command by processes, and return whether that is possible."""
     if not FORKS or _host.get() is not None:
         return False
     from flowtex.app.server.security import new_secret
@@ -73,7 +74,7 @@ def serve_processes(page: ServeFlags | None) -> bool:
 
 
 def serve_library(library: Library, page: ServeFlags | None, options: dict[str, Any]) -> int:
-    """Serve flows as a page, or, in a process that is a session, have it show them."""
+    """Serve flows as a page, or hand them to the session of this process."""
     from flowtex.app.flow_app import app_maker, first_choice, serve
     from flowtex.scene.options import Appearance
     from flowtex.scene.scene import Scene
@@ -95,19 +96,19 @@ def serve_library(library: Library, page: ServeFlags | None, options: dict[str, 
 def open_site(
     run: Callable[[Sequence[str]], Any], request: dict[str, Any]
 ) -> tuple[Site, dict[str, str]]:
-    """Return a site with the session that a command makes, and what is to be said of it."""
+    """Return a site with the session that a command makes, and its messages."""
     from flowtex.app.server.sessions.local import opener
     from flowtex.app.server.sessions.registry import Sessions
     from flowtex.app.server.site import Site
 
     diagnostics.take_report(diagnostics.OpenGLReport(**request["opengl"]))
-    made: list[tuple[Any, str]] = []
-    token = _host.set(lambda make_app, description: made.append((make_app, description)))
+    sites: list[tuple[MakeApp, str]] = []
+    token = _host.set(lambda make_app, description: sites.append((make_app, description)))
     try:
         with redirect_stderr(io.StringIO()) as notices:
             run(request["words"])
     finally:
         _host.reset(token)
-    ((make_app, description),), secret = made, request["secret"]
+    ((make_app, description),), secret = sites, request["secret"]
     site = Site(Sessions(opener(make_app, secret), limit=1, idle=math.inf), secret)
     return site, {"description": description, "notices": notices.getvalue()}

@@ -70,8 +70,8 @@ def pyramid(
         raise UsageError(msg)
     start = time.perf_counter()
     with waiting(f"Reading {files[0].name}"), notices():
-        whole: Any = files[0] if len(files) == 1 else files
-        source = source_of(whole, **arguments(flow))
+        place: Any = files[0] if len(files) == 1 else files
+        source = source_of(place, **arguments(flow))
     with writing(output):
         built = build(source, output, lines=lines, scheduler=scheduler, memory=memory, fresh=fresh)
     kept = f", {built.kept:,} kept" if built.kept else ""
@@ -94,7 +94,7 @@ def _verify(files: Sequence[Path]) -> int:
         raise UsageError(msg)
     try:
         faults = verify(files[0])
-    except DamageError as error:  # of what the store tells of itself
+    except DamageError as error:  # in the description of the store
         faults = [str(error)]
     for fault in faults:
         complain(DamageError(fault))

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from flowtex.app import Library
     from flowtex.field.source import FlowSource
 
-#: How each example is first seen: zoom and point of the mesh.
+#: Initial zoom and focus of examples.
 FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
     "cylinder": (3.2, (4.0, 0.0)),
     "airfoil": (6.0, (0.5, 0.0)),
@@ -68,16 +68,12 @@ def demo(
     if serve_processes(page):
         return 0
     from flowtex.app import Library
-    from flowtex.field.source import FlowSource
-
-    def opener(name: str) -> Any:
-        return lambda: FlowSource(getattr(examples, f"{name}_field")())
 
     names = [example, *(name for name in NAMES if name != example)]
     shown = {name.replace("_", " "): name for name in names}
-    typed = {name.replace("_", " "): partial(_typed, name) for name in KNOWN}
+    typed = {name.replace("_", " "): partial(_known_formula, name) for name in KNOWN}
     library = Library(
-        {title: opener(name) for title, name in shown.items()} | typed,
+        {title: partial(_example, name) for title, name in shown.items()} | typed,
         python={title: f"flowtex.examples.{name}_field()" for title, name in shown.items()},
         looks=FIRST_LOOKS,
         typed=True,
@@ -86,7 +82,13 @@ def demo(
     return serve_library(library, page, {**options, "zoom": zoom, "focus": focus})
 
 
-def _typed(name: str) -> FlowSource:
+def _example(name: str) -> FlowSource:
+    from flowtex.field.source import FlowSource
+
+    return FlowSource(getattr(examples, f"{name}_field")())
+
+
+def _known_formula(name: str) -> FlowSource:
     from flowtex.field.formula.make import formula
     from flowtex.field.source import FlowSource
 
@@ -143,10 +145,10 @@ def _show_page(
 
     if len(files) == 1 and has_parts(files[0]):
         return serve_library(Library.of(load_field(files, choice)), page, options)
-    one = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))
-    if one and (library := _earth_library(files, choice)) is not None:
+    is_one_flow = _belong_together(files) or (len(files) == 1 and not _is_folder(files[0]))
+    if is_one_flow and (library := _earth_library(files, choice)) is not None:
         return serve_library(library, page, {**options, **choice})
-    if one and any(name in choice for name in FIELD_OPTIONS):
+    if is_one_flow and any(name in choice for name in FIELD_OPTIONS):
         return serve_library(Library.of(load_field(files, choice)), page, options)
     if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
         msg = (
@@ -167,8 +169,8 @@ def _earth_library(files: Sequence[Path], choice: dict[str, Any]) -> Library | N
     from flowtex.field.datasets.files import dataset_paths
     from flowtex.field.earth import GLOBE, NAMES
 
-    known = {"vectors", "projection", "globe", "level"}
-    if not dataset_paths(files) or set(choice) - known:
+    choices_of_page = {"vectors", "projection", "globe", "level"}
+    if not dataset_paths(files) or set(choice) - choices_of_page:
         return None
     block = GLOBE if choice.get("globe") else choice.get("projection", "")
     if block not in ("", GLOBE, *NAMES):
@@ -193,7 +195,7 @@ def _is_folder(path: Path) -> bool:
 
 
 def _belong_together(files: Sequence[Path]) -> bool:
-    """Whether several files are parts of one model output, or steps of a series."""
+    """Return whether several files are parts of one model output, or steps of a series."""
     from flowtex.field.datasets.files import belong_together, dataset_paths
 
     return len(files) > 1 and bool(dataset_paths(files)) and belong_together(files)

@@ -80,7 +80,7 @@ def render(
         f"  {describe(field)}{lost}  ",
         (f"{_size(options)}, {time.perf_counter() - start:.1f} s", "dim"),
     )
-    _tell_clipped(field, drawing(look, settings))
+    _print_clipped(field, drawing(look, settings))
     return 0
 
 
@@ -132,7 +132,7 @@ def movie(
         f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s"
     )
     say((str(output), "bold"), f"  {describe(field)}{loop}  ", (figures, "dim"))
-    _tell_clipped(field, drawing(look, settings))
+    _print_clipped(field, drawing(look, settings))
     return 0
 
 
@@ -175,12 +175,12 @@ def export(
     from flowtex.web.export import export as write_page
 
     def announce(size: int, count: int) -> None:
-        some = "" if count == len(field.times) else f", {count} of them"
-        say(f"{describe(field)}{some}: about {size / 1e6:.1f} MB")
+        selected = "" if count == len(field.times) else f", {count} of them"
+        say(f"{describe(field)}{selected}: about {size / 1e6:.1f} MB")
 
     with writing(output):
-        own: dict[str, Any] = {"steps": steps, "title": title, "store": store, "basemap": basemap}
-        page = write_page(field, output, announce=announce, **own, **options)
+        options |= {"steps": steps, "title": title, "store": store, "basemap": basemap}
+        page = write_page(field, output, announce=announce, **options)
     seconds = time.perf_counter() - start
     say((str(output), "bold"), "  ", (f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s", "dim"))
     return 0
@@ -194,8 +194,8 @@ def write_picture(picture: AnyArray, output: Path) -> None:
         Image.fromarray(picture).save(file, Image.EXTENSION[output.suffix.lower()])
 
 
-def _tell_clipped(field: FlowField, options: Mapping[str, Any]) -> None:
-    """Tell which values the colours leave out by default."""
+def _print_clipped(field: FlowField, options: Mapping[str, Any]) -> None:
+    """Print which values the colours leave out by default."""
     from flowtex.scene.options import Options
     from flowtex.scene.scene import Scene
 
@@ -210,7 +210,7 @@ def _tell_clipped(field: FlowField, options: Mapping[str, Any]) -> None:
     )
 
 
-def _drawing(look: LookFlags | None, frame: FrameFlags, settings: Any) -> dict[str, Any]:
+def _drawing(look: LookFlags | None, frame: FrameFlags, settings: object) -> dict[str, Any]:
     return {**drawing(look, settings), **vars(frame), "size": pixels(frame.size)}
 
 

@@ -104,9 +104,9 @@ def _bodies(actor: Any) -> Iterator[Body]:
 def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
     """Return the surface of a mesh with no other arrays than colours and normals."""
     colours = _colours(mesh, mapper)
-    plain_mesh = mesh.copy(deep=False)
+    copy = mesh.copy(deep=False)
     normals = mesh.point_data.active_normals if isinstance(mesh, pv.PolyData) else None
-    plain_mesh.clear_data()
+    copy.clear_data()
     if colours is None:
         colours = np.tile(_bytes((*prop.GetColor(), 1.0)), (mesh.n_points, 1))
     else:
@@ -114,14 +114,10 @@ def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
     opacity = prop.GetOpacity() * colours[:, 3]
     colours[:, 3] = np.where(opacity < 255, np.minimum(np.rint(opacity), 254), 255)
     on_points = len(colours) == mesh.n_points
-    (plain_mesh.point_data if on_points else plain_mesh.cell_data)[COLOURS] = colours
+    (copy.point_data if on_points else copy.cell_data)[COLOURS] = colours
     if normals is not None and prop.GetInterpolation():
-        plain_mesh.point_data.active_normals = normals
-    return (
-        plain_mesh
-        if isinstance(plain_mesh, pv.PolyData)
-        else plain_mesh.extract_surface(algorithm=None)
-    )
+        copy.point_data.active_normals = normals
+    return copy if isinstance(copy, pv.PolyData) else copy.extract_surface(algorithm=None)
 
 
 def _colours(mesh: pv.DataSet, mapper: Any) -> Bytes | None:
@@ -149,26 +145,26 @@ def _colours(mesh: pv.DataSet, mapper: Any) -> Bytes | None:
 def _parts_of(surface: pv.PolyData, prop: vtkProperty) -> Iterator[Body]:
     """Yield the faces, lines and points of a surface, and the edges of its faces."""
     style, width = prop.GetRepresentationAsString(), prop.GetLineWidth()
-    simple_surface = surface.triangulate() if surface.GetNumberOfStrips() else surface
-    verts, lines, polys = (_cells(simple_surface, kind) for kind in ("Verts", "Lines", "Polys"))
+    faces = surface.triangulate() if surface.GetNumberOfStrips() else surface
+    verts, lines, polys = (_cells(faces, kind) for kind in ("Verts", "Lines", "Polys"))
     if style == "Points":
-        points = np.arange(simple_surface.n_points)
-        yield _body(simple_surface, (points, points, 0 * points), width=prop.GetPointSize())
+        points = np.arange(faces.n_points)
+        yield _body(faces, (points, points, 0 * points), width=prop.GetPointSize())
         return
-    yield _body(simple_surface, (verts[0], verts[0], verts[2]), width=prop.GetPointSize())
-    yield _body(simple_surface, _pieces(lines), width=width)
+    yield _body(faces, (verts[0], verts[0], verts[2]), width=prop.GetPointSize())
+    yield _body(faces, _pieces(lines), width=width)
     if style == "Wireframe":
-        yield _body(simple_surface, _edges(polys), width=width)
+        yield _body(faces, _edges(polys), width=width)
         return
     if not len(polys[0]):
         return
-    triangles = simple_surface.triangulate()
+    triangles = faces.triangulate()
     ids, _, owners = _cells(triangles, "Polys")
     light = {"ambient": prop.GetAmbient(), "diffuse": prop.GetDiffuse()}
     corners = (*ids.reshape(-1, 3).T, owners[::3])
     yield _body(triangles, corners, **(light if prop.GetLighting() else {}))
     if prop.GetEdgeVisibility():
-        yield _body(simple_surface, _edges(polys), width=width, colour=prop.GetEdgeColor())
+        yield _body(faces, _edges(polys), width=width, colour=prop.GetEdgeColor())
 
 
 #: Points of all cells in a row, the first of each cell, and the cell of each point.
@@ -204,10 +200,7 @@ def _edges(polygons: Cells) -> Cells:
 
 
 def _body(
-    mesh: pv.PolyData,
-    corners: tuple[Indices, ...],
-    colour: Any = None,
-    **look: float,
+    mesh: pv.PolyData, corners: tuple[Indices, ...], colour: Any = None, **look: float
 ) -> Body:
     """Return triangles or pieces of lines, given by their corners and their cells.
 
@@ -218,23 +211,21 @@ def _body(
     normals = mesh.point_data.active_normals
     if COLOURS in mesh.cell_data:
         colours = np.repeat(np.asarray(mesh.cell_data[COLOURS])[owners], cells.shape[1], axis=0)
-        vertices = cells.ravel()
+        used = cells.ravel()
         cells = np.arange(cells.size).reshape(cells.shape)
     else:
-        vertices, numbers = np.unique(cells, return_inverse=True)
-        cells, colours = numbers.reshape(cells.shape), mesh.point_data[COLOURS][vertices]
+        used, numbers = np.unique(cells, return_inverse=True)
+        cells, colours = numbers.reshape(cells.shape), mesh.point_data[COLOURS][used]
     if colour is not None:
-        colours = np.concatenate(
-            [np.tile(_bytes(colour), (len(vertices), 1)), colours[:, 3:]], axis=1
-        )
+        colours = np.concatenate([np.tile(_bytes(colour), (len(used), 1)), colours[:, 3:]], axis=1)
     is_face = len(ends) == 3
     faces, pieces = (np.zeros((0, k), np.intp) for k in (3, 2))
     return Body(
-        points[vertices],
+        points[used],
         np.asarray(colours),
         cells if is_face else faces,
         pieces if is_face else cells,
-        normals=None if normals is None else np.asarray(normals, dtype=float)[vertices],
+        normals=None if normals is None else np.asarray(normals, dtype=float)[used],
         **look,
     )
 

@@ -180,18 +180,17 @@ class MeshLevels:
                 # Only lines that are left out have an error.
                 omitted = slice(1, len(lines[axis]) - 1, 2)
                 index = (slice(None), *(slice(None),) * axis, omitted)
-                block_directions = None if directions is None else directions[index]
-                size = self._size(
-                    _deviation(values, lines[axis], axis), block_directions, border=1 - axis
-                )
-                omitted_lines = [n[omitted] if a == axis else n for a, n in enumerate(lines)]
-                errors[:, level] += self._greatest(size, *omitted_lines)
+                at_omitted = None if directions is None else directions[index]
+                deviation = _deviation(values, lines[axis], axis)
+                size = self._size(deviation, at_omitted, border=1 - axis)
+                parts = [n[omitted] if a == axis else n for a, n in enumerate(lines)]
+                errors[:, level] += self._greatest(size, *parts)
                 kept = _every_second(len(lines[axis]))
                 values, lines[axis] = values.take(kept, axis), lines[axis][kept]
                 directions = None if directions is None else directions.take(kept, axis + 1)
             twist = values[1:, 1:] + values[:-1, :-1] - values[1:, :-1] - values[:-1, 1:]
-            block_directions = None if directions is None else directions[:, :-1, :-1]
-            size = self._size(twist / 4, block_directions)
+            at_omitted = None if directions is None else directions[:, :-1, :-1]
+            size = self._size(twist / 4, at_omitted)
             errors[:, level] += self._greatest(size, lines[0][:-1], lines[1][:-1])
         return np.asarray(errors.max(axis=0))
 

@@ -191,11 +191,7 @@ class FieldOptions:
         return field if is_done else with_uncertainty(field, uncertainty)
 
     def _read(
-        self,
-        mesh: Any,
-        choices: dict[str, Any],
-        time: float | str | None,
-        uncertainty: ArrayLike | None,
+        self, mesh: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
     ) -> FlowField:
         if (stored := self._of_store(mesh, choices, time, uncertainty)) is not None:
             return stored
@@ -219,11 +215,7 @@ class FieldOptions:
         return mesh
 
     def _of_store(
-        self,
-        place: Any,
-        choices: dict[str, Any],
-        time: float | str | None,
-        uncertainty: ArrayLike | None,
+        self, place: Any, choices: dict[str, Any], time: float | str | None, uncertainty: Any
     ) -> FlowField | None:
         """Return the field of a pyramid in a store, where there is one."""
         if not isinstance(place, (str, Path)) or Path(place).is_file():

@@ -159,17 +159,8 @@ def export(
     views = web_views(shown, arguments, steps=steps)
     try:
         camera = arguments.view.first_camera(views[0].field.surface).to_dict()
-        axes = arguments.view.axes
-        return write_page(
-            views,
-            path,
-            store=store,
-            basemap=basemap,
-            announce=announce,
-            camera=camera,
-            title=title,
-            axes=axes,
-        )
+        shown = {"camera": camera, "title": title, "axes": arguments.view.axes}
+        return write_page(views, path, store=store, basemap=basemap, announce=announce, **shown)
     finally:
         for view in views:
             view.close()

@@ -107,11 +107,8 @@ class Feed:
     @property
     def header(self) -> Header:
         """Header of the present scene, without settings and camera."""
-        return {
-            **self.scene.constants(),
-            "generation": self._generation,
-            "surface": self._surface,
-        }
+        state = {"generation": self._generation, "surface": self._surface}
+        return {**self.scene.constants(), **state}
 
     def start(self) -> None:
         """Send what is shown first, without being asked, and then make the whole of it.

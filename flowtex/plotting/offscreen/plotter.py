@@ -67,19 +67,15 @@ class OffscreenPlotter:
         appearance = options.appearance
         self._legend = appearance.has_bar
         if scalar_bar_args and (annotations or not appearance.show_scalar_bar):
-            condition = "without annotations" if annotations else "with show_scalar_bar=True"
-            notify(
-                f"scalar_bar_args is given, but this bar is drawn only {condition}; it is not used"
-            )
+            case = "without annotations" if annotations else "with show_scalar_bar=True"
+            notify(f"scalar_bar_args is given, but this bar is drawn only {case}; it is not used")
         if annotations or appearance.show_scalar_bar is None:
             options = replace(options, appearance=replace(appearance, show_scalar_bar=False))
         self._supersampling = supersampling
         self._view, self._annotations = options.view, annotations
         large = (size[0] * supersampling, size[1] * supersampling)
-        two_views = options.view.beside is not None
-        self._plotter = new_plotter(
-            large, two_views=two_views, off_screen=True, lighting="light kit"
-        )
+        split = options.view.beside is not None
+        self._plotter = new_plotter(large, two_views=split, off_screen=True, lighting="light kit")
         try:
             if supersampling == 1:  # supersampling smooths outlines as well
                 self._plotter.enable_anti_aliasing("msaa", multi_samples=OUTLINE_SAMPLES)
@@ -113,10 +109,8 @@ class OffscreenPlotter:
             handle.clock = clock
         self._plotter.suppress_rendering = False
         self._plotter.render()
-        screenshot: Any = self._plotter.screenshot(
-            return_img=True, transparent_background=transparent
-        )
-        pixels = np.asarray(screenshot[..., : 4 if transparent else 3], dtype=np.uint8)
+        image: Any = self._plotter.screenshot(return_img=True, transparent_background=transparent)
+        pixels = np.asarray(image[..., : 4 if transparent else 3], dtype=np.uint8)
         visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
         if visible and (pixels[..., :3] == self._plotter.background_color.int_rgb).all():
             notify(NOTHING_SEEN, UserWarning)

@@ -167,11 +167,7 @@ class AxesScales:
             return shown
         # The angle may be periodic.
         closed = FlowField.from_arrays(
-            shown.points,
-            shown.velocity,
-            valid=valid,
-            scalars=scalars,
-            sign_free=field.sign_free,
+            shown.points, shown.velocity, valid=valid, scalars=scalars, sign_free=field.sign_free
         )
         names = ("points", "velocity", "valid", "has_position", "scalars", "periodic")
         return replace(shown, **{name: getattr(closed, name) for name in names})

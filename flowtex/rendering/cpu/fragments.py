@@ -87,15 +87,10 @@ class Fragments:
     def parts(self, count: int) -> Iterator[tuple[slice, Fragments]]:
         """Yield parts of at most ``count`` fragments, with their slices."""
         for start in range(0, len(self), count):
-            selection = slice(start, start + count)
-            noise, normal = (None if v is None else v[selection] for v in (self.noise, self.normal))
-            nodes = None if self.nodes is None else self.nodes[selection]
-            yield (
-                selection,
-                Fragments(
-                    self.position[selection], self.coordinate[selection], noise, normal, nodes
-                ),
-            )
+            part = slice(start, start + count)
+            noise, normal = (None if v is None else v[part] for v in (self.noise, self.normal))
+            nodes = None if self.nodes is None else self.nodes[part]
+            yield part, Fragments(self.position[part], self.coordinate[part], noise, normal, nodes)
 
 
 def _normals(geometry: TriangleGeometry, coverage: Coverage) -> Varying:

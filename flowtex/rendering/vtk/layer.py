@@ -220,13 +220,11 @@ class FlowLayer:
         """
         old_time = self.view.time
         if (before, after) != self._steps:
-            names = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
-            reused = {
-                names[s]: self._gpu.pop(names[s], None) for s in (before, after) if s in names
-            }
+            old = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
+            reused = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
             self._retire("u_slices", "u_slicesNext")
             for step, name in ((before, "u_slices"), (after, "u_slicesNext")):
-                texture = reused.get(names.get(step, ""))
+                texture = reused.get(old.get(step, ""))
                 if texture is not None:
                     self._gpu[name] = texture
             self._steps = (before, after)
