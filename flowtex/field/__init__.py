@@ -1,4 +1,4 @@
-"""Surface and velocity: what is drawn, as arrays on a mesh."""
+"""Surface and velocity, as arrays on a mesh."""
 
 from __future__ import annotations
 

@@ -1,14 +1,12 @@
-"""Datasets of xarray's as fields; the package itself tells them from meshes."""
+"""Datasets of xarray's as fields, and how to recognise them among meshes."""
 
 from __future__ import annotations
 
-from typing import Any
 
-
-def is_dataset(thing: Any) -> bool:
-    """Whether something is a dataset or a tree of xarray's, or several; xarray is not loaded."""
-    several = thing if isinstance(thing, (list, tuple)) else [thing]
-    return bool(several) and all(
-        type(one).__name__ in ("Dataset", "DataTree") and type(one).__module__.startswith("xarray.")
-        for one in several
+def is_dataset(data: object) -> bool:
+    """Return whether data are one or several datasets or trees of xarray's, without loading it."""
+    kinds = [type(item) for item in (data if isinstance(data, (list, tuple)) else [data])]
+    names = ("Dataset", "DataTree")
+    return bool(kinds) and all(
+        kind.__name__ in names and kind.__module__.startswith("xarray.") for kind in kinds
     )

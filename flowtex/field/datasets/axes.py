@@ -1,4 +1,4 @@
-"""The axes of a variable: which two are the surface, and what is chosen along the others."""
+"""The axes of a variable: the two of the surface, and choices along the others."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ PRESSURES |= dict.fromkeys(("hpa", "mbar", "mb", "millibar", "millibars"), 100.0
 #: Lengths of the units of time in seconds.
 SECONDS = {"s": 1.0, "sec": 1.0, "second": 1.0, "min": 60.0, "minute": 60.0, "h": 3600.0}
 SECONDS |= {"hr": 3600.0, "hour": 3600.0, "d": 86400.0, "day": 86400.0}
-#: What numbers the levels of a model from its top on.
+#: Names of levels that a model numbers from its top on.
 FROM_THE_TOP = re.compile(r"generalized.height", re.IGNORECASE)
 #: Names of the dimensions of nodes and of faces, where there is a mesh.
 NODES, FACES = "mesh_nodes", "mesh_faces"
@@ -41,22 +41,22 @@ WET = {
     **dict.fromkeys(("wet_nodes", "wet_cells"), 1),
     **dict.fromkeys(("wetdry_node", "wetdry_elem", "dryFlagNode", "dryFlagElement"), 0),
 }
-#: Words by which a person may choose along an axis whose own name is another.
+#: Words for choices along an axis, beside its name.
 LEVEL, TIME = "level", "time"
 
 
 @dataclass
 class Choice:
-    """What a person chose along the axes, by value and by number; both by name."""
+    """Choices along the axes, by value and by number; both by name."""
 
     sel: Mapping[str, Any] = field(default_factory=dict)
     isel: Mapping[str, Any] = field(default_factory=dict)
     used: set[str] = field(default_factory=set)
 
-    def check(self, known: set[str], drawn: set[str]) -> None:
+    def check(self, names: set[str], drawn: set[str]) -> None:
         """Raise for a name that no axis has, or one of those that are drawn."""
         for name in {*self.sel, *self.isel} - self.used:
-            msg = f"the axis {name!r} does not exist; {near_names(name, sorted(known))}"
+            msg = f"the axis {name!r} does not exist; {near_names(name, sorted(names))}"
             if name in drawn:
                 msg = (
                     f"{name!r} is an axis of the surface, of which all is drawn; to draw a part, "
@@ -67,15 +67,15 @@ class Choice:
 
 @dataclass(frozen=True)
 class Section:
-    """Part of a variable that is drawn: two axes, and time where it has several steps."""
+    """The drawn part of a variable: two axes, and time where it has several steps."""
 
-    #: ([time,] rows, columns), or ([time,] nodes or faces of a mesh); nothing of it is read yet.
+    #: ([time,] rows, columns), or ([time,] nodes or faces of a mesh); not read yet.
     array: xr.DataArray
     #: Dates, or seconds, one for each step; ``None`` where no time is known.
     times: AnyArray | None
-    notes: tuple[str, ...]  #: What was chosen automatically.
+    notes: tuple[str, ...]  #: Texts about automatic choices.
     level: str  #: The level as text.
-    numbers: Mapping[str, int]  #: Indices that are drawn along axes with a choice, by name.
+    numbers: Mapping[str, int]  #: Drawn indices along axes with a choice, by name.
 
     @property
     def is_series(self) -> bool:
@@ -93,18 +93,18 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
         if dim in array.dims:
             return (dim,)
     axes = array.cf.axes
-    found = []
+    dims = []
     for kind, pattern, spare in (("Y", ROWS, -2), ("X", COLUMNS, -1)):
         named = [str(d) for d in array.dims if d in axes.get(kind, ())]
         alike = [str(d) for d in array.dims if pattern.match(str(d))]
-        found.append((named or alike or [str(array.dims[spare])])[-1])
-    if found[0] == found[1]:
-        found = [str(d) for d in array.dims[-2:]]
-    return found[0], found[1]
+        dims.append((named or alike or [str(array.dims[spare])])[-1])
+    if dims[0] == dims[1]:
+        dims = [str(d) for d in array.dims[-2:]]
+    return dims[0], dims[1]
 
 
 def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
-    """Choose along the axes of variables that belong together, alike in all of them."""
+    """Choose along the axes of variables that belong together, the same in all of them."""
     rows = [horizontal_dims(array) for array in arrays]
     others = [
         [str(d) for d in array.dims if d not in pair]
@@ -126,7 +126,7 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
                 "they were cut out, the axis may run the other way: slice(high, low)"
             )
             raise FieldError(msg)
-    done, notes, level = list(arrays), [], ""
+    chosen, notes, level = list(arrays), [], ""
     numbers: dict[str, int] = {}
     times: AnyArray | None = None
     for kind in kinds[0]:
@@ -136,23 +136,23 @@ def sections(arrays: list[xr.DataArray], choice: Choice) -> list[Section]:
         if kind == TIME:
             times = None if lines[0] is None else np.atleast_1d(np.asarray(lines[0])[picks[0]])
         elif kind == LEVEL and lines[0] is not None and np.ndim(picks[0]) == 0:
-            level = _level_words(lines[0][picks[0]], arrays[0], dims[0])
+            level = _level_text(lines[0][picks[0]], arrays[0], dims[0])
         if note:
             notes.append(note)
         if np.ndim(picks[0]) == 0 and picks[0] != slice(None) and arrays[0].sizes[dims[0]] > 1:
             numbers[dims[0] if kind == TIME else kind] = int(picks[0])
-        done = [array.isel({d: p}) for array, d, p in zip(done, dims, picks, strict=True)]
+        chosen = [array.isel({d: p}) for array, d, p in zip(chosen, dims, picks, strict=True)]
     order = [
         (kind[TIME],) if kind.get(TIME) in a.dims else ()
-        for kind, a in zip(kinds, done, strict=True)
+        for kind, a in zip(kinds, chosen, strict=True)
     ]
-    done = [a.transpose(*t, *pair) for a, t, pair in zip(done, order, rows, strict=True)]
+    chosen = [a.transpose(*t, *pair) for a, t, pair in zip(chosen, order, rows, strict=True)]
     names = {str(d) for dims in others for d in dims} | set(kinds[0])
     choice.check(names, {str(d) for pair in rows for d in pair})
     if times is None:
         times = _time_beside(arrays[0])
     level = level or _level_beside(arrays[0])
-    return [Section(array, times, tuple(notes), level, numbers) for array in done]
+    return [Section(array, times, tuple(notes), level, numbers) for array in chosen]
 
 
 def _level_beside(array: xr.DataArray) -> str:
@@ -160,18 +160,18 @@ def _level_beside(array: xr.DataArray) -> str:
     for name, coordinate in array.coords.items():
         is_number = not coordinate.dims and coordinate.dtype.kind in "fiu"
         if is_number and axis_kind(array, str(name)) == LEVEL:
-            return _level_words(coordinate.values[()], array, str(name))
+            return _level_text(coordinate.values[()], array, str(name))
     return ""
 
 
-def _level_words(value: Any, array: xr.DataArray, dim: str) -> str:
+def _level_text(value: Any, array: xr.DataArray, dim: str) -> str:
     """Return a level as text, with the name of its axis where it has no unit."""
-    text = _words(value, array, dim)
+    text = _value_text(value, array, dim)
     return text if " " in text else f"{dim} {text}"
 
 
 def wet_at(
-    section: Section, dim: str, datasets: Sequence[Any], choice: Choice
+    section: Section, dim: str, datasets: Sequence[xr.Dataset], choice: Choice
 ) -> Callable[[int], Bools] | None:
     """Return the mask of nodes or faces under water at a step of a velocity."""
     plain = Choice(choice.sel, choice.isel, {*choice.sel, *choice.isel})
@@ -184,7 +184,7 @@ def wet_at(
     return None
 
 
-def drawn_steps(section: Section, array: xr.DataArray) -> tuple[Any, list[int]]:
+def drawn_steps(section: Section, array: xr.DataArray) -> tuple[AnyArray | None, list[int]]:
     """Return dates or seconds of the steps that are drawn, and their numbers in the section."""
     times = section.times
     count = section.array.shape[0] if section.is_series else 1
@@ -209,7 +209,7 @@ def drawn_steps(section: Section, array: xr.DataArray) -> tuple[Any, list[int]]:
 
 def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
     """Return texts for the values along all axes with a choice except time, the level first."""
-    found: dict[str, tuple[str, ...]] = {}
+    texts: dict[str, tuple[str, ...]] = {}
     surface = horizontal_dims(array)
     for dim in map(str, array.dims):
         kind = axis_kind(array, dim)
@@ -217,12 +217,12 @@ def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
         if dim in surface or array.sizes[dim] < 2 or (kind == TIME and _is_time(array, dim, line)):
             continue
         values = range(array.sizes[dim]) if line is None else line
-        found[dim if kind == TIME else kind] = tuple(_words(value, array, dim) for value in values)
-    return dict(sorted(found.items(), key=lambda item: item[0] != LEVEL))
+        texts[dim if kind == TIME else kind] = tuple(_value_text(v, array, dim) for v in values)
+    return dict(sorted(texts.items(), key=lambda item: item[0] != LEVEL))
 
 
-def way_ahead(array: xr.DataArray, dim: str) -> int:
-    """Return 1 where the coordinate of a dimension grows, or -1 against its numbers."""
+def axis_direction(array: xr.DataArray, dim: str) -> int:
+    """Return 1 where the coordinate of a dimension grows with its indices, or -1."""
     coordinate = array.coords.get(dim)
     if coordinate is None or coordinate.dtype.kind not in "fiu" or coordinate.size < 2:
         return 1
@@ -280,15 +280,15 @@ def _values(array: xr.DataArray, dim: str) -> AnyArray | None:
 
 def _time_beside(array: xr.DataArray) -> AnyArray | None:
     """Return the single date of a variable without a time axis."""
-    found = [c for c in array.coords.values() if c.ndim == 0 and _is_dates(c)]
-    named = [c for c in found if c.attrs.get("standard_name") == "time"] or found
+    dates = [c for c in array.coords.values() if c.ndim == 0 and _is_dates(c)]
+    named = [c for c in dates if c.attrs.get("standard_name") == "time"] or dates
     return np.atleast_1d(named[0].values) if named else None
 
 
 def _picks(
-    kind: str, dims: list[str], lines: list[Any], first: xr.DataArray, choice: Choice
+    kind: str, dims: list[str], lines: list[AnyArray | None], first: xr.DataArray, choice: Choice
 ) -> tuple[list[Any], str]:
-    """Return what is drawn along one axis, for each variable, and a note for what was not asked."""
+    """Return the drawn indices along one axis, for each variable, and a note about a default."""
     count, dim, line = first.sizes[dims[0]], dims[0], lines[0]
     names = dict.fromkeys((*dims, kind))
     for name in names:
@@ -299,44 +299,44 @@ def _picks(
                 msg = f"{name} has index {number!r} of {count}; expected 0 to {count - 1}"
                 raise FieldError(msg)
             value = None if line is None else line[number]
-            return [_alike(value, int(number) % count, other) for other in lines], ""
+            return [_number_in(value, int(number) % count, other) for other in lines], ""
         if name in choice.sel:
             choice.used.add(name)
-            wanted = choice.sel[name]
+            target = choice.sel[name]
             if line is None:
                 msg = (
                     f"{name} has no coordinate values; select by index, as in isel={{{name!r}: 0}}"
                 )
                 raise FieldError(msg)
-            if kind == TIME and isinstance(wanted, slice):
-                found = _within(wanted, line, name)
-                return [[_alike(line[n], n, other) for n in found] for other in lines], ""
-            number = _nearest(wanted, line, name)
-            return [_alike(line[number], number, other) for other in lines], ""
+            if kind == TIME and isinstance(target, slice):
+                numbers = _within(target, line, name)
+                return [[_number_in(line[n], n, other) for n in numbers] for other in lines], ""
+            number = _nearest(target, line, name)
+            return [_number_in(line[number], number, other) for other in lines], ""
     if count == 1:
         return [0 if kind != TIME else [0]] * len(dims), ""
     if kind == TIME and _is_time(first, dim, line):
         return [slice(None)] * len(dims), ""
     if kind == LEVEL and line is not None and line.dtype.kind in "fiu":
         number = _at_surface(lines, first.coords.get(dim))
-        why = "the nearest to the surface"
+        reason = "the nearest to the surface"
     else:
-        number, why = 0, "the first"
+        number, reason = 0, "the first"
     value = None if line is None else line[number]
-    said = f"number {number}" if value is None else _words(value, first, dim)
-    other_one = 0 if number else count - 1
+    description = f"number {number}" if value is None else _value_text(value, first, dim)
+    other_number = 0 if number else count - 1
     if line is None:
-        how = f"isel={{{dim!r}: {other_one}}}"
+        example = f"isel={{{dim!r}: {other_number}}}"
     else:
-        other_value = line[other_one]
+        other_value = line[other_number]
         text = f"{other_value:g}" if line.dtype.kind in "fiu" else repr(str(other_value))
-        how = f"level={text}" if kind == LEVEL else f"sel={{{dim!r}: {text}}}"
-    note = f"{dim} is {said}, {why} of {count} values; choose another, as in {how}"
-    return [_alike(value, number, other) for other in lines], note
+        example = f"level={text}" if kind == LEVEL else f"sel={{{dim!r}: {text}}}"
+    note = f"{dim} is {description}, {reason} of {count} values; choose another, as in {example}"
+    return [_number_in(value, number, other) for other in lines], note
 
 
 def _is_time(array: xr.DataArray, dim: str, line: AnyArray | None) -> bool:
-    """Whether the values of an axis of time are dates, or spans of a known unit."""
+    """Return whether the values of an axis of time are dates, or spans of a known unit."""
     coordinate = array.coords.get(dim)
     if line is None or line.dtype.kind in "MmO":
         return line is not None
@@ -344,7 +344,7 @@ def _is_time(array: xr.DataArray, dim: str, line: AnyArray | None) -> bool:
     return seconds_in(unit) is not None
 
 
-def _alike(value: Any, number: int, line: AnyArray | None) -> int:
+def _number_in(value: Any, number: int, line: AnyArray | None) -> int:
     """Return the number of a value along the axis of another variable."""
     if value is None or line is None or line.dtype.kind not in "fiuM":
         return number
@@ -362,7 +362,7 @@ def _alike(value: Any, number: int, line: AnyArray | None) -> int:
     return int(near[0])
 
 
-def _at_surface(lines: list[Any], coordinate: Any) -> int:
+def _at_surface(lines: list[Any], coordinate: xr.DataArray | None) -> int:
     """Return the number of the level nearest to the surface that all variables have."""
     line = lines[0].astype(float)
     unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
@@ -371,7 +371,7 @@ def _at_surface(lines: list[Any], coordinate: Any) -> int:
     height = -line if falls else np.abs(line)
     for number in np.argsort(height, kind="stable"):
         try:
-            [_alike(lines[0][number], int(number), other) for other in lines[1:]]
+            [_number_in(lines[0][number], int(number), other) for other in lines[1:]]
         except FieldError:
             continue
         return int(number)
@@ -379,13 +379,13 @@ def _at_surface(lines: list[Any], coordinate: Any) -> int:
     raise FieldError(msg)
 
 
-def _nearest(wanted: Any, line: AnyArray, name: str) -> int:
-    """Return the number of the value nearest to what is wanted, within the ends of the axis."""
+def _nearest(target: Any, line: AnyArray, name: str) -> int:
+    """Return the number of the value nearest to a target, within the ends of the axis."""
     values = _texts(line)
     listed = ", ".join(values[:8]) + (", ..." if len(line) > 8 else "")
-    msg = f"{name} is {wanted!r}; expected one of {listed}"
+    msg = f"{name} is {target!r}; expected one of {listed}"
     try:
-        at, (begin, end) = _places(line, wanted)
+        at, (begin, end) = _places(line, target)
     except (TypeError, ValueError, AttributeError) as error:
         raise FieldError(msg) from error
     within = np.flatnonzero((at >= begin) & (at < end))
@@ -399,40 +399,39 @@ def _nearest(wanted: Any, line: AnyArray, name: str) -> int:
     return number
 
 
-def _within(wanted: slice, line: AnyArray, name: str) -> list[int]:
+def _within(target: slice, line: AnyArray, name: str) -> list[int]:
     """Return the numbers of the times in a range, its ends included as in xarray."""
     ends = _texts(line)[0], _texts(line)[-1]
     try:
-        at, (low, _) = _places(line, ends[0] if wanted.start is None else wanted.start)
-        _, (begin, end) = _places(line, ends[1] if wanted.stop is None else wanted.stop)
+        at, (low, _) = _places(line, ends[0] if target.start is None else target.start)
+        _, (begin, end) = _places(line, ends[1] if target.stop is None else target.stop)
     except (TypeError, ValueError, AttributeError):
         at, low, begin, end = np.zeros(1), 1.0, 0.0, 0.0
-    if not (
-        found := np.flatnonzero((at >= low) & ((at <= begin) | (at < end)))[:: wanted.step]
-    ).size:
-        msg = f"{name} is {wanted!r}; expected a range within {ends[0]} to {ends[1]}"
+    numbers = np.flatnonzero((at >= low) & ((at <= begin) | (at < end)))[:: target.step]
+    if not numbers.size:
+        msg = f"{name} is {target!r}; expected a range within {ends[0]} to {ends[1]}"
         raise FieldError(msg)
-    return [int(number) for number in found]
+    return [int(number) for number in numbers]
 
 
 def _texts(line: AnyArray) -> list[str]:
-    """Return values along an axis as text, dates no longer than they have to be."""
+    """Return values along an axis as text, dates as short as possible."""
     texts = np.datetime_as_string(line, unit="auto") if line.dtype.kind == "M" else line
     return [str(text) for text in texts]
 
 
-def _places(line: AnyArray, wanted: Any) -> tuple[Floats, tuple[float, float]]:
-    """Return numbers along an axis, of dates seconds, and where what is wanted begins and ends."""
+def _places(line: AnyArray, target: Any) -> tuple[Floats, tuple[float, float]]:
+    """Return values along an axis, of dates seconds, and the begin and end of the target."""
     if line.dtype.kind == "M" or (line.dtype.kind == "O" and hasattr(line[0], "isoformat")):
         seconds, _, start = as_seconds(line, "")
-        return np.asarray(seconds), span_since(start, wanted)
+        return np.asarray(seconds), span_since(start, target)
     if line.dtype.kind not in "mfiu":
-        return np.where(line == wanted, 0.0, np.inf), (0.0, 0.0)
+        return np.where(line == target, 0.0, np.inf), (0.0, 0.0)
     at = line / np.timedelta64(1, "s") if line.dtype.kind == "m" else line.astype(float)
-    return at, (float(wanted),) * 2
+    return at, (float(target),) * 2
 
 
-def _words(value: Any, array: xr.DataArray, dim: str) -> str:
+def _value_text(value: Any, array: xr.DataArray, dim: str) -> str:
     coordinate = array.coords.get(dim)
     unit = "" if coordinate is None else str(coordinate.attrs.get("units", ""))
     number = f"{value:.5g}" if isinstance(value, (int, float, np.number)) else str(value)

@@ -1,4 +1,4 @@
-"""The members of an ensemble as one velocity: their mean, and how far they differ."""
+"""The members of an ensemble as one velocity: their mean and their spread."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flowtex._util.array_types import Floats
 
 #: The components u and v at the nodes, (J, I) each, of a step by its number.
 Steps = Callable[[int], tuple[Floats, Floats]]
-#: Steps whose sums are kept, for the mean and the spread are made of the same.
+#: Steps whose sums are kept, as the mean and the spread use the same.
 MOST_READ = 4
 
 
@@ -21,7 +21,7 @@ def spread_name(dim: str) -> str:
 
 
 def mean_and_spread(members: Sequence[Steps]) -> tuple[Steps, Callable[[int], Floats]]:
-    """Return what reads the mean velocity of members, and their spread from 0 to 1.
+    """Return functions that read the mean velocity of members, and their spread from 0 to 1.
 
     The spread is the standard deviation of the velocity, of both components together, over the
     length of its mean; it is 1 where that is more.
@@ -43,7 +43,7 @@ def mean_and_spread(members: Sequence[Steps]) -> tuple[Steps, Callable[[int], Fl
         u, v, square = sums(number)
         length = u * u + v * v
         with np.errstate(invalid="ignore", divide="ignore"):
-            # What is at rest in all members differs by nothing.
+            # Nodes at rest in all members have no spread.
             share = np.where(square > 0, np.sqrt(np.maximum(square / length - 1, 0)), 0.0)
         return np.where(np.isnan(square), np.nan, np.minimum(share, 1.0))
 

@@ -30,7 +30,7 @@ ECCODES_UNTIL = (3, 13)
 
 
 def is_dataset_file(path: Path) -> bool:
-    """Whether a path is a file, or a Zarr store, that is opened here."""
+    """Return whether a path is a file, or a Zarr store, that xarray opens."""
     if path.is_dir():
         return any((path / name).is_file() for name in ("zarr.json", ".zgroup", ".zmetadata"))
     return path.suffix.lower() in SUFFIXES
@@ -38,54 +38,54 @@ def is_dataset_file(path: Path) -> bool:
 
 def file_and_group(path: Path) -> tuple[Path, str]:
     """Return the file of a path such as ``model.nc/ocean``, and the group in it."""
-    files = (one for one in path.parents if one.suffix.lower() in NETCDF and one.is_file())
+    files = (p for p in path.parents if p.suffix.lower() in NETCDF and p.is_file())
     file = next(files, path)
     return file, "" if file == path else path.relative_to(file).as_posix()
 
 
 def dataset_paths(path: Any) -> list[Path]:
-    """Return the paths of data of the Earth, of one or of several; nothing for anything else.
+    """Return the path or paths of data of the Earth as a list, empty for anything else.
 
-    A path may go on to a group inside a file: ``model.nc/ocean``.
+    A path may continue to a group inside a file: ``model.nc/ocean``.
     """
-    several = path if isinstance(path, (list, tuple)) else [path]
-    if not all(isinstance(one, (str, os.PathLike)) for one in several):
+    items = path if isinstance(path, (list, tuple)) else [path]
+    if not all(isinstance(item, (str, os.PathLike)) for item in items):
         msg = f"path is {path!r}; expected the path of a file, or a list of paths"
         raise FieldError(msg)
-    paths = [Path(one).expanduser() for one in several]
-    files = [file_and_group(one)[0] for one in paths]
-    known = paths and all(map(is_dataset_file, files)) and all(one.exists() for one in files)
-    return paths if known else []
+    paths = [Path(item).expanduser() for item in items]
+    files = [file_and_group(p)[0] for p in paths]
+    all_exist = paths and all(map(is_dataset_file, files)) and all(file.exists() for file in files)
+    return paths if all_exist else []
 
 
 def common_name(paths: Sequence[Path]) -> str:
-    """Return a word for captions: what the names of the files begin with."""
+    """Return a word for captions: the common beginning of the names of files."""
     stems = [path.stem for path in paths]
-    alike = takewhile(lambda letters: len(set(letters)) == 1, zip(*stems, strict=False))
-    shared = "".join(letters[0] for letters in alike)
+    common = takewhile(lambda letters: len(set(letters)) == 1, zip(*stems, strict=False))
+    shared = "".join(letters[0] for letters in common)
     return shared.rstrip("_-. 0123456789") if len(stems) > 1 and len(shared) > 2 else stems[0]
 
 
 def belong_together(paths: Sequence[Path]) -> bool:
-    """Whether several files are to be read together: steps of a series, or parts without a pair."""
-    several = [open_files(path) for path in paths]
-    series = all(len(one) == 1 for one in several) and are_steps([ds for (ds, *_) in several])
-    return series or not all(find_pairs(one) for one in several)
+    """Return whether files are read together: steps of a series, or parts without a pair."""
+    opened = [open_files(path) for path in paths]
+    series = all(len(parts) == 1 for parts in opened) and are_steps([ds for (ds, *_) in opened])
+    return series or not all(find_pairs(parts) for parts in opened)
 
 
 def open_datasets(paths: Sequence[Path]) -> list[xr.Dataset]:
     """Open files that belong together: parts of one model's output, or steps of a series."""
-    several = [open_files(path) for path in paths]
-    if len(several) == 1:
-        return several[0]
-    parts = [ds for one in several for ds in one]
-    return [joined(parts)] if len(parts) == len(several) and are_steps(parts) else parts
+    opened = [open_files(path) for path in paths]
+    if len(opened) == 1:
+        return opened[0]
+    parts = [ds for datasets in opened for ds in datasets]
+    return [joined(parts)] if len(parts) == len(opened) and are_steps(parts) else parts
 
 
 def open_files(path: Path) -> list[xr.Dataset]:
-    """Open one file; GRIB gives a dataset for each group of messages that share their axes."""
+    """Open one file; GRIB has a dataset for each group of messages with common axes."""
     xarray = import_extra("xarray", "xarray")
-    # Its library has to be loaded before those of other readers, which bring their own PROJ.
+    # Its library must be loaded before those of other readers, which contain another PROJ.
     import_extra("pyproj", "xarray")
     path, group = file_and_group(path)
     suffix = path.suffix.lower()
@@ -105,7 +105,7 @@ def open_files(path: Path) -> list[xr.Dataset]:
         except ValueError as error:
             if "decode time" not in str(error):
                 raise
-            # Of times that no calendar has, the numbers are left.
+            # Times that no calendar has stay numbers.
             options["decode_times"] = False
             ds = xarray.open_dataset(path, **options)
         if not group and any(array.ndim for array in ds.data_vars.values()):
@@ -119,7 +119,7 @@ def open_files(path: Path) -> list[xr.Dataset]:
 
 
 def import_cfgrib() -> Any:
-    """Import what reads GRIB; the error for what is missing has the remedy."""
+    """Import the reader of GRIB; the error for a missing package has the remedy."""
     try:
         return import_extra("cfgrib", "grib")
     except (ModuleNotFoundError, RuntimeError) as error:

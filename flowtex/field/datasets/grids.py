@@ -1,8 +1,8 @@
 """The grid that two components lie on: staggered or not, and the places of its nodes.
 
 On a staggered one (Arakawa C) they lie on the sides of cells, and become means in the middle. Along
-its own axis a component has one value for each side. Where the cells of the middle are numbered c,
-the sides beside cell c are those numbered c + first and c + first + 1.
+its direction a component has one value for each side. The sides beside cell c are numbered
+c + first and c + first + 1.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,11 +22,14 @@ from flowtex.field.datasets.places import Places, find_places
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.field.io.inspection.limits import values_in
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 #: Paddings of SGRID, and the first side that they mean.
 PADDINGS = {"none": 0, "high": 0, "low": -1, "both": -1}
 #: Names of masks in the middle of cells, 1 at sea.
 MASKS = ("mask_rho", "mask_t", "tmask", "tmaskutil", "wet", "wet_c")
-#: Lines of a grid that repeat others are as near to them as this share of a cell.
+#: Distance, as a share of a cell, up to which a line of a grid repeats another one.
 REPEATED = 0.01
 
 
@@ -34,9 +37,9 @@ def find_grid(
     pair: Pair,
     cells: tuple[str, str],
     dims: tuple[tuple[str, str], tuple[str, str]],
-    datasets: Sequence[Any],
+    datasets: Sequence[xr.Dataset],
 ) -> tuple[tuple[Sides | None, Sides | None], Places, str]:
-    """Return the sides along (rows, columns) of a staggered grid, the places, and words."""
+    """Return the sides along (rows, columns) of a staggered grid, the places, and a text."""
     (row_u, row_v), (column_u, column_v) = dims
     u, v = pair.u, pair.v
     if row_u == row_v and column_u == column_v:
@@ -50,7 +53,7 @@ def find_grid(
         if places is None:
             return (
                 (None, None),
-                find_places(u, cells, [_own(u, datasets), *datasets]),
+                find_places(u, cells, [_dataset_of(u, datasets), *datasets]),
                 "both components at the same position",
             )
         rows = Sides(-1, v.sizes[row_v], v.sizes[row_v])
@@ -75,17 +78,19 @@ def find_grid(
     rows = Sides(firsts[0], *counts["row"])
     wraps = counts["column"][0] == counts["column"][1] and _wraps(places)
     columns = Sides(firsts[1], *counts["column"], wraps)
-    where = {0: "before", -1: "after"}[firsts[1]]
-    return (rows, columns), places, f"Arakawa C, sides {where} the middle"
+    position = {0: "before", -1: "after"}[firsts[1]]
+    return (rows, columns), places, f"Arakawa C, sides {position} the middle"
 
 
-def _own(array: Any, datasets: Sequence[Any]) -> Any:
+def _dataset_of(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:
     """Return the dataset that holds a variable."""
     return next((ds for ds in datasets if array.name in ds.variables), datasets[0])
 
 
-def _middle_places(pair: Pair, cells: tuple[str, str], firsts: list[int], datasets: Any) -> Places:
-    """Return places in the middle of the cells: their own, or means of those on the sides."""
+def _middle_places(
+    pair: Pair, cells: tuple[str, str], firsts: list[int], datasets: Sequence[xr.Dataset]
+) -> Places:
+    """Return places in the middle of the cells, from the data or as means of those on sides."""
     inside = pair.u.isel({d: 0 for d in pair.u.dims if d not in cells})
     try:
         return find_places(inside, cells, datasets)
@@ -100,31 +105,33 @@ def _middle_places(pair: Pair, cells: tuple[str, str], firsts: list[int], datase
 
 
 def _moved(places: Places, sides: Sides) -> Places:
-    """Return places between sides along a row; those that are not known are NaN."""
+    """Return places between sides along a row; unknown ones are NaN."""
     shape = (places.a.shape[0], sides.cells)
     if places.is_earth:
-        found = Projection(GLOBE).lonlat(centred(places.on_sphere, 1, sides))
+        lonlat = Projection(GLOBE).lonlat(centred(places.on_sphere, 1, sides))
     else:
-        found = centred(places.a, 1, sides), centred(places.b, 1, sides)
+        lonlat = centred(places.a, 1, sides), centred(places.b, 1, sides)
     a, b = np.full(shape, np.nan), np.full(shape, np.nan)
-    a[:, sides.known], b[:, sides.known] = found
+    a[:, sides.known], b[:, sides.known] = lonlat
     return replace(places, a=a, b=b, is_line=False, why=f"{places.why}, at the cell centres")
 
 
-def _nemo_places(pair: Pair, cells: tuple[str, str], datasets: Sequence[Any]) -> Places | None:
+def _nemo_places(
+    pair: Pair, cells: tuple[str, str], datasets: Sequence[xr.Dataset]
+) -> Places | None:
     """Return the places of NEMO's T points, where the components lie on the sides of cells."""
-    own = [_own(array, datasets) for array in (pair.u, pair.v)]
+    sources = [_dataset_of(array, datasets) for array in (pair.u, pair.v)]
     names = {str(n) for ds in datasets for n in ds.variables}
     if "glamt" in names and "gphit" in names and "glamu" in names:
         of_t = next(ds for ds in datasets if "glamt" in ds.variables)
         if not set(cells) <= set(of_t["glamt"].dims):  # of another model
             return None
         return find_places(of_t["glamt"], cells, [of_t[["glamt", "gphit"]]])
-    if own[0] is own[1] and pair.u.name != "vozocrtx":
+    if sources[0] is sources[1] and pair.u.name != "vozocrtx":
         return None
     try:
         at_u, at_v = (
-            find_places(array, cells, [ds]) for array, ds in zip((pair.u, pair.v), own, strict=True)
+            find_places(a, cells, [ds]) for a, ds in zip((pair.u, pair.v), sources, strict=True)
         )
     except FieldError:
         return None
@@ -140,7 +147,7 @@ def _nemo_places(pair: Pair, cells: tuple[str, str], datasets: Sequence[Any]) ->
 
 
 def _wraps(places: Places) -> bool:
-    """Whether the last column is followed by the first one."""
+    """Return whether the first column follows the last one."""
     if not places.is_earth:
         return False
     p = places.on_sphere
@@ -152,7 +159,7 @@ def _wraps(places: Places) -> bool:
 
 
 def unrepeated(places: Places) -> tuple[slice, slice]:
-    """Return rows and columns without those that repeat others; one repeated column is kept."""
+    """Return rows and columns without repeated ones, except for one repeated column."""
     if not places.is_earth or places.is_line:
         return slice(None), slice(None)
     p = places.on_sphere
@@ -179,7 +186,7 @@ def unrepeated(places: Places) -> tuple[slice, slice]:
     return slice(0, max(top, 2)), slice(0, last)
 
 
-def sea_mask(shape: tuple[int, ...], datasets: Sequence[Any]) -> Any:
+def sea_mask(shape: tuple[int, ...], datasets: Sequence[xr.Dataset]) -> xr.DataArray | None:
     """Return a variable that is positive where there is data, (J, I); ``None`` without one."""
     for ds in datasets:
         for name in MASKS:
@@ -191,7 +198,7 @@ def sea_mask(shape: tuple[int, ...], datasets: Sequence[Any]) -> Any:
     return None
 
 
-def _sizes(array: Any) -> str:
+def _sizes(array: xr.DataArray) -> str:
     return " x ".join(f"{n} {d}" for d, n in array.sizes.items())
 
 
@@ -199,8 +206,8 @@ def _sizes(array: Any) -> str:
 class Sides:
     """Sides of cells along an axis.
 
-    ``first`` and ``count`` number them as above, for this many cells; ``wraps`` where the axis goes
-    around the Earth.
+    ``first`` is that of the module, ``sides`` and ``cells`` are counts; ``wraps`` where the axis
+    goes around the Earth.
     """
 
     first: int
@@ -210,14 +217,14 @@ class Sides:
 
     @property
     def known(self) -> slice:
-        """The cells that have a side to both sides."""
+        """The cells with a side before and after them."""
         if self.wraps:
             return slice(0, self.cells)
         return slice(max(0, -self.first), min(self.cells, self.sides - self.first - 1))
 
 
 def centred(values: Floats, axis: int, sides: Sides) -> Floats:
-    """Return means of two sides at the known cells; one that is missing, or NaN, is a wall."""
+    """Return means of two sides at the known cells; a missing side, or NaN, is a wall."""
     cells = np.arange(sides.cells)[sides.known]
     before, after = cells + sides.first, cells + sides.first + 1
     if sides.wraps:
@@ -228,14 +235,16 @@ def centred(values: Floats, axis: int, sides: Sides) -> Floats:
     return np.asarray(mean)
 
 
-def first_side(side: str, cell: str, counts: tuple[int, int], datasets: Sequence[Any]) -> int:
+def first_side(
+    side: str, cell: str, counts: tuple[int, int], datasets: Sequence[xr.Dataset]
+) -> int:
     """Return the number of the side before the first cell, for dimensions of this many of each."""
     sides, cells = counts
     if sides != cells:
         return 0 if sides > cells else -1
-    told = shift_told(side, cell, datasets)
-    if told is not None:
-        return told
+    declared = declared_first(side, cell, datasets)
+    if declared is not None:
+        return declared
     lines = [_line(name, datasets) for name in (side, cell)]
     if lines[0] is not None and lines[1] is not None:
         rising = lines[1][-1] > lines[1][0]
@@ -244,8 +253,8 @@ def first_side(side: str, cell: str, counts: tuple[int, int], datasets: Sequence
     return 0 if re.search(r"g$|_l(eft)?$", side, re.IGNORECASE) else -1
 
 
-def shift_told(side: str, cell: str, datasets: Sequence[Any]) -> int | None:
-    """Return the same from the attributes of COMODO or SGRID."""
+def declared_first(side: str, cell: str, datasets: Sequence[xr.Dataset]) -> int | None:
+    """Return :func:`first_side` by the attributes of COMODO or SGRID, if present."""
     for ds in datasets:
         shift = ds[side].attrs.get("c_grid_axis_shift") if side in ds.variables else None
         if shift is not None:
@@ -260,10 +269,10 @@ def shift_told(side: str, cell: str, datasets: Sequence[Any]) -> int | None:
     return None
 
 
-def _line(name: str, datasets: Sequence[Any]) -> Any:
+def _line(name: str, datasets: Sequence[xr.Dataset]) -> Floats | None:
     for ds in datasets:
         if name in ds.coords and ds[name].ndim == 1 and ds[name].dtype.kind in "fiu":
             values = np.asarray(values_in(ds[name]), dtype=float)
-            # Indices of the nodes alone are not coordinates.
+            # Mere indices of the nodes are not coordinates.
             return None if np.array_equal(values, np.arange(len(values)) + values[0]) else values
     return None

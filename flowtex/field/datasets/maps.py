@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -12,24 +12,23 @@ from flowtex.field.datasets.places import Places
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.field.earth.lines import tear
 
-#: The flat map that is drawn where none is chosen, and those on which an axis that goes around the
-#: Earth continues at the other side, a map further.
+#: The default flat map, and the maps on which an axis around the Earth continues periodically.
 FLAT = "platecarree"
 CYLINDERS = (FLAT, "mercator")
-#: Latitudes that a map shows, where it cannot show all.
+#: Latitudes that a map shows, if not all.
 LATITUDES = {"mercator": (-85.0, 85.0), "north": (0.0, 90.0), "south": (-90.0, 0.0)}
-#: From this latitude on the middle of a region is drawn around its pole.
+#: Latitude of the middle of a region from which on it is drawn around a pole.
 POLAR = 66.0
-#: Longitudes from here on are all around the Earth.
+#: Span of longitudes from which on a region is around the Earth.
 AROUND = 359.0
-#: Columns this near to a turn further than the first, in cells, are that one again.
+#: Distance in cells from the first column, one turn further, up to which a column repeats it.
 SAME_LINE = 0.01
-#: On a globe this many columns close around it, where the gap is no wider than this many cells.
+#: Least columns that close around a globe, and widest gap between the last and first in cells.
 LEAST_RING, MOST_GAP = 8, 1.5
-#: Share of the nodes that have longitudes of their own where nodes are scattered, and the square
-#: root of the sphere's area in square degrees.
+#: Share of different longitudes from which on nodes are scattered, and the square root of the
+#: sphere's area in square degrees.
 SCATTERED, SPHERE_DEGREES = 0.125, 203.0
-#: Where a map is larger by this factor than it mostly is, it ends.
+#: Scale of a map, over its median, beyond which the map ends.
 LARGEST = 4.0
 #: Edges between nodes are torn where they are longer by this factor than on the Earth.
 TORN = 8.0
@@ -40,7 +39,7 @@ BESIDE = 0.02
 
 
 class Nodes(Protocol):
-    """Where nodes are drawn, (..., 3), and what data and components have there."""
+    """Positions where nodes are drawn, (..., 3), and data and vectors there."""
 
     points: Floats
 
@@ -77,7 +76,8 @@ class MapNodes:
 
     projection: Projection
     points: Floats  #: (J, I, 3).
-    lines: Any  #: Index that takes an array of the grid (J, I) to the order of the map.
+    #: Index that takes an array of the grid (J, I) to the order of the map.
+    lines: tuple[slice, Indices]
     periodic: str | None  #: As for :meth:`FlowField.from_arrays`.
     lon: Floats  #: Longitudes and latitudes, for the directions of vectors.
     lat: Floats
@@ -188,7 +188,7 @@ def projection_of(places: Places, name: str | None) -> tuple[Projection, bool]:
 
 
 def _has_pole(places: Places) -> bool:
-    """Whether the edge of a grid goes around a pole."""
+    """Return whether the edge of a grid goes around a pole."""
     lon = places.a
     edge = np.concatenate([lon[0], lon[1:, -1], lon[-1, -2::-1], lon[-2::-1, 0]])
     steps = np.diff(edge[np.isfinite(edge)])
@@ -196,7 +196,7 @@ def _has_pole(places: Places) -> bool:
 
 
 def shown_positions(projection: Projection, lon: Floats, lat: Floats) -> Floats:
-    """Return positions (..., 3) on a flat map, NaN where it has ended."""
+    """Return positions (..., 3) on a flat map, NaN beyond its end."""
     # The last column of the whole Earth is the first one, a turn further.
     points = projection.positions(lon, lat, beyond=True)
     least, most = LATITUDES.get(projection.family, (-90.0, 90.0))
@@ -204,14 +204,14 @@ def shown_positions(projection: Projection, lon: Floats, lat: Floats) -> Floats:
         points[(lat < least) | (lat > most)] = np.nan
     if projection.family not in ("robinson", "equalearth", *CYLINDERS):
         scale = projection.scales(lon, lat)
-        known = scale[np.isfinite(scale)]
+        finite = scale[np.isfinite(scale)]
         with np.errstate(invalid="ignore"):
-            points[~(scale <= LARGEST * (np.median(known) if known.size else 0))] = np.nan
+            points[~(scale <= LARGEST * (np.median(finite) if finite.size else 0))] = np.nan
     return points
 
 
 def _middle(lon: Floats) -> tuple[float, float]:
-    """Return the longitude in the middle of a region, and how far it reaches."""
+    """Return the longitude in the middle of a region, and its span."""
     values = np.sort(np.unique(np.round(lon[np.isfinite(lon)] % 360.0, 6)))
     if len(values) < 2:
         return float(values[0]) if len(values) else 0.0, 0.0
@@ -219,7 +219,7 @@ def _middle(lon: Floats) -> tuple[float, float]:
     widest = int(np.argmax(gaps))
     typical = float(np.median(gaps))
     span = 360.0 - gaps[widest]
-    # Nodes that are scattered over the Earth have longitudes at all distances.
+    # Scattered nodes have longitudes at all distances.
     scattered = len(values) > SCATTERED * lon.size
     spacing = SPHERE_DEGREES / np.sqrt(lon.size) if scattered else 0.0
     if gaps[widest] <= max(1.5 * typical, 2.0 * spacing, 1.0):
@@ -234,12 +234,12 @@ def _beside_tears(
     """Return longitudes with nodes moved to the meridians where the map is interrupted.
 
     At such a meridian the nodes on both sides move to it, and a node between them is blank;
-    otherwise the cells beside it would not be drawn. ``torn`` says after which nodes,
-    (J, I), the map is torn. The others are the longitudes, and those on the map, (2, J, I), the
-    nodes that are blank, and the numbers of the columns in the data.
+    otherwise the cells beside it would not be drawn. ``torn`` marks nodes, (J, I), after
+    which the map is torn. Returns the longitudes, and those on the map, (2, J, I), the nodes that
+    are blank, and the numbers of the columns in the data.
     """
     lon, shown, columns = lines.lon, lines.shown, lines.columns
-    at = np.flatnonzero(torn[:, :-1].sum(axis=0) > 2)  # two rows say little of others
+    at = np.flatnonzero(torn[:, :-1].sum(axis=0) > 2)  # two rows are not enough
     rows = np.argmax(torn, axis=0)[at], len(torn) - 1 - np.argmax(torn[::-1], axis=0)[at]
     near = BESIDE * float(np.median(np.diff(shown)))
     around = shown[at] - near, shown[at + 1] + near  # one may be on the meridian
@@ -267,7 +267,7 @@ def _beside_tears(
         places = projection.positions(sides, lines.lat[:, None])
         before, across = np.linalg.norm(np.diff(places, axis=1), axis=-1).T
         apart = across > WIDER * before
-        moved = apart.copy()  # so is the row before, or the cells up to it would be blank
+        moved = apart.copy()  # with the rows beside, or the cells to these would be blank
         moved[1:] |= apart[:-1]
         moved[:-1] |= apart[1:]
         both[:, moved, middle - 1 : middle + 2 : 2] = sides[1:]
@@ -275,7 +275,7 @@ def _beside_tears(
     return both, blank, columns
 
 
-def _torn(points: Floats, lon: Floats, lat: Floats) -> Any:
+def _torn(points: Floats, lon: Floats, lat: Floats) -> Bools:
     """Return nodes, (J, I), after which the map is torn along a row or a column."""
     sphere = Projection(GLOBE).positions(lon, lat)
     torn = np.zeros(lon.shape, dtype=bool)

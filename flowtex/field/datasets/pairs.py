@@ -1,7 +1,7 @@
-"""Which two variables of a dataset are the components of a velocity.
+"""The two variables of a dataset that are the components of a velocity.
 
-They are found by CF's standard names, then by long names, then by names: one word of the first
-says x, u, eastward or zonal, and the second is the variable whose name has the other word there.
+They are found by CF's standard names, then by long names, then by names: one word of the first is
+x, u, eastward or zonal, and the second is the variable whose name has the other word in its place.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ PARTNERS = {
     "u": "v",
 }
 FIRST_OF = {second: first for first, second in PARTNERS.items()}
-#: First words that speak of the Earth's directions, and not of those of a grid.
+#: First words for directions of the Earth, not of a grid.
 EARTH = ("eastward", "zonal", "east")
-#: What is looked at first when a dataset has several velocities.
+#: Preferred names when a dataset has several velocities.
 MAIN = ("sea_water_velocity", "sea_water_x_velocity", "wind", "x_wind")
 #: Words of velocities.
 MOVING = re.compile(r"velocity|wind|current|drift|momentum_component")
@@ -40,7 +40,7 @@ BARE = re.compile(
 )
 #: Names of components in models that do not follow any pattern.
 KNOWN_NAMES = {"vozocrtx": "vomecrty", "sozocrtx": "somecrty"}
-#: Metres per second in the units of velocities, as they are left when written plainly.
+#: Units of velocities in plain form, in metres per second.
 UNITS = {
     "m/s": 1.0,
     "cm/s": 0.01,
@@ -76,7 +76,7 @@ class Pair:
     v: xr.DataArray
     #: ``"earth"`` for eastward and northward, ``"grid"`` for along the grid, ``""`` if unknown.
     along: str
-    why: str  #: How the two were found.
+    why: str  #: The reason of the choice.
     rank: int = 0  #: How likely they are the velocity, 0 being the most likely.
 
     def __str__(self) -> str:
@@ -95,20 +95,20 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
         return found or Pair(one, other, _directions(one), "as named")
     if not pairs:
         raise FieldError(_no_pair(datasets))
-    best = [pair for pair in pairs if pair.rank == pairs[0].rank]
-    if len(best) > 1 and _on_mesh(best[0].u):
-        # A model's own velocity has levels, and the wind beside it, or the mean of all, has none;
-        # and components along the axes of space may be there besides those along the Earth.
-        best = [pair for pair in best if _likely(pair) == _likely(best[0])]
-    if len(best) > 1:
+    likely = [pair for pair in pairs if pair.rank == pairs[0].rank]
+    if len(likely) > 1 and _on_mesh(likely[0].u):
+        # The velocity of a model has levels, unlike wind or a depth mean; and it may also have
+        # components along the axes of space besides those along the Earth.
+        likely = [pair for pair in likely if _preference(pair) == _preference(likely[0])]
+    if len(likely) > 1:
         listed = "; ".join(map(str, pairs))
-        first = best[0]
+        first = likely[0]
         msg = (
             f"several pairs of variables may be the velocity: {listed}. Name one of them, as in "
             f'u="{first.u.name}", v="{first.v.name}"'
         )
         raise FieldError(msg)
-    return best[0]
+    return likely[0]
 
 
 def two_names(vectors: str | None) -> dict[str, str]:
@@ -130,25 +130,25 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
     pairs: dict[tuple[Any, Any], Pair] = {}
     for u in arrays:
         for source in ("standard_name", "long_name", "name"):
-            for word, rest, wanted in _partners(_text(u, source), source):
+            for word, rest, partner in _partners(_text(u, source), source):
                 for v in arrays:
                     key = (u.name, v.name)
-                    if _text(v, source) != wanted or key in pairs or not _match(u, v):
+                    if _text(v, source) != partner or key in pairs or not _match(u, v):
                         continue
                     rank = _rank(u, source, rest)
                     if rank is not None:
                         why = f"{source.replace('_', ' ')} with {word!r} and {PARTNERS[word]!r}"
                         pairs[key] = Pair(u, v, _directions(u), why, rank)
-    return sorted(pairs.values(), key=_likely)
+    return sorted(pairs.values(), key=_preference)
 
 
-def _likely(pair: Pair) -> tuple[int, int, bool]:
-    """Return what the likely pairs are less in; on a mesh the least one is meant."""
+def _preference(pair: Pair) -> tuple[int, int, bool]:
+    """Return a sort key, least for the most likely pair."""
     return pair.rank, -pair.u.ndim, pair.along != "earth"
 
 
 def to_metres_per_second(array: xr.DataArray) -> float | None:
-    """Return how many metres per second a variable's unit is; ``None`` where it has none."""
+    """Return a variable's unit in metres per second; ``None`` where it has no unit."""
     unit, plain = str(array.attrs.get("units", "")).strip(), plain_unit(array)
     if unit in ("", "1", "-", "None", "unknown"):
         return None
@@ -194,19 +194,19 @@ def _partners(
     for word, other in partners.items():
         # A letter may be part of a name, as in uo, u10, UVEL or VSDX; in a text it is a word.
         pattern = word if source == "name" else rf"(?<![a-z0-9]){word}(?![a-z0-9])"
-        for found in re.finditer(pattern, text):
-            a, b = found.span()
+        for match in re.finditer(pattern, text):
+            a, b = match.span()
             yield word, f"{text[:a]}_{text[b:]}".strip("_"), text[:a] + other + text[b:]
 
 
 def _match(u: xr.DataArray, v: xr.DataArray) -> bool:
-    """Whether two variables can be parts of one: with as many axes, and one unit."""
-    units = (a.attrs.get("units", "") for a in (u, v))
-    return u.name != v.name and u.ndim == v.ndim and len(set(units)) == 1
+    """Return whether two variables have as many axes and the same unit."""
+    same_unit = u.attrs.get("units", "") == v.attrs.get("units", "")
+    return u.name != v.name and u.ndim == v.ndim and same_unit
 
 
 def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
-    """Return how likely a pair is the velocity; ``None`` for what is none."""
+    """Return the rank of a pair, 0 for the most likely velocity; ``None`` for other variables."""
     try:
         is_velocity = to_metres_per_second(u) is not None
     except FieldError:
@@ -224,7 +224,7 @@ def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
 
 
 def _directions(u: xr.DataArray) -> str:
-    """Return along what a first component is: what the standard name says counts most."""
+    """Return the direction of a first component, preferably by its standard name."""
     relative = u.attrs.get("GRIB_uvRelativeToGrid")
     if relative is not None:
         return "grid" if int(relative) else "earth"
@@ -248,21 +248,21 @@ def variable(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
 
 
 def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
-    """Return the fault of a dataset without a pair, and what it has instead."""
+    """Return the message for a dataset without a pair, with its variables."""
     arrays = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
     for u in arrays:
         for source in ("standard_name", "long_name", "name"):
             text = _text(u, source)
-            parted = [*_partners(text, source), *_partners(text, source, FIRST_OF)]
-            alone = [
-                wanted for _, rest, wanted in parted if _rank(u, source, rest) not in (None, 5, 6)
+            partners = [*_partners(text, source), *_partners(text, source, FIRST_OF)]
+            missing = [
+                wanted for _, rest, wanted in partners if _rank(u, source, rest) not in (None, 5, 6)
             ]
-            if alone:
+            if missing:
                 return (
                     f"the data have one component of a velocity, {u.name!r} "
                     f"({u.attrs.get('long_name', source)}), but not the other one, whose "
-                    f"{source.replace('_', ' ')} would be {alone[0]!r}; open the file that has it "
-                    "together with this one, or name both, as in u=..., v=..."
+                    f"{source.replace('_', ' ')} would be {missing[0]!r}; open the file that has "
+                    "it together with this one, or name both, as in u=..., v=..."
                 )
         for source in ("standard_name", "long_name", "name"):
             for _, _, partner in _partners(_text(u, source), source):

@@ -1,4 +1,4 @@
-"""Where the values of a variable lie: longitude and latitude, or positions in a plane."""
+"""Places of the values of a variable: longitude and latitude, or positions in a plane."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ class Places:
     a: Floats  #: Longitude and latitude in degrees on the Earth, else x and y.
     b: Floats
     is_earth: bool
-    #: Whether a depends on the column only and b on the row only: views of :attr:`lines`.
+    #: Whether a depends only on the column and b only on the row: views of :attr:`lines`.
     is_line: bool
     why: str  #: Names of the coordinates.
-    unit: str = ""  #: That of x and y.
+    unit: str = ""  #: Unit of x and y.
 
     @property
     def lines(self) -> tuple[Floats, Floats]:
-        """What a is in each column, (I,), and b in each row, (J,), where these are lines."""
+        """Values of a in the columns, (I,), and of b in the rows, (J,), where these are lines."""
         return self.a[0], self.b[:, 0]
 
     @property
@@ -60,7 +60,7 @@ class Places:
     def turned(self, ahead: tuple[int, int], u: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Return components on the Earth, or along x and y, of those along rows and columns."""
         p = self.on_sphere if self.is_earth else np.stack([self.a, self.b], axis=-1)
-        along_j, along_i = (way * _directions(p, axis) for axis, way in enumerate(ahead))
+        along_j, along_i = (sign * _directions(p, axis) for axis, sign in enumerate(ahead))
         vector = u[..., None] * along_i + v[..., None] * along_j
         if self.is_earth:
             return Projection(GLOBE).components(self.a, self.b, vector)
@@ -70,7 +70,7 @@ class Places:
 def find_places(
     array: xr.DataArray, dims: tuple[str, ...], datasets: Sequence[xr.Dataset]
 ) -> Places:
-    """Return where values lie, by their own coordinates, or by those of other datasets."""
+    """Return the places of values, by their coordinates, or by those of other datasets."""
     shape = tuple(_size(d, array, datasets) for d in dims)
     for lon, lat in _pairs(array, dims, datasets, (LONGITUDE, LATITUDE), ("longitude", "latitude")):
         a, b = _spread(lon, lat, dims, shape)
@@ -78,9 +78,9 @@ def find_places(
             continue
         if not _is_lonlat(a, b, lon, lat):
             continue
-        nowhere = (a == 0) & (b == 0) if lon.ndim > 1 else np.False_
-        if nowhere.sum() > 1:  # as where a model leaves out land
-            a, b = np.where(nowhere, np.nan, a), np.where(nowhere, np.nan, b)
+        unset = (a == 0) & (b == 0) if lon.ndim > 1 else np.False_
+        if unset.sum() > 1:  # where a model leaves out land
+            a, b = np.where(unset, np.nan, a), np.where(unset, np.nan, b)
         return Places(
             *_over_nodes(_longitudes(a, str(lon.name)), b),
             is_earth=True,
@@ -103,7 +103,7 @@ def find_places(
 
 
 def _directions(p: Floats, axis: int) -> Floats:
-    """Return unit differences of positions along an axis, one-sided beside what is not known."""
+    """Return unit differences of positions along an axis, one-sided beside unknown ones."""
     p = np.swapaxes(p, 0, axis)
     ahead, behind = np.full_like(p, np.nan), np.full_like(p, np.nan)
     behind[1:] = ahead[:-1] = p[1:] - p[:-1]
@@ -131,33 +131,33 @@ def _pairs(
     datasets: Sequence[xr.Dataset],
     patterns: tuple[re.Pattern[str], re.Pattern[str]],
     words: tuple[str, str],
-) -> Iterator[tuple[Any, Any]]:
-    """Give variables that may be the two coordinates, the likely ones first."""
-    found: list[list[Any]] = [[], []]
-    for names, pattern, word in zip(found, patterns, words, strict=True):
-        told = (*array.cf.coordinates.get(word, ()), *array.cf.axes.get(word, ()))
-        names += [array.coords[name] for name in told if name in array.coords]
-        names += [c for c in array.coords.values() if pattern.match(str(c.name))]
+) -> Iterator[tuple[xr.DataArray, xr.DataArray]]:
+    """Yield pairs of possible coordinates, the likely ones first."""
+    candidates: list[list[xr.DataArray]] = [[], []]
+    for coordinates, pattern, word in zip(candidates, patterns, words, strict=True):
+        declared = (*array.cf.coordinates.get(word, ()), *array.cf.axes.get(word, ()))
+        coordinates += [array.coords[name] for name in declared if name in array.coords]
+        coordinates += [c for c in array.coords.values() if pattern.match(str(c.name))]
         for ds in datasets:
-            of_set = (*ds.cf.coordinates.get(word, ()), *ds.cf.standard_names.get(word, ()))
-            names += [ds[name] for name in of_set if name in ds.variables]
-            names += [ds[n] for n in ds.variables if pattern.match(str(n))]
+            of_dataset = (*ds.cf.coordinates.get(word, ()), *ds.cf.standard_names.get(word, ()))
+            coordinates += [ds[name] for name in of_dataset if name in ds.variables]
+            coordinates += [ds[n] for n in ds.variables if pattern.match(str(n))]
     # Those in the middle of cells come before those on their sides.
-    firsts = {id(c): n for n, c in enumerate(found[0])}
+    firsts = {id(c): n for n, c in enumerate(candidates[0])}
 
-    def order(c: Any) -> tuple[int, int]:
+    def order(c: xr.DataArray) -> tuple[int, int]:
         letter = re.sub(r".*(lon|long|lam|x)_?", "", str(c.name).lower())
         middle = MIDDLES.index(letter) if letter in MIDDLES else len(MIDDLES)
         return (0 if set(c.dims) <= set(dims) else 1, middle if c.ndim > 1 else -1)
 
-    for a in sorted(found[0], key=lambda c: (order(c), firsts[id(c)])):
-        wanted = _partner(str(a.name))
-        for b in sorted(found[1], key=lambda c: str(c.name).lower() not in wanted):
-            if a.ndim == b.ndim and str(b.name).lower() in wanted:
+    for a in sorted(candidates[0], key=lambda c: (order(c), firsts[id(c)])):
+        partners = _partner_names(str(a.name))
+        for b in sorted(candidates[1], key=lambda c: str(c.name).lower() not in partners):
+            if a.ndim == b.ndim and str(b.name).lower() in partners:
                 yield a, b
 
 
-def _partner(name: str) -> set[str]:
+def _partner_names(name: str) -> set[str]:
     """Return the names that the second coordinate may have, by that of the first."""
     low = name.lower()
     swaps = (("lon", "lat"), ("long", "lat"), ("lam", "phi"), ("x", "y"), ("xi", "eta"))
@@ -165,7 +165,7 @@ def _partner(name: str) -> set[str]:
 
 
 def _spread(
-    a: Any, b: Any, dims: tuple[str, ...], shape: tuple[int, ...]
+    a: xr.DataArray, b: xr.DataArray, dims: tuple[str, ...], shape: tuple[int, ...]
 ) -> tuple[Floats | None, Floats | None]:
     """Return two coordinates at the nodes, of lines (1, I) and (J, 1); none for other nodes."""
     if a.ndim == 1 and b.ndim == 1:
@@ -195,28 +195,28 @@ def _spread(
     return flat[0], flat[1]
 
 
-def _numbers(c: Any) -> Floats:
+def _numbers(c: xr.DataArray) -> Floats:
     if c.dtype.kind not in "fiu":
         msg = f"the coordinate {c.name!r} has type {c.dtype}; expected numbers"
         raise FieldError(msg)
     return np.asarray(values_in(c), dtype=float)
 
 
-def _is_lonlat(a: Floats, b: Floats, lon: Any, lat: Any) -> bool:
-    """Whether coordinates are degrees; a name such as XC alone is not enough."""
+def _is_lonlat(a: Floats, b: Floats, lon: xr.DataArray, lat: xr.DataArray) -> bool:
+    """Return whether coordinates are degrees; a name such as XC alone is not sufficient."""
     units = [str(c.attrs.get("units", "")) for c in (lon, lat)]
-    told = all(DEGREES.match(u) for u in units) or all(
+    is_declared = all(DEGREES.match(u) for u in units) or all(
         "lon" in str(c.attrs.get("standard_name", c.name)).lower()
         or "lat" in str(c.attrs.get("standard_name", c.name)).lower()
         or re.match("glam|gphi", str(c.name))
         for c in (lon, lat)
     )
-    if not told:
+    if not is_declared:
         return False
     with np.errstate(invalid="ignore"):
         far = np.nanmax(np.abs(b), initial=0.0)
         wide = np.nanmax(np.abs(a), initial=0.0)
-    # Of lines one is known where the other one is.
+    # A line has values of one coordinate only.
     finite = np.isfinite(a), np.isfinite(b)
     known = (finite[0] & finite[1]).any() if lon.ndim > 1 else finite[0].any() and finite[1].any()
     if not known:
@@ -234,7 +234,7 @@ def _is_lonlat(a: Floats, b: Floats, lon: Any, lat: Any) -> bool:
 
 
 def _longitudes(lon: Floats, name: str) -> Floats:
-    """Return longitudes that continue along a row without a jump; those of a line have an order."""
+    """Return longitudes without jumps along a row; those of a line must be sorted."""
     if not (np.ptp(lon, axis=0) == 0).all():  # as on a curvilinear grid
         return lon
     line = np.unwrap(lon[0], period=360.0)
@@ -255,7 +255,12 @@ def _over_nodes(a: Floats, b: Floats) -> tuple[Floats, Floats]:
 
 
 def _plane(
-    array: xr.DataArray, x: Any, y: Any, a: Floats, b: Floats, datasets: Sequence[xr.Dataset]
+    array: xr.DataArray,
+    x: xr.DataArray,
+    y: xr.DataArray,
+    a: Floats,
+    b: Floats,
+    datasets: Sequence[xr.Dataset],
 ) -> Places:
     """Return positions in a plane, or on the Earth if the grid mapping gives them."""
     units = [str(c.attrs.get("units", "")).strip() for c in (x, y)]
@@ -264,15 +269,15 @@ def _plane(
     if crs is not None:
         a, b = _over_nodes(a, b)
         pyproj = import_extra("pyproj", "xarray")
-        known = pyproj.CRS.from_cf(crs)
-        geodetic = pyproj.CRS.from_user_input(known.geodetic_crs or 4326)
-        if known.is_projected:
+        source = pyproj.CRS.from_cf(crs)
+        geodetic = pyproj.CRS.from_user_input(source.geodetic_crs or 4326)
+        if source.is_projected:
             factor = LENGTHS.get(units[0].lower(), 1.0)
-            change = pyproj.Transformer.from_crs(known, geodetic, always_xy=True)
+            change = pyproj.Transformer.from_crs(source, geodetic, always_xy=True)
             lon, lat = change.transform(a * factor, b * factor, errcheck=False)
         else:
             base = pyproj.CRS.from_user_input("+proj=longlat +R=6371000 +type=crs")
-            change = pyproj.Transformer.from_crs(known, base, always_xy=True)
+            change = pyproj.Transformer.from_crs(source, base, always_xy=True)
             lon, lat = change.transform(a, b)
         bad = ~(np.isfinite(lon) & np.isfinite(lat))
         places = np.where(bad, np.nan, lon), np.where(bad, np.nan, lat)

@@ -1,6 +1,6 @@
 """From xarray's datasets to fields: the pair, its axes, its places, and the steps of time.
 
-Nothing but coordinates and one step is read here; other steps are read when they are drawn.
+Only coordinates and one step are read here; other steps are read when they are drawn.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from flowtex._util.arguments import near_names
-from flowtex._util.array_types import Bools, Floats
+from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import (
     FACES,
@@ -24,12 +24,12 @@ from flowtex.field.datasets.axes import (
     WET,
     Choice,
     Section,
+    axis_direction,
     axis_kind,
     axis_values,
     drawn_steps,
     horizontal_dims,
     sections,
-    way_ahead,
     wet_at,
 )
 from flowtex.field.datasets.ensembles import mean_and_spread, spread_name
@@ -58,9 +58,9 @@ from flowtex.field.steps import LazySteps
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Longest name that a legend has room for, and values of an axis that are listed at most.
+#: Longest name that fits into a legend, and most values of an axis that are listed.
 LONGEST_NAME, MOST_VALUES = 40, 8
-#: What the components of a pair go along, in words.
+#: Directions of the components of a pair, in words.
 DIRECTIONS = {"earth": "eastward and northward", "grid": "along the grid", "plane": "along x and y"}
 
 #: Variables that belong to the grid itself: places, sizes of cells, masks.
@@ -69,31 +69,31 @@ OF_GRIDS = re.compile(
     re.I,
 )
 
-#: Steps whose components are kept, for velocity and speed are made of the same.
+#: Steps whose components are kept, as velocity and speed use the same.
 MOST_READ = 4
 
-#: Share of the nodes of a staggered grid at rest from which on they count as land.
+#: Share of nodes at rest from which on those of a staggered grid count as land.
 LAND_SHARE = 0.01
 
 
 @dataclass(frozen=True, eq=False)
 class Recognised:
-    """What was recognised in a dataset, and why."""
+    """The velocity that was recognised in a dataset, and the reasons."""
 
     pair: Pair  #: The two variables of the velocity.
     along: str  #: ``"earth"``, or ``"grid"`` for the directions of rows and columns.
     grid: str  #: The kind of grid, as text.
     coordinates: str  #: Names of the coordinates, as text.
     places: Places  #: Nodes in the middle of cells.
-    notes: tuple[str, ...]  #: What was chosen automatically.
+    notes: tuple[str, ...]  #: Texts about automatic choices.
     u: Section
     v: Section
     steps: Callable[[int], tuple[Floats, Floats]]
     cells: tuple[str, ...]
-    factor: float  #: Makes components m/s.
+    factor: float  #: Unit of the components in m/s.
     ahead: tuple[int, int] = (1, 1)  #: Directions of rows and columns, 1 or -1.
     staggered: bool = False  #: Whether components lie on the sides of cells.
-    mask: Any = None  #: A variable that is positive where there is data.
+    mask: xr.DataArray | None = None  #: A variable that is positive where there are data.
     kept: tuple[slice, ...] = ()
     trimmed: tuple[slice, ...] = ()
     mesh: Mesh | None = None
@@ -119,9 +119,9 @@ def read_datasets(
     uncertainty: Any = None,
     **selection: Any,
 ) -> GridArrays | TriangleArrays | Regions:
-    """Read what a field needs; with ``regions`` no nodes, if any part can be read by itself.
+    """Read the arrays of a field; with ``regions`` no nodes, if any part can be read by itself.
 
-    Where the uncertainty is a dimension, the mean over it is read, and the spread as a scalar.
+    If the uncertainty is a dimension, the mean over it is read, and the spread as a scalar.
     """
     if globe and projection not in (None, GLOBE):
         msg = f"globe=True and projection={projection!r} are given; omit one of them"
@@ -131,33 +131,33 @@ def read_datasets(
     datasets = as_datasets(data)
     if u is not None and v is not None and is_vertical(variable(datasets, v)):
         return read_section(datasets, u, v, name=name, sel=sel, isel=isel or {})
-    known, spread = recognise(datasets, u, v, sel=sel, isel=isel), None
+    flow, spread = recognise(datasets, u, v, sel=sel, isel=isel), None
     if isinstance(uncertainty, str) and any(uncertainty in ds.dims for ds in datasets):
-        known, spread, datasets = _averaged(known, datasets, uncertainty, sel, isel)
+        flow, spread, datasets = _averaged(flow, datasets, uncertainty, sel, isel)
         name = ", ".join(filter(None, (name, f"mean over {uncertainty}")))
-    for note in known.notes:
+    for note in flow.notes:
         notify(note)
-    places = known.places
+    places = flow.places
     if not places.is_earth and projection is not None:
         msg = (
-            f"projection is {projection!r}, but the positions are {known.coordinates}, not "
+            f"projection is {projection!r}, but the positions are {flow.coordinates}, not "
             "longitude and latitude; omit projection"
         )
         raise FieldError(msg)
-    times, numbers = drawn_steps(known.u, known.pair.u)
-    scalars = _scalars(known, datasets, Choice(dict(sel), dict(isel or {})))
+    times, numbers = drawn_steps(flow.u, flow.pair.u)
+    scalars = _scalars(flow, datasets, Choice(dict(sel), dict(isel or {})))
     words: dict[str, Any] = {
-        "name": ", ".join(filter(None, (name, known.u.level))),
+        "name": ", ".join(filter(None, (name, flow.u.level))),
         **_words(scalars),
     }
-    if regions and known.mesh is None and spread is None:
-        found = _regions(known, scalars, times, numbers, projection, words)
-        if found is not None:
-            return found
-    nodes, more = (
-        _on_grid(known, projection)
-        if known.mesh is None
-        else _on_mesh_nodes(known, known.mesh, projection)
+    if regions and flow.mesh is None and spread is None:
+        parts = _regions(flow, scalars, times, numbers, projection, words)
+        if parts is not None:
+            return parts
+    nodes, arguments = (
+        _on_grid(flow, projection)
+        if flow.mesh is None
+        else _on_mesh_nodes(flow, flow.mesh, projection)
     )
 
     def later(read: Callable[[int], Floats]) -> LazySteps:
@@ -167,38 +167,38 @@ def read_datasets(
         return nodes.at(read(number))
 
     def vectors(number: int) -> Floats:
-        return nodes.vectors(*map(nodes.at, known.turned(*known.steps(number))))
+        return nodes.vectors(*map(nodes.at, flow.turned(*flow.steps(number))))
 
     extra = {key: later(partial(value, scalar.read)) for key, scalar in scalars.items()}
     if nodes.projection is not None and not nodes.projection.is_globe:
-        extra["speed"] = later(lambda number: np.hypot(*map(nodes.at, known.steps(number))))
+        extra["speed"] = later(lambda number: np.hypot(*map(nodes.at, flow.steps(number))))
         words["units"]["speed"] = "m/s"
     if spread is not None:
         extra[spread_name(uncertainty)] = later(partial(value, spread))
-    moving = later(vectors)
-    make: Any = GridArrays if known.mesh is None else TriangleArrays
+    velocity = later(vectors)
+    make: Any = GridArrays if flow.mesh is None else TriangleArrays
     arrays: GridArrays | TriangleArrays = make(
         points=nodes.points,
-        velocity=moving if len(numbers) > 1 else moving[0],
+        velocity=velocity if len(numbers) > 1 else velocity[0],
         times=times,
         scalars=extra,
         time_unit="s",
         projection=nodes.projection,
-        **more,
+        **arguments,
         **words,
     )
     return arrays
 
 
 def _averaged(
-    known: Recognised,
+    flow: Recognised,
     datasets: Datasets,
     dim: str,
     sel: Mapping[str, Any],
     isel: Mapping[str, Any] | None,
 ) -> tuple[Recognised, Callable[[int], Floats], Datasets]:
-    """Return the mean over a dimension, what reads the spread, and the datasets without it."""
-    pair, chosen = known.pair, {**sel, **(isel or {})}
+    """Return the mean over a dimension, a reader of the spread, and the datasets without it."""
+    pair, chosen = flow.pair, {**sel, **(isel or {})}
     if dim in horizontal_dims(pair.u) or dim not in {*pair.u.dims} & {*pair.v.dims}:
         names = [str(d) for d in pair.u.dims if d not in horizontal_dims(pair.u)]
         msg = f"uncertainty is {dim!r}, which is not a further axis of the data; "
@@ -223,16 +223,16 @@ def _averaged(
     first = members[0]
     if axis_kind(pair.u, dim) == TIME:
         first = replace(first, u=replace(first.u, times=None), v=replace(first.v, times=None))
-    # What else the members have is not averaged.
+    # Other variables of the members are not averaged.
     others = [
         ds.drop_vars([n for n, a in ds.data_vars.items() if dim in a.dims]) for ds in datasets
     ]
     return replace(first, steps=mean), spread, Datasets(others)
 
 
-def _on_grid(known: Recognised, projection: str | None) -> tuple[Nodes, dict[str, Any]]:
-    """Return where the nodes of rows and columns are drawn, and further arguments of a field."""
-    places = known.places
+def _on_grid(flow: Recognised, projection: str | None) -> tuple[Nodes, dict[str, Any]]:
+    """Return drawn nodes of rows and columns, and further arguments of a field."""
+    places = flow.places
     if places.is_earth:
         nodes = on_map(places, projection)
         return nodes, {"length_unit": "m", "periodic": nodes.periodic}
@@ -240,13 +240,13 @@ def _on_grid(known: Recognised, projection: str | None) -> tuple[Nodes, dict[str
 
 
 def _on_mesh_nodes(
-    known: Recognised, mesh: Mesh, projection: str | None
+    flow: Recognised, mesh: Mesh, projection: str | None
 ) -> tuple[Nodes, dict[str, Any]]:
-    """Return the same of a mesh."""
+    """Return drawn nodes of a mesh, and further arguments of a field."""
     if not mesh.is_earth:
-        more = {"length_unit": known.places.unit or "m", "triangles": mesh.triangles}
-        return PlaneNodes(mesh.positions), more
-    nodes = mesh_on_map(mesh, known.places, projection)
+        arguments = {"length_unit": flow.places.unit or "m", "triangles": mesh.triangles}
+        return PlaneNodes(mesh.positions), arguments
+    nodes = mesh_on_map(mesh, flow.places, projection)
     if nodes.lost:
         notify(
             f"{nodes.lost:,} triangles are left out, because the map cuts them, as at a pole; "
@@ -256,15 +256,15 @@ def _on_mesh_nodes(
 
 
 def _regions(
-    known: Recognised,
+    flow: Recognised,
     scalars: Mapping[str, _Scalar],
-    times: Any,
+    times: AnyArray | None,
     numbers: list[int],
     projection: str | None,
     words: dict[str, Any],
 ) -> Regions | None:
-    """Return what reads a dataset by regions; ``None`` where it has to be read as a whole."""
-    lines = None if known.staggered else region_lines(known.places, projection)
+    """Return a dataset for reading by regions; ``None`` where it must be read as a whole."""
+    lines = None if flow.staggered else region_lines(flow.places, projection)
     if lines is None or min(lines.shape) < 2:
         return None
     on_earth = lines.projection is not None
@@ -275,22 +275,22 @@ def _regions(
         words["units"]["speed"] = "m/s"
     return Regions(
         Words(
-            length_unit="m" if on_earth else known.places.unit,
+            length_unit="m" if on_earth else flow.places.unit,
             times=np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float),
             start=start,
             **words,
         ),
         lines,
-        (known.u.array.variable, known.v.array.variable),
-        known.factor,
-        None if known.mask is None else known.mask.variable,
+        (flow.u.array.variable, flow.v.array.variable),
+        flow.factor,
+        None if flow.mask is None else flow.mask.variable,
         others,
         tuple(numbers),
     )
 
 
 def _words(scalars: Mapping[str, _Scalar]) -> dict[str, Any]:
-    """Return units, and long names for which there is room, of variables."""
+    """Return units, and long names that are short enough, of variables."""
     attributes = {key: scalar.attributes for key, scalar in scalars.items()}
     words = {
         ours: {key: str(a[theirs]) for key, a in attributes.items() if a.get(theirs)}
@@ -346,7 +346,7 @@ def recognise(
     trimmed = unrepeated(places)
     places = replace(places, a=places.a[trimmed], b=places.b[trimmed])
     staggered = sides[0] is not None or sides[1] is not None
-    # Sides of cells have components across them, whatever a long name calls these.
+    # Components on the sides of cells are across these, whatever a long name says.
     by_words = "standard_name" not in pair.u.attrs
     land: list[Bools] = []
 
@@ -363,9 +363,9 @@ def recognise(
                 ]
             parts.append(values)
         a, b = parts
-        if staggered:  # near a wall one of them may be known alone
-            nowhere = np.isnan(a) & np.isnan(b)
-            a, b = (np.where(nowhere, np.nan, np.nan_to_num(p)) for p in (a, b))
+        if staggered:  # near a wall only one of them may be known
+            missing = np.isnan(a) & np.isnan(b)
+            a, b = (np.where(missing, np.nan, np.nan_to_num(p)) for p in (a, b))
             if not land:
                 still = (a == 0) & (b == 0)
                 land.append(still if still.mean() > LAND_SHARE else np.zeros_like(still))
@@ -377,7 +377,7 @@ def recognise(
     return Recognised(
         pair=pair,
         along="earth" if pair.along == "earth" and not (staggered and by_words) else "grid",
-        ahead=(way_ahead(pair.u, rows[0]), way_ahead(pair.v, columns[1])),
+        ahead=(axis_direction(pair.u, rows[0]), axis_direction(pair.v, columns[1])),
         staggered=staggered,
         grid=f"{words}, {'rows and columns' if places.is_line else 'curvilinear'}",
         coordinates=places.why,
@@ -400,10 +400,10 @@ def _on_mesh(
     sections: tuple[Section, Section],
     factor: float,
     notes: list[str],
-    datasets: Sequence[Any],
+    datasets: Sequence[xr.Dataset],
     choice: Choice,
 ) -> Recognised:
-    """Return what is known of a velocity at the nodes or in the faces of a mesh."""
+    """Recognise a velocity at the nodes or in the faces of a mesh."""
     dims = {horizontal_dims(array) for array in (pair.u, pair.v)}
     if len(dims) > 1:
         msg = (
@@ -417,10 +417,10 @@ def _on_mesh(
 
     def steps(number: int) -> tuple[Floats, Floats]:
         u, v = (numbers_in(section.step(number)) * factor for section in sections)
-        there = np.isfinite(u) & np.isfinite(v)
+        present = np.isfinite(u) & np.isfinite(v)
         if wet is not None:
-            there &= wet(number)
-        u, v = (np.where(there, part, np.nan) for part in (u, v))
+            present &= wet(number)
+        u, v = (np.where(present, part, np.nan) for part in (u, v))
         return mesh.vectors_at_nodes(u, v, dim)
 
     places = Places(
@@ -448,51 +448,53 @@ def _on_mesh(
 
 
 class _Scalar(NamedTuple):
-    """A variable that lies at the nodes, what reads a step of it, and its attributes."""
+    """A variable that lies at the nodes, the reader of its steps, and its attributes."""
 
     section: Section
     read: Callable[[int], Floats]
     attributes: Mapping[str, Any]
 
 
-def _scalars(known: Recognised, datasets: Sequence[Any], choice: Choice) -> dict[str, _Scalar]:
+def _scalars(
+    flow: Recognised, datasets: Sequence[xr.Dataset], choice: Choice
+) -> dict[str, _Scalar]:
     """Return the other variables that lie at the nodes, by name."""
-    found: dict[str, _Scalar] = {}
-    used = (known.pair.u.name, known.pair.v.name)
-    steps = known.u.array.shape[0] if known.u.is_series else 1
+    scalars: dict[str, _Scalar] = {}
+    used = (flow.pair.u.name, flow.pair.v.name)
+    steps = flow.u.array.shape[0] if flow.u.is_series else 1
     # Dimensions of the same name do not distinguish the sides of cells from their centres.
-    aside = known.staggered and set(known.pair.u.dims) & set(known.pair.v.dims) >= {*known.cells}
-    # What a velocity has no level for may still have a value.
+    on_sides = flow.staggered and set(flow.pair.u.dims) & set(flow.pair.v.dims) >= {*flow.cells}
+    # Variables without the chosen level may still have values.
     choice.used.update(choice.sel, choice.isel)
     for ds in datasets:
         has_velocity = any(name in ds for name in used)
-        if aside and has_velocity:
+        if on_sides and has_velocity:
             continue
-        alone = known.mesh is not None and known.mesh.names[0] in ds and not has_velocity
+        is_mesh_file = flow.mesh is not None and flow.mesh.names[0] in ds and not has_velocity
         for name, array in ds.data_vars.items():
-            surface = _surface(known, array)
+            surface = _surface(flow, array)
             numbers = array.dtype.kind in "fiu" and not OF_GRIDS.match(str(name))
-            of_mesh = alone and array.ndim == 1  # such as areas
-            if name not in (*used, *found) and surface and numbers and not of_mesh:
-                scalar = _scalar(known, array.transpose(..., *surface), steps, choice)
+            of_mesh = is_mesh_file and array.ndim == 1  # such as areas
+            if name not in (*used, *scalars) and surface and numbers and not of_mesh:
+                scalar = _scalar(flow, array.transpose(..., *surface), steps, choice)
                 if scalar is not None:
-                    found[str(name)] = scalar
-    return found
+                    scalars[str(name)] = scalar
+    return scalars
 
 
-def _surface(known: Recognised, array: Any) -> tuple[str, ...]:
-    """Return the dimensions in which a variable lies at the nodes, or nothing where it does not."""
-    if known.mesh is None:
-        at_nodes = {*known.cells} <= set(array.dims) and array.ndim <= known.pair.u.ndim
-        return known.cells if at_nodes else ()
+def _surface(flow: Recognised, array: xr.DataArray) -> tuple[str, ...]:
+    """Return the dimensions in which a variable lies at the nodes; empty where it does not."""
+    if flow.mesh is None:
+        at_nodes = {*flow.cells} <= set(array.dims) and array.ndim <= flow.pair.u.ndim
+        return flow.cells if at_nodes else ()
     dims = horizontal_dims(array) if {NODES, FACES} & set(array.dims) else ()
     others = {str(d) for d in array.dims} - set(dims)
-    plain = all(d in known.pair.u.dims or axis_kind(array, d) in (TIME, LEVEL) for d in others)
-    return dims if plain and str(array.name) not in (*known.mesh.names, *WET) else ()
+    plain = all(d in flow.pair.u.dims or axis_kind(array, d) in (TIME, LEVEL) for d in others)
+    return dims if plain and str(array.name) not in (*flow.mesh.names, *WET) else ()
 
 
-def _scalar(known: Recognised, array: Any, steps: int, choice: Choice) -> _Scalar | None:
-    """Return a variable as it is read; ``None`` where it has no such steps or choice."""
+def _scalar(flow: Recognised, array: xr.DataArray, steps: int, choice: Choice) -> _Scalar | None:
+    """Return a variable for reading; ``None`` where it lacks the steps or the choice."""
     try:
         (section,) = sections([array], choice)
     except FieldError:
@@ -502,9 +504,9 @@ def _scalar(known: Recognised, array: Any, steps: int, choice: Choice) -> _Scala
 
     def at_nodes(number: int) -> Floats:
         values = numbers_in(section.step(number))
-        if known.mesh is None:
-            return np.asarray(values[known.kept][known.trimmed])
-        return known.mesh.at_nodes(values, horizontal_dims(array)[0])
+        if flow.mesh is None:
+            return np.asarray(values[flow.kept][flow.trimmed])
+        return flow.mesh.at_nodes(values, horizontal_dims(array)[0])
 
     return _Scalar(section, at_nodes, array.attrs)
 
@@ -513,13 +515,13 @@ def recognised(data: Any) -> dict[str, str]:
     """Return the velocity, grid and coordinates that are recognised, with reasons, and the axes."""
     datasets = as_datasets(data)
     pairs = find_pairs(datasets)
-    known = recognise(datasets, *((pairs[0].u.name, pairs[0].v.name) if pairs else ()))
-    rows = {"velocity": str(known.pair)}
-    if others := [pair for pair in pairs if pair.u.name != known.pair.u.name]:
+    flow = recognise(datasets, *((pairs[0].u.name, pairs[0].v.name) if pairs else ()))
+    rows = {"velocity": str(flow.pair)}
+    if others := [pair for pair in pairs if pair.u.name != flow.pair.u.name]:
         rows["also"] = "; ".join(map(str, others))
-    rows |= {"directions": DIRECTIONS[known.along], "grid": known.grid}
-    rows["coordinates"] = known.coordinates
-    for name, words in axis_values(known.pair.u).items():
-        few = ", ".join(words[:MOST_VALUES]) + (", ..." if len(words) > MOST_VALUES else "")
-        rows[name] = f"{len(words)}: {few}"
+    rows |= {"directions": DIRECTIONS[flow.along], "grid": flow.grid}
+    rows["coordinates"] = flow.coordinates
+    for name, words in axis_values(flow.pair.u).items():
+        listed = ", ".join(words[:MOST_VALUES]) + (", ..." if len(words) > MOST_VALUES else "")
+        rows[name] = f"{len(words)}: {listed}"
     return rows

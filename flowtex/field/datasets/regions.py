@@ -1,15 +1,15 @@
 """A dataset on lines of longitude and latitude, or of x and y, any region of which is read alone.
 
-What concerns the whole is decided before: the two variables, the map, the order of its columns. A
-region is then the same, bit for bit, in every process, and nothing else is read for it. Names of
-files and arrays that are read late are all that is needed for that, so a process elsewhere can.
+Properties of the whole are determined before: the two variables, the map, the order of its columns.
+A region is then the same, bit for bit, in every process, and nothing else is read for it. It needs
+only names of files, and arrays that are read late, so a process on another machine can read it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -32,13 +32,15 @@ from flowtex.field.steps import Nodes, typical_steps
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Rows or columns, by numbers or as a slice.
+Selection: TypeAlias = Indices | slice
 #: Values beyond this are missing data, even without an attribute.
 LARGEST_VALUE = 1e15
 
 
 @dataclass(frozen=True, eq=False)
 class RegionLines:
-    """Where the nodes lie: two lines of coordinates, and their numbers in the data."""
+    """Places of the nodes: two lines of coordinates, and their numbers in the data."""
 
     a: Floats  #: Longitude of each column, (I,), or x.
     b: Floats  #: Latitude of each row, (J,), or y.
@@ -54,7 +56,7 @@ class RegionLines:
         """Number of nodes (J, I)."""
         return len(self.rows), len(self.columns)
 
-    def points(self, rows: Any, columns: Any) -> Floats:
+    def points(self, rows: Selection, columns: Selection) -> Floats:
         """Return positions (J, I, 3) of some rows and columns."""
         a, b = np.broadcast_arrays(self.shown[columns], self.b[rows][:, None])
         if self.projection is None:
@@ -63,7 +65,7 @@ class RegionLines:
             return self.projection.positions(a, b)
         return shown_positions(self.projection, a, b)
 
-    def vectors(self, u: Floats, v: Floats, rows: Any, columns: Any) -> Floats:
+    def vectors(self, u: Floats, v: Floats, rows: Selection, columns: Selection) -> Floats:
         """Return vectors (J, I, 3) of components at some rows and columns."""
         if self.projection is None:
             return np.stack([u, v, np.zeros(u.shape)], axis=-1)
@@ -73,7 +75,7 @@ class RegionLines:
 
 @dataclass(frozen=True)
 class Words:
-    """What a field is called, and its times: as in a :class:`FlowField`."""
+    """Names, units and times as in a :class:`FlowField`."""
 
     name: str
     length_unit: str
@@ -87,12 +89,12 @@ class Words:
 class Regions:
     """A dataset on lines of coordinates."""
 
-    words: Words  #: What the field is called.
-    lines: RegionLines  #: Where its nodes lie.
+    words: Words
+    lines: RegionLines  #: Places of the nodes.
     #: Variables of the velocity, ([time,] row, column).
     components: tuple[xr.Variable, xr.Variable]
-    factor: float  #: Makes them m/s.
-    mask: xr.Variable | None  #: Positive where there is data, (row, column).
+    factor: float  #: Their unit in m/s.
+    mask: xr.Variable | None  #: Positive where there are data, (row, column).
     scalars: Mapping[str, xr.Variable]
     numbers: tuple[int, ...]  #: Time steps in the variables.
 
@@ -103,55 +105,59 @@ class Regions:
         drawn = projection is not None and not projection.is_globe
         return (*self.scalars, "speed") if drawn else tuple(self.scalars)
 
-    def nodes(self, step: int, rows: Any, columns: Any, valid: Bools | None = None) -> Nodes:
+    def nodes(
+        self, step: int, rows: Selection, columns: Selection, valid: Bools | None = None
+    ) -> Nodes:
         """Read some rows and columns at a time step; ``valid`` is that of all, if known."""
         number = self.numbers[step]
         u, v = self._components(number, rows, columns)
         velocity = self.lines.vectors(u, v, rows, columns)
-        known = np.isfinite(velocity).all(axis=-1)
+        finite = np.isfinite(velocity).all(axis=-1)
         if valid is None:
-            valid = np.zeros_like(known)
+            valid = np.zeros_like(finite)
             for other in typical_steps(len(self.numbers)):
                 if valid.all():  # the others are read only where a step has gaps
                     break
                 if other != step:
-                    one, two = self._components(self.numbers[other], rows, columns)
-                    valid |= np.isfinite(self.lines.vectors(one, two, rows, columns)).all(axis=-1)
+                    a, b = self._components(self.numbers[other], rows, columns)
+                    valid |= np.isfinite(self.lines.vectors(a, b, rows, columns)).all(axis=-1)
                 else:
-                    valid |= known
-        velocity[~(valid & known)] = 0.0
+                    valid |= finite
+        velocity[~(valid & finite)] = 0.0
         scalars = {k: self.read(s, number, rows, columns) for k, s in self.scalars.items()}
         if len(self.names) > len(scalars):
             scalars["speed"] = np.hypot(u, v)
         points = self.lines.points(rows, columns)
         return Nodes(points, valid, velocity, scalars)
 
-    def _components(self, number: int, rows: Any, columns: Any) -> list[Floats]:
-        parts = [self.read(one, number, rows, columns) * self.factor for one in self.components]
+    def _components(self, number: int, rows: Selection, columns: Selection) -> list[Floats]:
+        parts = [self.read(part, number, rows, columns) * self.factor for part in self.components]
         if self.mask is None:
             return parts
         wet = self.read(self.mask, number, rows, columns) > 0
         return [np.where(wet, part, np.nan) for part in parts]
 
-    def read(self, variable: xr.Variable, number: int, rows: Any, columns: Any) -> Floats:
+    def read(
+        self, variable: xr.Variable, number: int, rows: Selection, columns: Selection
+    ) -> Floats:
         """Return some rows and columns of a variable, at a number in it."""
         step = variable[number] if variable.ndim > 2 else variable
         below = []
         for first in even_runs(self.lines.rows[rows]):
             beside = [step[first, second] for second in even_runs(self.lines.columns[columns])]
-            # Whoever reads a region may be a task of a cluster, and must not wait for others.
+            # The reader may be a task of a cluster, which must not wait for other tasks.
             below.append([numbers_in(part.compute(scheduler="synchronous")) for part in beside])
         return np.concatenate([np.concatenate(parts, axis=1) for parts in below])
 
 
 def region_lines(places: Places, name: str | None) -> RegionLines | None:
-    """Return where the nodes lie; ``None`` where no region can be read without the others."""
+    """Return the places of nodes; ``None`` where regions cannot be read separately."""
     if not places.is_line or not all(_is_ordered(line) for line in places.lines):
         return None
     a, b = places.lines
     if not places.is_earth:
         ends = [np.broadcast_arrays(a, b[[0, -1], None]), np.broadcast_arrays(a[[0, -1], None], b)]
-        grids = [np.stack([*two, np.zeros(two[0].shape)], axis=-1) for two in ends]
+        grids = [np.stack([*pair, np.zeros(pair[0].shape)], axis=-1) for pair in ends]
         if any(find_closure(np.swapaxes(grid, 0, 1)).periodic for grid in grids):
             return None
         return RegionLines(a, b, a, np.arange(len(b)), np.arange(len(a)), None, closed=False)
@@ -168,7 +174,7 @@ def region_lines(places: Places, name: str | None) -> RegionLines | None:
     )
 
 
-def numbers_in(array: Any) -> Floats:
+def numbers_in(array: xr.DataArray | xr.Variable) -> Floats:
     """Return the values of a variable as float64; missing data are NaN."""
     values = values_in(array)
     if values.dtype.kind not in "fiub":

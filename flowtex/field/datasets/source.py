@@ -1,4 +1,4 @@
-"""Data of the Earth that stay open: what can be chosen of them, and one field after another."""
+"""Data of the Earth that stay open: their choices, and one field after another."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ class DatasetSource(Source):
         likely = [pair for pair in pairs if pair.rank == pairs[0].rank]
         first = likely[0] if pairs else None
         u, v = (None, None) if first is None else (str(first.u.name), str(first.v.name))
-        known = recognise(self._datasets, u, v)
-        found = (f"{pair.u.name},{pair.v.name}" for pair in (known.pair, *pairs))
-        self.vectors = tuple(dict.fromkeys(found))
-        if known.places.is_earth:
-            flat = projection_of(known.places, None)[0].name
+        flow = recognise(self._datasets, u, v)
+        names = (f"{pair.u.name},{pair.v.name}" for pair in (flow.pair, *pairs))
+        self.vectors = tuple(dict.fromkeys(names))
+        if flow.places.is_earth:
+            flat = projection_of(flow.places, None)[0].name
             self.blocks = tuple(dict.fromkeys((flat, GLOBE, *NAMES)))
             self.block_vectors = dict.fromkeys(self.blocks, self.vectors)
         self.block_word, self.reads_late = "Map", True
-        self.axes = axis_values(known.pair.u)
+        self.axes = axis_values(flow.pair.u)
         if name := next(iter(self.axes), ""):
-            self.default_plane = f"{name}={dict(known.u.numbers).get(name, 0)}"
+            self.default_plane = f"{name}={dict(flow.u.numbers).get(name, 0)}"
 
     def plane_of(self, level: float | str) -> str:
         """Return the plane of a level, as :meth:`Source.plane_of` does."""
@@ -66,7 +66,7 @@ class DatasetSource(Source):
         if array is not None and axis in axis_values(array):
             options["isel"] = {**(options.get("isel") or {}), axis: int(number)}
         with warnings.catch_warnings():
-            # The page shows what is chosen.
+            # The page shows the choices.
             warnings.simplefilter("ignore", DatasetNotice)
             return FlowField.from_xarray(
                 self._datasets, **names, projection=block or None, name=self.name, **options

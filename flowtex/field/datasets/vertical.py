@@ -1,7 +1,7 @@
 """Vertical sections: a velocity along latitudes, longitudes or a distance, and across levels.
 
 Nodes are at the coordinates of the data, in degrees or a unit of length, and in a unit of length or
-pressure. Both components are taken to these units per second, so that particles follow their paths.
+pressure. Both components are converted to these units per second.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def is_vertical(array: xr.DataArray) -> bool:
 
 
 def read_section(
-    datasets: Sequence[Any],
+    datasets: Sequence[xr.Dataset],
     u: str,
     v: str,
     *,
@@ -57,7 +57,7 @@ def read_section(
     sel: Mapping[str, Any],
     isel: Mapping[str, Any],
 ) -> GridArrays:
-    """Read a vertical section, of a component along it and a vertical one; these are named."""
+    """Read a vertical section, from the names of a component along it and a vertical one."""
     one, two = variable(datasets, u), variable(datasets, v)
     if set(one.dims) != set(two.dims):
         listed = "; ".join(f"{a.name} has {', '.join(map(str, a.dims))}" for a in (one, two))
@@ -90,7 +90,7 @@ def read_section(
         a, b = component(0)(step) * metres * x_factor, component(1)(step) * y_factor
         return np.stack([a, b, np.zeros_like(a)], axis=-1)
 
-    moving = LazySteps(len(numbers), velocity)
+    velocities = LazySteps(len(numbers), velocity)
     scalars = {
         # The axes have different units, so a speed along both has none.
         "speed": lambda step: np.abs(component(0)(step)) * metres,
@@ -99,7 +99,7 @@ def read_section(
     }
     return GridArrays(
         points=np.stack([*np.meshgrid(x, y), np.zeros((len(y), len(x)))], axis=-1),
-        velocity=moving if len(numbers) > 1 else moving[0],
+        velocity=velocities if len(numbers) > 1 else velocities[0],
         times=times,
         scalars={key: LazySteps(len(numbers), read) for key, read in scalars.items()},
         name=name,
@@ -120,8 +120,8 @@ def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:
     ]
     # Without a choice a northward component is shown along a meridian.
     northward = re.search(r"north|merid|y_|^v", str(array.attrs.get("standard_name", array.name)))
-    wanted = LATITUDE if northward else LONGITUDE
-    others.sort(key=lambda dim: bool(wanted.match(dim)))
+    preferred = LATITUDE if northward else LONGITUDE
+    others.sort(key=lambda dim: bool(preferred.match(dim)))
     if not levels or not others:
         msg = (
             f"{array.name} has the axes {', '.join(kinds)}; expected levels and one more for a "
@@ -131,31 +131,32 @@ def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:
     return levels[0], others[-1]
 
 
-def _coordinate(array: xr.DataArray, dim: str) -> Any:
+def _coordinate(array: xr.DataArray, dim: str) -> xr.DataArray:
     """Return the coordinate of a dimension, (n,)."""
-    found = [c for c in array.coords.values() if c.dims == (dim,) and c.dtype.kind in "fiu"]
-    if not found:
+    along: list[xr.DataArray] = [c for c in array.coords.values() if c.dims == (dim,)]
+    along = [c for c in along if c.dtype.kind in "fiu"]
+    if not along:
         msg = f"{dim} has no coordinate; add it, as in ds.assign_coords({dim}=...)"
         raise FieldError(msg)
-    found.sort(key=lambda c: c.name != dim)
-    return found[0]
+    along.sort(key=lambda c: c.name != dim)
+    return along[0]
 
 
-def _horizontal(across: xr.DataArray, array: xr.DataArray) -> tuple[Floats, Any, str]:
-    """Return places along a section, their unit a second over m/s, and a text for the axis."""
+def _horizontal(across: xr.DataArray, array: xr.DataArray) -> tuple[Floats, float, str]:
+    """Return places along a section, m/s in their unit per second, and the text of the axis."""
     values, unit = numbers_in(across), str(across.attrs.get("units", ""))
     name = str(across.attrs.get("standard_name", across.name))
     if LATITUDE.match(name):
         return values, 1 / DEGREE, "latitude (°)"
     if LONGITUDE.match(name):
-        found = [c for c in array.coords.values() if not c.dims and LATITUDE.match(str(c.name))]
-        if not found:
+        latitudes = [c for c in array.coords.values() if not c.dims and LATITUDE.match(str(c.name))]
+        if not latitudes:
             msg = (
                 f"the latitude of a section along {across.name} is not known; add it, as in "
                 "ds.assign_coords(lat=45.0)"
             )
             raise FieldError(msg)
-        return values, 1 / (DEGREE * math.cos(math.radians(float(found[0])))), "longitude (°)"
+        return values, 1 / (DEGREE * math.cos(math.radians(float(latitudes[0])))), "longitude (°)"
     if unit not in LENGTHS:
         expected = f"degrees, {', '.join(LENGTHS)}"
         msg = f"the unit of {across.name} is {unit!r}; expected {expected}: set its units"
@@ -164,7 +165,7 @@ def _horizontal(across: xr.DataArray, array: xr.DataArray) -> tuple[Floats, Any,
 
 
 def _vertical(up: xr.DataArray, w: xr.DataArray) -> tuple[Floats, float, str]:
-    """Return levels, their unit a second over that of the velocity, and a text for the axis."""
+    """Return levels, the factor of the velocity to their unit per second, and the axis's text."""
     unit, moves = str(up.attrs.get("units", "")), plain_unit(w)
     text = f"{up.attrs.get('long_name', up.name)} ({unit})"
     if unit in LENGTHS and (metres := to_metres_per_second(w)) is not None:

@@ -1,4 +1,4 @@
-"""Winds and currents as web maps have them: JSON of the components with a header each.
+"""Winds and currents of web maps: JSON of the components with a header each.
 
 The form is that of grib2json, which leaflet-velocity and earth read: a list of records, each with
 ``header`` (``nx``, ``ny``, ``lo1``, ``la1``, ``dx``, ``dy``, ``parameterNumber`` 2 for eastward and
@@ -20,9 +20,9 @@ from flowtex.field.io.inspection.limits import check_count, check_memory
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Names of the components by the number of the parameter, those of the categories that move.
+#: Names of the components by the number of the parameter.
 NUMBERS = {2: "u", 3: "v"}
-#: Bytes in memory of one byte of JSON, at most: "[]," is its own list.
+#: Most bytes in memory for one byte of JSON: each "[]," is a list.
 JSON_GROWTH = 24
 WORDS = {"u": "eastward_wind", "v": "northward_wind"}
 

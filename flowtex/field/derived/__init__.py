@@ -14,18 +14,18 @@ from flowtex.field.earth import Projection
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.surface import Surface
 
-#: What is computed of the gradient a[m, n], the change of component m along direction n.
+#: Functions of the gradient a[m, n], the change of component m along direction n.
 DERIVED: dict[str, Callable[[Floats], Floats]] = {
     "vorticity": lambda a: a[1, 0] - a[0, 1],
     "divergence": lambda a: a[0, 0] + a[1, 1],
     "shear": lambda a: np.hypot(a[0, 0] - a[1, 1], a[0, 1] + a[1, 0]),
     "okubo_weiss": lambda a: (a[0, 0] - a[1, 1]) ** 2 + 4 * a[0, 1] * a[1, 0],
 }
-#: Those of both signs, around zero.
+#: Derived scalars of both signs.
 SIGNED = frozenset(("vorticity", "divergence", "okubo_weiss"))
-#: Those for which particles are followed over a horizon, from a field; the tracer adds them.
+#: Scalars for which particles are followed over a horizon, by the field; the tracer adds them.
 FOLLOWED: dict[str, Callable[[Any, float], Steps]] = {}
-#: Words for them, where there are other ones than their names.
+#: Long names that differ from the names.
 LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
 
 
@@ -71,14 +71,14 @@ def followed_steps(name: str, field: Any, horizon: float | None) -> Steps:
 
 
 def derived_unit(name: str, time_unit: str) -> str:
-    """Return the unit of a derived scalar; empty where that of time is not known."""
+    """Return the unit of a derived scalar; empty where that of time is unknown."""
     if not time_unit:
         return ""
     return f"1/{time_unit}²" if name == "okubo_weiss" else f"1/{time_unit}"
 
 
 def speed_unit(length: str, time: str) -> str:
-    """Return the unit of speed; empty when one of the units is not known."""
+    """Return the unit of speed; empty where one of the units is unknown."""
     if not length or not time:
         return ""
     if time.startswith(f"{length} / "):

@@ -31,7 +31,7 @@ MOST_JUDGED = 40_000
 
 
 def true_positions(points: Floats, projection: Projection | None) -> Floats:
-    """Return positions (..., 3) on a flat map of the Earth as those on the sphere; others as is."""
+    """Return positions (..., 3) on a flat map of the Earth as those on the sphere, others as is."""
     if projection is None or projection.is_globe:
         return points
     return Projection(GLOBE).positions(*projection.lonlat(points))
@@ -69,12 +69,12 @@ class NodeGradient:
     poles: tuple[tuple[int, int], ...] = ()
 
     def with_poles(self, nodal: Floats) -> Floats:
-        """Give nodes of poles, whose directions differ, the mean beside them, in place."""
+        """Set nodes of poles, whose directions differ, to the mean beside them, in place."""
         for axis, line in self.poles:
             lines = np.moveaxis(nodal, axis, 0)
             beside = lines[_beside(line), :-1]
-            known = np.isfinite(beside)
-            lines[line] = beside[known].mean() if known.any() else np.nan
+            finite = np.isfinite(beside)
+            lines[line] = beside[finite].mean() if finite.any() else np.nan
         return nodal
 
     def of_vectors(self, vectors: Floats) -> Floats:
@@ -92,7 +92,7 @@ class _GridGradient:
 
     def __init__(self, surface: Surface, points: Floats) -> None:
         self._valid, self._periodic = surface.valid, surface.periodic
-        # On the sphere a turn further is the same place.
+        # On the sphere one turn leads to the same place.
         self._offset = surface.offset if points is surface.points else np.zeros((2, 3))
         self._poles = tuple(_poles(points, surface.valid))
         self._points = np.ascontiguousarray(np.moveaxis(points, -1, 0))
@@ -102,7 +102,7 @@ class _GridGradient:
     def node_gradient(self) -> NodeGradient:
         """The gradient of arrays (C, J, I)."""
         p_i, p_j = (self._difference(self._points, axis, self._offset[axis]) for axis in (1, 0))
-        for axis, line in self._poles:  # it has the directions of the line beside it
+        for axis, line in self._poles:  # a pole has the directions of the line beside it
             lines = np.moveaxis((p_i, p_j)[axis], axis + 1, 0)
             lines[line] = lines[_beside(line)]
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -160,23 +160,23 @@ class _GridGradient:
 def _one_sided(
     data: Floats, valid: Bools, line: Indices, place: Indices, turn: Floats | None
 ) -> Floats:
-    """Return differences (C, N) near a border or a gap; ``turn`` is what a closed axis adds."""
+    """Return differences (C, N) near a border or a gap; ``turn`` is the period of a closed axis."""
     last = data.shape[1] - 1
-    here, result = data[:, line, place], np.full((len(data), len(line)), np.nan)
+    center, result = data[:, line, place], np.full((len(data), len(line)), np.nan)
     usable, done = valid[line, place], np.zeros(len(line), dtype=bool)
     for side in (1, -1):
-        values, known = [], []
+        values, exists = [], []
         for distance in (1, 2):
             number = line + side * distance
             turns = np.zeros_like(number) if turn is None else number // last
             at = np.clip(number, 0, last) if turn is None else number - turns * last
-            known.append(usable & (at == number if turn is None else True) & valid[at, place])
+            exists.append(usable & (at == number if turn is None else True) & valid[at, place])
             shift = 0.0 if turn is None else turns * turn[:, None]
             values.append(data[:, at, place] + shift)
         near, far = values
-        first, second = known[0] & ~done, known[0] & known[1]
-        result[:, first] = side * (near - here)[:, first]
-        result[:, second] = side * (4 * near - 3 * here - far)[:, second] / 2
+        first, second = exists[0] & ~done, exists[0] & exists[1]
+        result[:, first] = side * (near - center)[:, first]
+        result[:, second] = side * (4 * near - 3 * center - far)[:, second] / 2
         done |= second
     return result
 
@@ -193,8 +193,8 @@ def _triangle_gradient(surface: TriangleSurface, points: Floats) -> NodeGradient
     """Fit quadratic functions to the nodes around each node, (C, 1, N), of a surface of triangles.
 
     Zhang and Naga 2005, A new finite element gradient recovery method: superconvergence property.
-    The fit is of second order on triangles of any shape, which means of the triangles' own
-    gradients are not.
+    The fit is of second order on triangles of any shape, unlike means of the gradients of
+    triangles.
     """
     if points is not surface.points:
         surface = TriangleSurface(points, surface.triangles, surface.valid)
@@ -219,15 +219,15 @@ def _triangle_gradient(surface: TriangleSurface, points: Floats) -> NodeGradient
             normal[:, b, a] = normal[:, a, b]
     largest = normal.max(axis=(1, 2))
     normal += np.maximum(largest, 1e-300)[:, None, None] * REGULARISATION * np.eye(5)
-    known = (degree >= 2) & (np.linalg.det(normal[:, :2, :2]) > 1e-6 * largest**2)
-    normal[~known] = np.eye(5)
+    solvable = (degree >= 2) & (np.linalg.det(normal[:, :2, :2]) > 1e-6 * largest**2)
+    normal[~solvable] = np.eye(5)
     inverse = np.linalg.inv(normal)[:, :2]
     operators = []
     for share in inverse.transpose(1, 0, 2):
         entries = weight * np.einsum("ek,ke->e", share[rows], terms) / size[rows]
         matrix = scipy.sparse.csr_array((entries, (rows, columns)), (count, count))
-        own = np.where(known, -np.bincount(rows, entries, count), np.nan)
-        operators.append(matrix + scipy.sparse.diags_array(own))
+        diagonal = np.where(solvable, -np.bincount(rows, entries, count), np.nan)
+        operators.append(matrix + scipy.sparse.diags_array(diagonal))
 
     def derivative(nodal: Floats) -> Floats:
         columns = nodal[:, 0].T
@@ -261,25 +261,25 @@ def _beside(line: int) -> int:
 def _poles(points: Floats, valid: Bools) -> Iterator[tuple[int, int]]:
     """Find the axes, and their first or last lines, where all nodes (J, I, 3) are at one point."""
     for axis in (0, 1):
-        lines, known = np.moveaxis(points, axis, 0), np.moveaxis(valid, axis, 0)
+        lines, valid_lines = np.moveaxis(points, axis, 0), np.moveaxis(valid, axis, 0)
         for line in (0, len(lines) - 1):
             beside = _beside(line)
-            some = known[line] & known[beside]
-            if some.any():
-                apart = norm(lines[line, some] - lines[line, some].mean(axis=0)).max()
-                if apart < SAME_POINT_SHARE * norm(lines[beside, some] - lines[line, some]).min():
+            used = valid_lines[line] & valid_lines[beside]
+            if used.any():
+                apart = norm(lines[line, used] - lines[line, used].mean(axis=0)).max()
+                if apart < SAME_POINT_SHARE * norm(lines[beside, used] - lines[line, used]).min():
                     yield axis, line
 
 
 def _clockwise(one: Floats, two: Floats, points: Floats, valid: Bools) -> bool:
     """Return whether turning from the first direction to the second is negative, by some nodes."""
-    some = (slice(None, None, 1 + math.isqrt(valid.size // MOST_JUDGED)),) * 2
-    one, two, points = (a[:, *some] for a in (one, two, points))
+    sample = (slice(None, None, 1 + math.isqrt(valid.size // MOST_JUDGED)),) * 2
+    one, two, points = (a[:, *sample] for a in (one, two, points))
     normal = np.stack([one[a] * two[b] - one[b] * two[a] for a, b in ((1, 2), (2, 0), (0, 1))])
-    known = valid[some] & np.isfinite(normal).all(axis=0)
-    if not known.any():
+    usable = valid[sample] & np.isfinite(normal).all(axis=0)
+    if not usable.any():
         return False
-    normal, place = normal[:, known], points[:, known]
+    normal, place = normal[:, usable], points[:, usable]
     mean = normal.mean(axis=1)
     if np.linalg.norm(mean) > 1 - 1e-6:
         return bool(mean[np.argmax(np.abs(mean))] < 0)

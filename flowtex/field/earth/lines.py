@@ -16,23 +16,23 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 
 COASTS = Path(__file__).with_name("coastlines.npz")
-#: What is stored for a degree, as tools/coastlines.py has it.
+#: Stored steps of a degree, as in tools/coastlines.py.
 STEPS_PER_DEGREE = 100
 #: Longest piece of a line in degrees.
 LONGEST_PIECE = 1.0
 #: A piece is torn where its middle is farther than this share of it from the middle of its ends.
 MOST_BENT = 0.2
-#: Where a map is stretched more than that there are no lines: they go to infinity, as at a pole.
+#: Scale beyond which a map has no lines: they go to infinity, as at a pole.
 MOST_STRETCHED = 20.0
-#: Spacings that a thinned line has at least: islands of that length are some pixels wide.
+#: Least length of a thinned line in spacings: islands of that length are some pixels wide.
 FEWEST_SPACINGS = 4
-#: Halvings by which the place is found where a map is torn: some 10 m on the Earth.
+#: Halvings of a piece in the search of a tear: to some 10 m on the Earth.
 HALVINGS = 14
 
-#: Degrees between the lines of a graticule that are to choose from, and how many may cross a map.
+#: Possible degrees between the lines of a graticule, and most lines that cross a map.
 STEPS = (30, 15, 10, 5, 2, 1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
 MOST_LINES = 6
-#: Pieces that a line has, at least, from one that crosses it to the next.
+#: Least pieces of a line between two that cross it.
 FEWEST_PIECES = 8
 #: Places along each side of the box where longitude and latitude are looked up.
 LOOKS = {True: 25, False: 65}
@@ -47,12 +47,12 @@ class MapLines:
     starts: Indices
 
     def and_(self, other: MapLines) -> MapLines:
-        """Return these lines and others."""
+        """Return these lines and the others."""
         starts = np.append(self.starts[:-1], other.starts + len(self.points))
         return MapLines(np.concatenate([self.points, other.points]), starts)
 
     def within(self, inside: Bools) -> MapLines:
-        """Return the pieces that have one end among some of the points, (N,), at least."""
+        """Return the pieces with at least one end among some of the points, (N,)."""
         first = np.delete(np.arange(len(self.points)), self.starts[1:] - 1)
         first = first[inside[first] | inside[first + 1]]
         return _assembled(self.points[first], self.points[first + 1], first, first + 1)
@@ -60,7 +60,7 @@ class MapLines:
     def thinned(self, spacing: float) -> MapLines:
         """Return the lines with a point about every ``spacing`` metres, without short ones.
 
-        Small islands would be blobs.
+        Small islands would be dots.
         """
         lines = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
         steps = np.linalg.norm(np.diff(self.points, axis=0, prepend=self.points[:1]), axis=1)
@@ -80,7 +80,7 @@ class MapLines:
 def coastlines(projection: Projection, box: Floats | None = None) -> MapLines:
     """Return the coasts of all land, the larger islands and lakes.
 
-    What is outside of a box, the least and greatest position of what is shown, (2, 3), is left out.
+    Lines outside of a box, the least and greatest shown position, (2, 3), are left out.
     """
     lonlat, joined = _coasts()
     return _mapped(projection, lonlat, joined, box)
@@ -91,13 +91,14 @@ def graticule(
 ) -> MapLines:
     """Return meridians and parallels, in a box as for :func:`coastlines`.
 
-    Between two lines are so many degrees; by default a round number, so that some cross the box.
+    ``step`` is the distance of lines in degrees; by default a round number, so that some cross the
+    box.
     """
     lon, lat = _places(projection, box)
     if not len(lon):
         return MapLines(np.zeros((0, 3)), np.zeros(1, dtype=np.intp))
-    apart = (step, step) if step else _steps(lon, lat)
-    meridians, parallels = (_grid_lines(lon, lat, apart, kind) for kind in (0, 1))
+    steps = (step, step) if step else _steps(lon, lat)
+    meridians, parallels = (_grid_lines(lon, lat, steps, kind) for kind in (0, 1))
     lonlat = np.concatenate([meridians[0], parallels[0]])
     joined = np.concatenate([meridians[1], parallels[1]])
     return _mapped(projection, lonlat, joined[:-1], box)
@@ -105,7 +106,7 @@ def graticule(
 
 @cache
 def _coasts() -> tuple[Floats, Bools]:
-    """Longitude and latitude of all coasts, and which points are joined to the next one."""
+    """Return longitude and latitude of all coasts, and which points are joined to the next."""
     with np.load(COASTS, allow_pickle=False) as file:
         steps, lengths = file["steps"], file["lengths"]
     lonlat = np.cumsum(steps, axis=0, dtype=np.int16) / STEPS_PER_DEGREE
@@ -134,7 +135,7 @@ def _steps(lon: Floats, lat: Floats) -> tuple[float, float]:
 
 
 def _places(projection: Projection, box: Floats | None) -> tuple[Floats, Floats]:
-    """Longitude and latitude of places all over a box."""
+    """Return longitude and latitude of places all over a box."""
     if box is None:
         lon, lat = np.meshgrid(np.arange(-180.0, 180.0), np.arange(-89.5, 90.0))
         return lon.ravel(), lat.ravel()
@@ -142,18 +143,18 @@ def _places(projection: Projection, box: Floats | None) -> tuple[Floats, Floats]
     axes = [np.linspace(a, b, count if b > a else 1) for a, b in box.T]
     points = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
     lon, lat = projection.lonlat(points)
-    known = np.isfinite(lon) & np.isfinite(lat)
-    return lon[known], lat[known]
+    finite = np.isfinite(lon) & np.isfinite(lat)
+    return lon[finite], lat[finite]
 
 
 def _grid_lines(
-    lon: Floats, lat: Floats, apart: tuple[float, float], kind: int
+    lon: Floats, lat: Floats, steps: tuple[float, float], kind: int
 ) -> tuple[Floats, Bools]:
-    """Meridians (0) or parallels (1) that places lie between: points, and which are joined."""
+    """Return meridians (0) or parallels (1) around places, and which points are joined."""
     order = slice(None, None, 1 - 2 * kind)
-    of, along = (lon, lat)[order]
-    step, length = (apart[kind], apart[1 - kind])
-    cells = np.unique(np.floor(of / step).astype(int))
+    degrees, along = (lon, lat)[order]
+    step, length = (steps[kind], steps[1 - kind])
+    cells = np.unique(np.floor(degrees / step).astype(int))
     values = np.union1d(cells, cells + 1) * step
     values = values[(values < 180) if kind == 0 else (np.abs(values) < 90)]
     pieces = max(math.ceil(length / LONGEST_PIECE), FEWEST_PIECES)
@@ -168,14 +169,14 @@ def _grid_lines(
 
 
 def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats | None) -> MapLines:
-    """Project lines: short pieces of them, cut where the map is torn, and those in a box.
+    """Project lines, in short pieces cut where the map is torn, and keep those in a box.
 
-    ``joined`` says for each point but the last whether it is joined to the next one.
+    ``joined`` is whether each point but the last is joined to the next one.
     """
     first, last, place = _pieces(lonlat, joined)
     torn = _is_torn(projection, first, last)
     before, after = tear(projection, first[torn], last[torn])
-    # Both parts of a torn piece follow each other, and are joined to what is not torn.
+    # Both parts of a torn piece follow each other, and are joined to pieces that are not torn.
     gap = np.full(int(torn.sum()), np.nan)
     (left, right), (torn_left, torn_right) = place[~torn].T, place[torn].T
     order = np.argsort(np.concatenate([left, torn_left, torn_left]), kind="stable")
@@ -193,23 +194,23 @@ def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats |
 
 
 def _pieces(lonlat: Floats, joined: Bools) -> tuple[Floats, Floats, Floats]:
-    """Both ends of short pieces of lines, (N, 2) each, and how far along all lines they are."""
+    """Return both ends of short pieces of lines, (N, 2) each, and their places along lines."""
     index = np.flatnonzero(joined)
-    start, way = lonlat[index], lonlat[index + 1] - lonlat[index]
-    way[:, 0] = (way[:, 0] + 180) % 360 - 180
-    counts = np.maximum(np.ceil(np.abs(way).max(axis=1) / LONGEST_PIECE).astype(int), 1)
-    whole = np.repeat(np.arange(len(index)), counts)
-    number = np.arange(len(whole)) - np.repeat(np.cumsum(counts) - counts, counts)
-    part = np.stack([number, number + 1], axis=1) / counts[whole, None]
-    first, last = (start[whole] + way[whole] * part[:, k, None] for k in (0, 1))
-    return first, last, index[whole, None] + part
+    start, steps = lonlat[index], lonlat[index + 1] - lonlat[index]
+    steps[:, 0] = (steps[:, 0] + 180) % 360 - 180
+    counts = np.maximum(np.ceil(np.abs(steps).max(axis=1) / LONGEST_PIECE).astype(int), 1)
+    segment = np.repeat(np.arange(len(index)), counts)
+    number = np.arange(len(segment)) - np.repeat(np.cumsum(counts) - counts, counts)
+    part = np.stack([number, number + 1], axis=1) / counts[segment, None]
+    first, last = (start[segment] + steps[segment] * part[:, k, None] for k in (0, 1))
+    return first, last, index[segment, None] + part
 
 
 def _lengths(first: Floats, last: Floats) -> Floats:
-    """Lengths of short pieces on the Earth in metres."""
-    way = np.radians(last - first)
-    way[:, 0] *= np.cos(np.radians((first[:, 1] + last[:, 1]) / 2))
-    return np.asarray(EARTH_RADIUS * np.linalg.norm(way, axis=1))
+    """Return lengths of short pieces on the Earth in metres."""
+    steps = np.radians(last - first)
+    steps[:, 0] *= np.cos(np.radians((first[:, 1] + last[:, 1]) / 2))
+    return np.asarray(EARTH_RADIUS * np.linalg.norm(steps, axis=1))
 
 
 def _is_torn(projection: Projection, first: Floats, last: Floats) -> Bools:
@@ -235,7 +236,7 @@ def tear(projection: Projection, first: Floats, last: Floats) -> tuple[Floats, F
 
 
 def _assembled(starts: Floats, stops: Floats, left: AnyArray, right: AnyArray) -> MapLines:
-    """Put pieces together that follow each other: ``right`` of one is ``left`` of the next."""
+    """Join successive pieces, of which ``right`` of one is ``left`` of the next."""
     new = np.append(True, right[:-1] != left[1:])[: len(starts)]
     at = np.arange(len(starts)) + np.cumsum(new) - 1
     points = np.empty((len(starts) + int(new.sum()), 3))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,13 +17,16 @@ from flowtex._util.array_types import Floats
 from flowtex._util.extras import import_extra
 from flowtex.errors import FieldError
 
+if TYPE_CHECKING:
+    from pyproj import CRS, Transformer
+
 #: Mean radius of the Earth in metres.
 EARTH_RADIUS = 6_371_000.0
 #: Metres of a degree of latitude.
 DEGREE = math.radians(EARTH_RADIUS)
 #: The name of the sphere among the projections.
 GLOBE = "globe"
-#: Projections by the names that people know, as PROJ has them.
+#: Projections of PROJ by common names.
 NAMES = {
     "platecarree": "+proj=eqc",
     "mercator": "+proj=merc",
@@ -114,7 +117,7 @@ class Projection:
 
     @classmethod
     def of(cls, written: Any) -> Projection | None:
-        """Return the projection from the value of :attr:`written`; ``None`` for ``None``."""
+        """Return the projection of a value of :attr:`written`; ``None`` for ``None``."""
         if written is None:
             return None
         name, (lon, lat), half_height = written
@@ -154,7 +157,7 @@ class Projection:
         return self.center[0] if self.name in NAMES else 0.0
 
     @cached_property
-    def _crs(self) -> Any:
+    def _crs(self) -> CRS:
         pyproj = import_extra("pyproj", "xarray")
         text = self.name
         if text in NAMES:
@@ -170,7 +173,7 @@ class Projection:
                     parallels = (near, near)
                 text += f" +lat_0={near:.12g} +lat_1={parallels[0]:.12g} +lat_2={parallels[1]:.12g}"
         try:
-            crs = pyproj.CRS.from_user_input(text)
+            crs: CRS = pyproj.CRS.from_user_input(text)
             if not crs.is_projected:
                 msg = (
                     f"the projection {self.name!r} is in degrees; expected one in metres: "
@@ -187,14 +190,14 @@ class Projection:
             raise ProjectionError(msg) from error
 
     @cached_property
-    def _transforms(self) -> tuple[Any, Any]:
+    def _transforms(self) -> tuple[Transformer, Transformer]:
         """Transforms that wrap longitudes, and that continue beyond the edge of a map."""
         make = import_extra("pyproj", "xarray").Transformer.from_crs
-        both = (
+        pair = (
             make(self._crs.geodetic_crs, self._crs, always_xy=True, force_over=over)
             for over in (False, True)
         )
-        return tuple(both)
+        return tuple(pair)
 
     def positions(self, lon: Floats, lat: Floats, *, beyond: bool = False) -> Floats:
         """Return positions in metres, (..., 3), of longitudes and latitudes in degrees.
@@ -237,7 +240,7 @@ class Projection:
         return (east * nn - north * en) / area, (north * ee - east * en) / area
 
     def _directions(self, lon: Floats, lat: Floats) -> tuple[Floats, Floats]:
-        """Change of position for a metre eastward and a metre northward."""
+        """Return the change of position for a metre eastward and a metre northward."""
         if self.is_globe:
             a, b = np.radians(lon), np.radians(lat)
             zero = np.zeros_like(a)
@@ -245,10 +248,10 @@ class Projection:
             north = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
             return east, north
         lat = np.clip(lat, NEAREST_POLE - 90, 90 - NEAREST_POLE)
-        here, metre = self.positions(lon, lat), DEGREE * STEP
-        east = _mean(self.positions(lon + STEP, lat) - here, here - self.positions(lon - STEP, lat))
+        node, metre = self.positions(lon, lat), DEGREE * STEP
+        east = _mean(self.positions(lon + STEP, lat) - node, node - self.positions(lon - STEP, lat))
         north = _mean(
-            self.positions(lon, lat + STEP) - here, here - self.positions(lon, lat - STEP)
+            self.positions(lon, lat + STEP) - node, node - self.positions(lon, lat - STEP)
         )
         east /= (metre * np.cos(np.radians(lat)))[..., None]
         north /= metre
@@ -261,14 +264,14 @@ class Projection:
             return np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
         inverse = partial(self._transforms[0].transform, direction="INVERSE", errcheck=False)
         lon, lat = inverse(x, y)
-        known = np.isfinite(lon) & np.isfinite(lat)
-        if not known.all():  # some lie on the outline, and by rounding outside it
+        finite = np.isfinite(lon) & np.isfinite(lat)
+        if not finite.all():  # some lie on the outline, and by rounding outside it
             inner = inverse(INSIDE * x, INSIDE * y)
             lon, lat = (
-                np.where(known, one, two) for one, two in zip((lon, lat), inner, strict=True)
+                np.where(finite, one, two) for one, two in zip((lon, lat), inner, strict=True)
             )
-            known = np.isfinite(lon) & np.isfinite(lat)
-        lon, lat = np.where(known, lon, np.nan), np.where(known, lat, np.nan)
+            finite = np.isfinite(lon) & np.isfinite(lat)
+        lon, lat = np.where(finite, lon, np.nan), np.where(finite, lat, np.nan)
         return (lon + self._origin + 180.0) % 360.0 - 180.0, lat
 
     def scale(self, position: Floats) -> float:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -41,8 +41,8 @@ MODELS = (
         (("vlon", "vlat"), ("longitude_vertices", "latitude_vertices")),
         1,
     ),
-    # The velocity of MPAS is in the middle of its cells: these are the nodes, and triangles join
-    # the three around each corner of the cells.
+    # The velocity of MPAS is in the middle of its cells: these are the nodes here, and triangles
+    # join the three around each corner.
     ("MPAS", ("cellsOnVertex",), (("lonCell", "latCell"), ("xCell", "yCell")), 1),
     ("MPAS", ("verticesOnCell",), (("lonVertex", "latVertex"), ("xVertex", "yVertex")), 1),
 )
@@ -52,7 +52,7 @@ COMPONENTS = re.compile(r"^(two|component\w*|n?vec\w*)$", re.IGNORECASE)
 
 def find_mesh(datasets: Sequence[xr.Dataset]) -> Mesh | None:
     """Return the mesh of datasets that belong together; ``None`` where they have none."""
-    variables: dict[str, Any] = {}
+    variables: dict[str, xr.DataArray] = {}
     for ds in datasets:
         for name in ds.variables:
             variables.setdefault(str(name), ds[name])
@@ -62,7 +62,7 @@ def find_mesh(datasets: Sequence[xr.Dataset]) -> Mesh | None:
     return None
 
 
-def _ugrid(variables: Mapping[str, Any]) -> Iterator[Mesh]:
+def _ugrid(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
     for topology in variables.values():
         attrs = topology.attrs
         if attrs.get("cf_role") != "mesh_topology" or "face_node_connectivity" not in attrs:
@@ -85,12 +85,12 @@ def _ugrid(variables: Mapping[str, Any]) -> Iterator[Mesh]:
         yield Mesh(kind, x, y, corners, first=int(corners.attrs.get("start_index", 0)))
 
 
-def _is_latitude(c: Any) -> bool:
+def _is_latitude(c: xr.DataArray) -> bool:
     named = str(c.attrs.get("standard_name", c.name)).lower()
     return "lat" in named or named == "projection_y_coordinate"
 
 
-def _of_models(variables: Mapping[str, Any]) -> Iterator[Mesh]:
+def _of_models(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
     for kind, names, coordinates, first in MODELS:
         corners = next((variables[n] for n in names if n in variables), None)
         if corners is None or corners.ndim != 2 or corners.dtype.kind not in "fiu":
@@ -98,39 +98,39 @@ def _of_models(variables: Mapping[str, Any]) -> Iterator[Mesh]:
         for x, y in coordinates:
             if x not in variables or y not in variables:
                 continue
-            one, other = variables[x], variables[y]
-            if one.ndim != (2 if x == y else 1) or not _spreads(one):
+            longitude, latitude = variables[x], variables[y]
+            if longitude.ndim != (2 if x == y else 1) or not _varies(longitude):
                 continue
             attrs = {**corners.attrs}
             counts = variables.get("nEdgesOnCell") if names == ("verticesOnCell",) else None
-            told = int(attrs.get("start_index", first))
-            yield Mesh(kind, one, other, corners, counts, told)
+            first_index = int(attrs.get("start_index", first))
+            yield Mesh(kind, longitude, latitude, corners, counts, first_index)
 
 
-def _spreads(c: Any) -> bool:
-    """Whether a coordinate is not all zeros, as a model may write those it does not use."""
+def _varies(c: xr.DataArray) -> bool:
+    """Return whether the values of a coordinate differ; models write unused ones as zeros."""
     values = np.asarray(values_in(c), dtype=float)
     return bool(np.nanmax(values, initial=-np.inf) > np.nanmin(values, initial=np.inf))
 
 
-def _bounded(variables: Mapping[str, Any]) -> Iterator[Mesh]:
-    """Give cells that have bounds each, along one dimension."""
+def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
+    """Yield meshes of cells with bounds, along one dimension."""
     for x in variables.values():
-        name = x.attrs.get("bounds", x.encoding.get("bounds"))
+        name = str(x.attrs.get("bounds", x.encoding.get("bounds", "")))
         if x.ndim != 1 or name not in variables or _is_latitude(x):
             continue
         for y in variables.values():
-            other = y.attrs.get("bounds", y.encoding.get("bounds"))
-            if y.dims != x.dims or other not in variables or not _is_latitude(y):
+            name_y = str(y.attrs.get("bounds", y.encoding.get("bounds", "")))
+            if y.dims != x.dims or name_y not in variables or not _is_latitude(y):
                 continue
-            one, two = variables[name], variables[other]
-            if one.ndim == 2 and one.dims == two.dims and one.shape[1] >= 3:
+            bounds_x, bounds_y = variables[name], variables[name_y]
+            if bounds_x.ndim == 2 and bounds_x.dims == bounds_y.dims and bounds_x.shape[1] >= 3:
                 units = {"units": x.attrs.get("units", "")}
-                a, b = (c.assign_attrs(units | c.attrs) for c in (one, two))
+                a, b = (c.assign_attrs(units | c.attrs) for c in (bounds_x, bounds_y))
                 yield Mesh("cells with bounds", a, b)
 
 
-def with_mesh_axes(datasets: Sequence[Any]) -> list[Any]:
+def with_mesh_axes(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     """Return datasets whose mesh, if there is one, has dimensions of known names.
 
     Vectors in one variable become two, and levels get values where files have them elsewhere.
@@ -140,7 +140,7 @@ def with_mesh_axes(datasets: Sequence[Any]) -> list[Any]:
         return list(datasets)
     sizes = dict(zip((NODES, FACES), _sizes(mesh), strict=True))
     named = dict(zip((NODES, FACES), mesh.dims, strict=True))
-    return [_levels(_apart(_renamed(ds, named, sizes)), mesh) for ds in datasets]
+    return [_levels(_split_vectors(_renamed(ds, named, sizes)), mesh) for ds in datasets]
 
 
 def _sizes(mesh: Mesh) -> tuple[int, int]:
@@ -149,7 +149,7 @@ def _sizes(mesh: Mesh) -> tuple[int, int]:
     return (mesh.x.sizes[nodes] if nodes else -1), of_faces.sizes[faces]
 
 
-def _renamed(ds: Any, named: dict[str, str], sizes: dict[str, int]) -> Any:
+def _renamed(ds: xr.Dataset, named: dict[str, str], sizes: dict[str, int]) -> xr.Dataset:
     """Rename dimensions by their names, or by their sizes in a file without the mesh."""
     for ours, theirs in named.items():
         if ours in ds.dims:
@@ -161,8 +161,8 @@ def _renamed(ds: Any, named: dict[str, str], sizes: dict[str, int]) -> Any:
     return ds
 
 
-def _apart(ds: Any) -> Any:
-    """Make two variables of one that has both components of a velocity."""
+def _split_vectors(ds: xr.Dataset) -> xr.Dataset:
+    """Split variables with both components of a velocity into two."""
     for name, array in list(ds.data_vars.items()):
         dim = next((d for d in array.dims if COMPONENTS.match(str(d))), None)
         if dim is None or array.sizes[dim] != 2 or not {NODES, FACES} & set(array.dims):
@@ -170,12 +170,12 @@ def _apart(ds: Any) -> Any:
         both = {f"{name}_{letter}": array.isel({dim: n}) for n, letter in enumerate("uv")}
         for part in both.values():
             part.attrs = {k: v for k, v in array.attrs.items() if k == "units"}
-        ds = ds.drop_vars(name).assign(both)
+        ds = ds.drop_vars([name]).assign(both)
     return ds
 
 
-def _levels(ds: Any, mesh: Mesh) -> Any:
-    """Return a dataset with a number for each level, by which the one at the surface is found."""
+def _levels(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
+    """Return a dataset with numbers for levels, which show the one at the surface."""
     for dim in map(str, ds.dims):
         line = ds.variables.get(dim)
         if line is not None and line.ndim == 2 and {dim, NODES} >= set(line.dims):

@@ -14,9 +14,9 @@ from flowtex.field.earth import GLOBE, NAMES, Projection
 
 #: Maps around a pole, which have no edge at a meridian.
 AROUND_A_POLE = ("north", "south")
-#: Degrees of longitude from which on a triangle is around a pole, or touches it.
+#: Span in degrees of longitude from which on a triangle is around a pole, or touches it.
 WIDEST = 90.0
-#: Degrees by which nodes on the edge lie inside, so that no rounding puts them at the other side.
+#: Degrees by which nodes on the edge lie inside, so that rounding keeps them on their side.
 INSIDE = 1e-9
 #: Least share of the way from a node to one on the edge.
 NEAREST_NODE = 1e-5
@@ -30,13 +30,13 @@ class MeshMap:
     points: Floats  #: (P, 3).
     triangles: Indices  #: Numbers of points, (M, 3).
     nodes: Indices  #: Two nodes of the mesh between which each point lies, (P, 2).
-    share: Floats  #: How far it is from the first to the second, (P,).
+    share: Floats  #: Share of the way from the first to the second, (P,).
     lon: Floats
     lat: Floats
-    lost: int  #: Triangles that are left out, as the map would tear them apart.
+    lost: int  #: Number of triangles that are left out, as the map tears them apart.
 
     def at(self, values: Floats) -> Floats:
-        """Return values (P,) of those at the nodes of the mesh, (N,)."""
+        """Return values (P,) from those at the nodes of the mesh, (N,)."""
         one, other = values[self.nodes[:, 0]], values[self.nodes[:, 1]]
         return np.asarray((1 - self.share) * one + self.share * other)
 
@@ -48,8 +48,8 @@ class MeshMap:
 def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     """Put a mesh on a map, by its name; by default a flat one that suits the region."""
     projection, _ = projection_of(places, name)
-    own = np.arange(len(mesh.a))
-    nodes, share = np.stack([own, own], axis=-1), np.zeros(len(own))
+    numbers = np.arange(len(mesh.a))
+    nodes, share = np.stack([numbers, numbers], axis=-1), np.zeros(len(numbers))
     lon, lat, triangles = mesh.a, mesh.b, mesh.triangles
     if projection.is_globe:
         points = projection.positions(lon, lat)
@@ -60,9 +60,9 @@ def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
     if projection.family in NAMES and projection.family not in AROUND_A_POLE:
         wide = _span(lon[triangles], middle) > WIDEST
         triangles, lost = triangles[~wide], int(wide.sum())
-        triangles, pairs, shares, at = _cut(lon, triangles, middle)
+        triangles, pairs, shares, edge_lon = _cut(lon, triangles, middle)
         lat = np.append(lat, (1 - shares) * lat[pairs[:, 0]] + shares * lat[pairs[:, 1]])
-        lon = np.append(lon, at)
+        lon = np.append(lon, edge_lon)
         nodes, share = np.concatenate([nodes, pairs]), np.append(share, shares)
     points = shown_positions(projection, lon, lat)
     finite = np.asarray(np.isfinite(points).all(axis=1))
@@ -74,7 +74,7 @@ def mesh_on_map(mesh: Mesh, places: Places, name: str | None) -> MeshMap:
 
 
 def _span(lon: Floats, middle: float) -> Floats:
-    """Return how many degrees triangles span, (M,), those across the edge of the map as well."""
+    """Return the spans of triangles in degrees, (M,), also across the edge of the map."""
     across = np.ptp(np.where(lon < middle, lon + 360.0, lon), axis=1)
     return np.asarray(np.minimum(np.ptp(lon, axis=1), across))
 
@@ -102,21 +102,21 @@ def _cut(lon: Floats, triangles: Indices, middle: float) -> tuple[Indices, Indic
         along = (middle + 180.0 - ends[:, 0]) / (ends[:, 1] - ends[:, 0])
         shares.append(np.clip(along, NEAREST_NODE, 1 - NEAREST_NODE))
     east = middle + 180.0 - INSIDE
-    here, there = (np.where(w, east - 360.0 + 2 * INSIDE, east) for w in (is_west, ~is_west))
+    near_lon, far_lon = (np.where(w, east - 360.0 + 2 * INSIDE, east) for w in (is_west, ~is_west))
     first, count = len(lon), len(a)
-    ab, ac, ab_there, ac_there = first + np.arange(4 * count).reshape(4, count)
-    parts = [(a, ab, ac), (ab_there, b, c), (ab_there, c, ac_there)]
+    ab, ac, ab_far, ac_far = first + np.arange(4 * count).reshape(4, count)
+    parts = [(a, ab, ac), (ab_far, b, c), (ab_far, c, ac_far)]
     cut = [np.stack(part, axis=-1) for part in parts]
     return (
         np.concatenate([triangles[~across], *cut]),
         np.concatenate([*pairs, *pairs]),
         np.concatenate([*shares, *shares]),
-        np.concatenate([here, here, there, there]),
+        np.concatenate([near_lon, near_lon, far_lon, far_lon]),
     )
 
 
 def _torn(points: Floats, sphere: Floats, triangles: Indices) -> Bools:
-    """Which triangles are much larger on the map than on the sphere, (M,)."""
+    """Return which triangles are much larger on the map than on the sphere, (M,)."""
     far = 0.1 * np.nanmax(np.abs(points), initial=0.0)
     torn = np.zeros(len(triangles), dtype=bool)
     for k in range(3):

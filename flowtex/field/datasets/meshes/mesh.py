@@ -1,15 +1,15 @@
-"""A mesh of polygons as a model's file has it: nodes, faces, and these cut into triangles."""
+"""A mesh of polygons in the file of a model: nodes, faces, and these cut into triangles."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.datasets.axes import FACES, NODES
 from flowtex.field.datasets.places import DEGREES, LENGTHS
@@ -17,6 +17,9 @@ from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.io.inspection.limits import values_in
 from flowtex.field.triangles.arrays import nodal_means
 from flowtex.field.triangles.topology import triangle_normals
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: Decimals of degrees to which bounds of neighbours agree.
 SAME_DEGREES = 5
@@ -30,10 +33,10 @@ class Mesh:
 
     kind: str  #: Name of the convention.
     #: Coordinates of the nodes, or of the corners of each face where ``corners`` is missing.
-    x: Any
-    y: Any
-    corners: Any = None  #: Nodes of each face.
-    counts: Any = None  #: Number of corners of each face, where these differ.
+    x: xr.DataArray
+    y: xr.DataArray
+    corners: xr.DataArray | None = None  #: Nodes of each face.
+    counts: xr.DataArray | None = None  #: Number of corners of each face, where these differ.
     first: int = 0  #: Index of the first node.
 
     @property
@@ -51,7 +54,7 @@ class Mesh:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the variables that it is made of."""
+        """Names of its variables."""
         parts = (self.x, self.y, self.corners, self.counts)
         return tuple(str(part.name) for part in parts if part is not None)
 
@@ -63,14 +66,14 @@ class Mesh:
             return True
         if unit.lower() in LENGTHS:
             return False
-        told = str(self.x.attrs.get("standard_name", "")) or name
-        if "projection" in told:
+        description = str(self.x.attrs.get("standard_name", "")) or name
+        if "projection" in description:
             return False
         if self.kind == "SCHISM" and not unit:
-            # Newer files say nothing at all.
+            # Newer files have no attributes.
             x, y = (np.abs(c) for c in self._raw)
             return bool(np.nanmax(x) <= 360 and np.nanmax(y) <= 90)
-        return bool(LONGITUDES.search(told)) or name == "nodes"
+        return bool(LONGITUDES.search(description)) or name == "nodes"
 
     @cached_property
     def _raw(self) -> tuple[Floats, Floats]:
@@ -98,7 +101,7 @@ class Mesh:
             a, b = a * factor, b * factor
         if self.corners is None:
             return _from_bounds(a, b)
-        return a, b, _numbers(self, len(a))
+        return a, b, _numbers(self, self.corners, len(a))
 
     @property
     def a(self) -> Floats:
@@ -125,9 +128,9 @@ class Mesh:
     @cached_property
     def middles(self) -> tuple[Floats, Floats]:
         """Coordinates of the middles of the faces, (F,) each, as those of the nodes."""
-        there = (self.faces >= 0)[..., None]
+        present = (self.faces >= 0)[..., None]
         with np.errstate(invalid="ignore"):
-            p = (self.positions[self.faces] * there).sum(axis=1) / there.sum(axis=1)
+            p = (self.positions[self.faces] * present).sum(axis=1) / present.sum(axis=1)
         return Projection(GLOBE).lonlat(p) if self.is_earth else (p[:, 0], p[:, 1])
 
     @cached_property
@@ -184,62 +187,61 @@ class Mesh:
         """Words for the mesh and its size."""
         edges = (self.faces >= 0).sum(axis=1)
         kinds = {3: "triangles", 4: "quadrilaterals"}
-        what = kinds.get(int(edges.max()), "polygons") if edges.min() == edges.max() else "polygons"
-        return f"{self.kind}, {len(self.a):,} nodes, {len(self.faces):,} {what}"
+        name = kinds.get(int(edges.max()), "polygons") if edges.min() == edges.max() else "polygons"
+        return f"{self.kind}, {len(self.a):,} nodes, {len(self.faces):,} {name}"
 
 
-def _dim(array: Any, ours: str) -> str:
+def _dim(array: xr.DataArray, ours: str) -> str:
     return ours if ours in array.dims else str(max(array.dims, key=lambda d: array.sizes[d]))
 
 
-def _numbers(mesh: Mesh, count: int) -> Indices:
+def _numbers(mesh: Mesh, corners: xr.DataArray, count: int) -> Indices:
     """Return the numbers of the nodes of faces, (F, K), from 0; -1 if missing."""
-    corners = mesh.corners
     _, faces = mesh.dims
     values = values_in(corners.transpose(faces, ...))
     fill = corners.attrs.get("_FillValue", corners.encoding.get("_FillValue"))
-    there: Bools = np.asarray(np.isfinite(values))
+    present: Bools = np.asarray(np.isfinite(values))
     if fill is not None and np.isfinite(fill):
-        there &= values != fill
+        present &= values != fill
     if mesh.counts is not None:
-        there &= np.arange(values.shape[1]) < np.asarray(mesh.counts.values)[:, None]
-    values = np.where(there, values, -1).astype(np.int64)
+        present &= np.arange(values.shape[1]) < np.asarray(mesh.counts.values)[:, None]
+    values = np.where(present, values, -1).astype(np.int64)
     first = mesh.first
-    if there.any():
-        # What the numbers are counts for more than what is said of them.
-        low, high = values[there].min(), values[there].max()
-        first = 1 if high == count and first == 0 else first
-        first = 0 if low == 0 and high < count and mesh.kind != "MPAS" else first
+    if present.any():
+        # The numbers themselves are more reliable than their attributes.
+        least, greatest = values[present].min(), values[present].max()
+        first = 1 if greatest == count and first == 0 else first
+        first = 0 if least == 0 and greatest < count and mesh.kind != "MPAS" else first
     values = values - first
-    there &= (values >= 0) & (values < count)
-    if not there.any():
+    present &= (values >= 0) & (values < count)
+    if not present.any():
         msg = (
             f"{corners.name!r} has no node numbers from {first} to {first + count - 1}; expected "
             "numbers of nodes"
         )
         raise FieldError(msg)
     if mesh.kind == "MPAS" and values.shape[1] == 3:
-        there &= there.all(axis=1, keepdims=True)  # at the border of a region
-    return _corners_first(np.where(there, values, -1))
+        present &= present.all(axis=1, keepdims=True)  # at the border of a region
+    return _corners_first(np.where(present, values, -1))
 
 
 def _from_bounds(a: Floats, b: Floats) -> tuple[Floats, Floats, Indices]:
-    """Return nodes where corners of cells, (F, K) each, are at one place."""
-    there = np.isfinite(a) & np.isfinite(b)
-    p = Projection(GLOBE).positions(a[there], b[there]) / EARTH_RADIUS
+    """Return one node for all corners of cells, (F, K) each, at one place."""
+    present = np.isfinite(a) & np.isfinite(b)
+    p = Projection(GLOBE).positions(a[present], b[present]) / EARTH_RADIUS
     _, first, at = np.unique(
         np.round(np.degrees(p), SAME_DEGREES), axis=0, return_index=True, return_inverse=True
     )
     faces = np.full(a.shape, -1, dtype=np.intp)
-    faces[there] = at.ravel()
-    return a[there][first], b[there][first], _corners_first(faces)
+    faces[present] = at.ravel()
+    return a[present][first], b[present][first], _corners_first(faces)
 
 
-def _corners_first(faces: Any) -> Indices:
-    """Return numbers of nodes with -1 after all others, also where a corner is there again."""
-    again = np.any(
+def _corners_first(faces: AnyArray) -> Indices:
+    """Return numbers of nodes with -1 after all others, also for repeated corners."""
+    repeated = np.any(
         (faces[:, :, None] == faces[:, None, :]) & np.tri(faces.shape[1], k=-1, dtype=bool), axis=2
     )
-    faces = np.where(again, -1, faces)
+    faces = np.where(repeated, -1, faces)
     order = np.argsort(faces < 0, axis=1, kind="stable")
     return np.asarray(np.take_along_axis(faces, order, axis=1), dtype=np.intp)
