@@ -42,13 +42,13 @@ from flowtex.field.triangles.arrays import triangle_nodes
 from flowtex.field.triangles.surface import TriangleSurface
 from flowtex.field.validation import ALL_AT_REST, with_gaps
 
-#: Where the coarsest level of a larger field keeps how many nodes (J, I) that has.
+#: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
 WHOLE_SHAPE = "_whole_shape"
 
-#: What is computed from positions and velocity alone.
+#: Attributes that are computed from positions and velocity alone.
 _SHARED = ("surface", "index_velocity")
-#: Share of the flow normal to the surface from which on the speed in it has its own name. A curved
-#: mesh alone gives 1 or 2 %; at 5 % the speeds differ by a thousandth.
+#: Share of the flow normal to the surface from which on the speed in it has another name. A curved
+#: mesh alone has 1 or 2 %; at 5 % the speeds differ by a thousandth.
 NOTABLE_SHARE = 0.05
 #: Share of the flow normal to a surface of triangles from which on a notice says so.
 MOST_LOST = 0.5
@@ -143,8 +143,8 @@ class FlowField(FieldConstructors):
         """
         on_triangles = isinstance(arrays, TriangleArrays)
         make: Any = cls.from_triangles if on_triangles else cls.from_arrays
-        section = (given := dict(vars(arrays))).pop("section", None)
-        field: FlowField = make(**given).same_flow(section=section)
+        section = (arguments := dict(vars(arrays))).pop("section", None)
+        field: FlowField = make(**arguments).same_flow(section=section)
         late = isinstance(field.velocity, LazySteps)
         if on_triangles and not late and (lost := field.normal_share) > MOST_LOST:
             notify(f"{lost:.0%} of the flow is normal to the surface and is not drawn")
@@ -236,11 +236,11 @@ class FlowField(FieldConstructors):
         """
         times, time_unit, start = as_seconds(times, time_unit)
         t = None if times is None else with_gaps("times", times)
-        given = filled_gaps(
+        filled = filled_gaps(
             velocity, scalars, units, axes=2, unit=speed_unit(length_unit, time_unit)
         )
         on_globe = projection is not None and projection.is_globe
-        parts = points, given.velocity, t, valid, periodic, given.scalars
+        parts = points, filled.velocity, t, valid, periodic, filled.scalars
         nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
         flow = cls(
             points=nodes.surface.points,
@@ -254,13 +254,13 @@ class FlowField(FieldConstructors):
             time_unit=time_unit,
             has_position=nodes.surface.has_position,
             sign_free=sign_free,
-            units=dict(given.units),
+            units=dict(filled.units),
             long_names=dict(long_names or {}),
             start=start,
             projection=projection,
-            uncertainty=given.uncertainty,
+            uncertainty=filled.uncertainty,
         )
-        flow.__dict__["surface"] = nodes.surface  # the same that the property would make again
+        flow.__dict__["surface"] = nodes.surface  # equal to what the property would make
         if not nodes.moves:
             notify(ALL_AT_REST, UserWarning)
         return flow
@@ -330,10 +330,10 @@ class FlowField(FieldConstructors):
         """
         times, time_unit, start = as_seconds(times, time_unit)
         t = None if times is None else with_gaps("times", times)
-        given = filled_gaps(
+        filled = filled_gaps(
             velocity, scalars, units, axes=1, unit=speed_unit(length_unit, time_unit)
         )
-        arrays = triangle_nodes(points, triangles, given.velocity, t, valid, given.scalars)
+        arrays = triangle_nodes(points, triangles, filled.velocity, t, valid, filled.scalars)
         count = len(arrays.velocity)
         flow = cls(
             points=arrays.points,
@@ -345,12 +345,12 @@ class FlowField(FieldConstructors):
             name=name,
             length_unit=length_unit,
             time_unit=time_unit,
-            units=dict(given.units),
+            units=dict(filled.units),
             long_names=dict(long_names or {}),
             start=start,
             projection=projection,
             triangles=arrays.triangles,
-            uncertainty=given.uncertainty,
+            uncertainty=filled.uncertainty,
         )
         if not isinstance(arrays.velocity, LazySteps) and not flow.velocity.any():
             notify(ALL_AT_REST, UserWarning)
@@ -391,10 +391,10 @@ class FlowField(FieldConstructors):
     @cached_property
     def surface(self) -> Surface:
         """The geometry: tangents, cell sizes and positions between nodes."""
-        points, known = self.points, self.has_position
-        if known is not None and not known.all():
-            # Positions that were filled in must not pass for known ones: tangents would bend.
-            points = np.where(known[..., None], points, np.nan)
+        points, has_position = self.points, self.has_position
+        if has_position is not None and not has_position.all():
+            # Positions that were filled in must not count as known: tangents would bend.
+            points = np.where(has_position[..., None], points, np.nan)
         on_globe = self.projection is not None and self.projection.is_globe
         if self.triangles is not None:
             return TriangleSurface(self.points, self.triangles, self.valid, on_globe=on_globe)
@@ -407,11 +407,11 @@ class FlowField(FieldConstructors):
         if not isinstance(self.velocity, LazySteps):
             return expressed(self.velocity)
 
-        def both(velocity: Floats) -> Floats:
+        def components_and_speed(velocity: Floats) -> Floats:
             step = expressed(velocity[None])
             return np.concatenate([step.components[0], step.speed[0, ..., None]], axis=-1)
 
-        steps = self.velocity.map(both)
+        steps = self.velocity.map(components_and_speed)
         share = expressed(self.velocity[0][None]).normal_share
         return IndexVelocity(
             steps.map(lambda step: step[..., :2]), steps.map(lambda step: step[..., 2]), share
@@ -513,13 +513,13 @@ class FlowField(FieldConstructors):
         )
 
     def same_flow(self, **changes: Any) -> FlowField:
-        """Return the field with other scalars or words; positions and velocity stay."""
+        """Return the field with other scalars or texts; positions and velocity stay."""
         flow = replace(self, **changes)
         flow.__dict__.update({k: v for k, v in self.__dict__.items() if k in _SHARED})
         return flow
 
     def forget(self) -> None:
-        """Free derived data, which are computed again when they are needed."""
+        """Free derived data, which are computed again when needed."""
         for name in (*_SHARED, "typical"):
             self.__dict__.pop(name, None)
 
@@ -532,17 +532,17 @@ class FlowField(FieldConstructors):
         first, last = steps[0], steps[-1] + 1
         if len(steps) == len(self.times) and not isinstance(self.velocity, LazySteps):
             return self
-        some: Any = list(steps) if len(steps) < last - first else slice(first, last)
-        data = {k: s[some] if len(s) > 1 else s for k, s in self.scalars.items()}
+        index: Any = list(steps) if len(steps) < last - first else slice(first, last)
+        data = {k: s[index] if len(s) > 1 else s for k, s in self.scalars.items()}
         part = replace(
-            self, velocity=np.asarray(self.velocity[some]), times=self.times[some], scalars=data
+            self, velocity=np.asarray(self.velocity[index]), times=self.times[index], scalars=data
         )
-        part.__dict__["surface"] = self.surface  # the same that the property would make again
+        part.__dict__["surface"] = self.surface  # equal to what the property would make
         return part
 
     @cached_property
     def typical(self) -> FlowField:
-        """The steps from which ranges and lengths are taken: some of those that are read late."""
+        """The field at typical steps, for ranges and lengths; at all if they are in memory."""
         late = isinstance(self.velocity, LazySteps)
         return self.at_steps(typical_steps(len(self.times))) if late else self
 
@@ -587,7 +587,7 @@ class FlowField(FieldConstructors):
             valid=self.valid[at],
             has_position=None if self.has_position is None else self.has_position[at],
             scalars={k: s[:, at[0], at[1]] for k, s in self.scalars.items()},
-            formula=None,  # whose nodes are evenly spaced
+            formula=None,  # as its nodes are evenly spaced
         )
 
     def __repr__(self) -> str:

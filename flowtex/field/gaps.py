@@ -1,4 +1,4 @@
-"""Nodes that have data at some times only, as of a radar, or of a level below the ground.
+"""Nodes that have data only at some times, as of a radar, or of a level below the ground.
 
 A field has one mask for all times, so the velocity of such nodes is zero while they lack data. They
 are drawn without streaks, as the uncertainty of their direction is 1, and in the colour of NaN.
@@ -44,18 +44,18 @@ def filled_gaps(
     """
     unchanged = Filled(velocity, {} if scalars is None else scalars, units or {}, "")
     if isinstance(velocity, LazySteps):
-        some = typical_steps(len(velocity)) if not _known(velocity[0]).all() else []
-        each: Any = [_known(velocity[number]) for number in some]
+        numbers = typical_steps(len(velocity)) if not _known(velocity[0]).all() else []
+        masks: list[Bools] | Bools = [_known(velocity[number]) for number in numbers]
     else:
         try:
             velocity = with_gaps("velocity", velocity)
-        except FieldError:  # which says later what else is wrong
+        except FieldError:  # the field lists all faults later
             return unchanged
-        each = _known(velocity) if velocity.ndim == axes + 2 else []
-    if len(each) < 2 or not isinstance(unchanged.scalars, Mapping):
+        masks = _known(velocity) if velocity.ndim == axes + 2 else []
+    if len(masks) < 2 or not isinstance(unchanged.scalars, Mapping):
         return unchanged
-    sometimes: Bools = np.any(each, axis=0)
-    if np.array_equal(sometimes, np.all(each, axis=0)):
+    sometimes: Bools = np.any(masks, axis=0)
+    if np.array_equal(sometimes, np.all(masks, axis=0)):
         return unchanged
 
     def filled(step: Floats) -> Floats:
@@ -65,13 +65,13 @@ def filled_gaps(
         return np.where(_known(step), 0.0, 1.0)
 
     def speed(step: Floats) -> Floats:
-        with np.errstate(over="ignore", invalid="ignore"):  # which the field refuses later
+        with np.errstate(over="ignore", invalid="ignore"):  # the field refuses such values later
             return np.where(_known(step), np.linalg.norm(step, axis=-1), np.nan)
 
-    more = {NO_DATA: map_steps(velocity, lacking), "speed": map_steps(velocity, speed)}
+    additions = {NO_DATA: map_steps(velocity, lacking), "speed": map_steps(velocity, speed)}
     return Filled(
         map_steps(velocity, filled),
-        {**unchanged.scalars, **{k: v for k, v in more.items() if k not in unchanged.scalars}},
+        {**unchanged.scalars, **{k: v for k, v in additions.items() if k not in unchanged.scalars}},
         {"speed": unit, **(units or {})},
         NO_DATA,
     )

@@ -1,4 +1,4 @@
-"""Values between nodes and between time steps, and at nodes that have none of their own."""
+"""Values between nodes and between time steps, and at nodes without a value."""
 
 from __future__ import annotations
 
@@ -23,12 +23,11 @@ def nearest_known(known: Bools) -> tuple[Indices, Indices]:
 
 
 def fill_blanked(data: A, known: Bools, axis: int = 0) -> A:
-    """Give nodes of (..., J, I, ...) that are not known, (J, I), the value of the nearest."""
+    """Return (..., J, I, ...) with the nearest known value at nodes not ``known``, (J, I)."""
     if known.all():
         return data
-    before: list[Any] = [slice(None)] * axis
-    filled: Any = data[(*before, *nearest_known(known))]
-    return cast("A", filled)
+    index: Any = (*[slice(None)] * axis, *nearest_known(known))
+    return cast("A", data[index])
 
 
 def bracket(
@@ -66,17 +65,17 @@ def cell_of(
     if periodic:
         turns = cell // cells
         return cell - turns * cells, share, np.zeros_like(share), turns.astype(share.dtype)
-    none = np.zeros_like(share)
+    zeros = np.zeros_like(share)
     if not cell.size or (cell.min() >= 0 and cell.max() < cells):
-        return cell, share, none, none
+        return cell, share, zeros, zeros
     inside = np.clip(cell, 0, cells - 1)
     share += (cell - inside).astype(share.dtype)
     within = np.clip(share, 0, 1)
-    return inside, within, share - within, none
+    return inside, within, share - within, zeros
 
 
 def cubic_weights(t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Catmull-Rom weights of the four nodes around a fraction of a cell."""
+    """Return the Catmull-Rom weights of the four nodes around a fraction of a cell."""
     t2, t3 = t * t, t * t * t
     return (
         0.5 * (-t3 + 2 * t2 - t),
@@ -107,7 +106,7 @@ def along_line(line: Floats, index: Floats, *, periodic: bool) -> Floats:
 
 
 def inverse_along_line(line: Floats, values: Floats, *, periodic: bool) -> Floats:
-    """Return the index at which :func:`along_line` gives these values, of a line from zero."""
+    """Return the index at which :func:`along_line` has these values, for a line from zero."""
     last = len(line) - 1
     turns = np.floor(values / line[-1]) if periodic else np.zeros_like(values)
     inside = np.interp(values - turns * line[-1], line, np.arange(last + 1))

@@ -25,7 +25,7 @@ from flowtex.errors import FieldError
 from flowtex.field.field import FlowField
 from flowtex.field.surface import Surface
 
-#: Nodes around a point that triangles are walked from, and triangles that a walk goes over at most.
+#: Nodes around a point from which walks begin, and most triangles of a walk.
 START_NODES, WALK_STEPS = 4, 96
 #: Height of a triangle over a side, squared, below which it has no area.
 FLAT_TRIANGLE = 1e-20
@@ -40,16 +40,16 @@ class SurfacePoint:
     weights: Floats  #: Their shares, (3,).
 
     def corners(self, nodal: AnyArray) -> Floats:
-        """Values at the corners of nodal data (J, I, ...), (3, ...)."""
+        """Return values at the corners, (3, ...), of nodal data (J, I, ...)."""
         return np.asarray(nodal.reshape(-1, *nodal.shape[2:])[self.nodes], dtype=float)
 
     def interpolate(self, nodal: AnyArray) -> Floats:
-        """Value at the point of nodal data (J, I, ...), (...)."""
+        """Return the value at the point, (...), of nodal data (J, I, ...)."""
         return np.asarray(np.tensordot(self.weights, self.corners(nodal), axes=1))
 
 
 def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
-    """Return the point of a surface at (j, i) in cells; an axis that closes takes any number."""
+    """Return the point of a surface at (j, i) in cells; a closed axis takes any number."""
     expected = "two finite numbers (j, i), in cells"
     at = checked_array("index", index, expected=expected)
     if at.shape != (2,) or not np.isfinite(at).all():
@@ -61,7 +61,7 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
 
 
 class Locator:
-    """Finds points on one surface."""
+    """Search for points of one surface."""
 
     def __init__(self, surface: Surface) -> None:
         self._surface = surface
@@ -75,7 +75,7 @@ class Locator:
             nodes[order], return_index=True, return_counts=True
         )
         self._tree = scipy.spatial.cKDTree(self._points[self._nodes])
-        # An axis goes around in space, or ends and is repeated a period farther.
+        # A periodic axis goes around in space, or is repeated at a period's distance.
         far = np.logical_and(surface.periodic, np.logical_not(surface.closes))
         turns = [(0.0, -1.0, 1.0) if repeats else (0.0,) for repeats in far]
         self._shifts = np.stack(
@@ -83,9 +83,9 @@ class Locator:
         )
 
     def nearest(self, points: Floats) -> tuple[Floats, Floats]:
-        """Find the points of the surface as it is drawn that are nearest to points (P, 3) in space.
+        """Find the points of the drawn surface that are nearest to points (P, 3) in space.
 
-        Returns them as (j, i), (P, 2), and how far they are in sizes of their cell, (P,). On a flat
+        Returns them as (j, i), (P, 2), and their distances in sizes of their cell, (P,). On a flat
         map of one period, points in the periods beside it count as well.
         """
         starts = min(START_NODES, len(self._nodes))
@@ -96,12 +96,12 @@ class Locator:
         shares = np.zeros((len(at), 3))
         for node in near.T:
             for turn in range(int(self._count[node].max())):
-                some = np.flatnonzero(self._count[node] > turn)
-                beside = self._around[self._first[node[some]] + turn]
-                self._try(at, some, beside, (best, triangle, shares))
+                numbers = np.flatnonzero(self._count[node] > turn)
+                beside = self._around[self._first[node[numbers]] + turn]
+                self._try(at, numbers, beside, (best, triangle, shares))
         self._walk(at, (best, triangle, shares))
         corners = self._points[self._surface.corners_of(triangle)]
-        # The diagonal of a cell is not a size of it.
+        # The diagonal of a cell is not its size.
         sides = np.sort(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1), axis=1)
         distance = (best / np.where(sides[:, 1] > 0, sides[:, 1], 1.0)).reshape(len(points), -1)
         chosen = np.argmin(distance, axis=1) + np.arange(len(points)) * len(self._shifts)
@@ -111,41 +111,44 @@ class Locator:
     def _try(
         self,
         points: Floats,
-        some: Indices,
+        numbers: Indices,
         triangle: Indices,
-        found: tuple[Floats, Indices, Floats],
+        nearest: tuple[Floats, Indices, Floats],
     ) -> Indices:
-        """Write those of some points that are nearer in a triangle, and return which they are."""
-        best, at, shares = found
+        """Store the points that are nearer in their triangle, and return their numbers."""
+        best, at, shares = nearest
         corners = self._points[self._surface.corners_of(triangle)]
-        inside, far = closest(points[some], corners[:, 0], corners[:, 1], corners[:, 2])
-        nearer = far < best[some]
-        which = some[nearer]
+        inside, far = closest(points[numbers], corners[:, 0], corners[:, 1], corners[:, 2])
+        nearer = far < best[numbers]
+        which = numbers[nearer]
         best[which], at[which], shares[which] = far[nearer], triangle[nearer], inside[nearer]
         return which
 
-    def _walk(self, points: Floats, found: tuple[Floats, Indices, Floats]) -> None:
-        """Go on across the sides on which points lie, while that leads nearer."""
-        _, at, shares = found
+    def _walk(self, points: Floats, nearest: tuple[Floats, Indices, Floats]) -> None:
+        """Continue across the sides on which points lie, as long as that leads nearer."""
+        _, at, shares = nearest
         going = np.arange(len(points))
         for _ in range(WALK_STEPS):
-            here, before = going, at.copy()
+            current, before = going, at.copy()
             for corner in range(3):
                 # On a side the opposite corner has no share.
-                some = here[shares[here, corner] <= 0]
-                beside = self._surface.beside(before[some], corner)
+                numbers = current[shares[current, corner] <= 0]
+                beside = self._surface.beside(before[numbers], corner)
                 inside = (beside >= 0) & self._surface.is_drawn(beside)
-                self._try(points, some[inside], beside[inside], found)
+                self._try(points, numbers[inside], beside[inside], nearest)
             going = np.flatnonzero(at != before)
             if not len(going):
                 break
 
 
 def closest(at: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats]:
-    """Shares of corners (N, 3) at nearest points of triangles, and how far; inf without area."""
+    """Return shares of corners (N, 3) at nearest points of triangles, and distances, (N,).
+
+    The distance is infinite for triangles without area.
+    """
     u, v, w = b - a, c - a, at - a
     uu, vv, uv, wu = (np.einsum("nc,nc->n", p, q) for p, q in ((u, u), (v, v), (u, v), (w, u)))
-    # What v has across u: long triangles lose no digits by it.
+    # By the part of v across u long triangles lose no digits.
     lean = uv / np.where(uu > 0, uu, 1.0)
     across = v - lean[:, None] * u
     height = np.einsum("nc,nc->n", across, across)
@@ -162,7 +165,7 @@ def closest(at: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats
 
 
 def _on_border(at: Floats, nodes: Floats) -> Floats:
-    """Shares of the corners (N, 3) at the nearest points of the triangles' sides."""
+    """Return shares of the corners (N, 3) at the nearest points of the triangles' sides."""
     best, result = np.full(len(at), np.inf), np.zeros((len(at), 3))
     for k, n in ((0, 1), (1, 2), (2, 0)):
         side, away = nodes[:, n] - nodes[:, k], at - nodes[:, k]
@@ -209,9 +212,9 @@ def locate(
     if at.shape not in ((2,), (3,)) or not np.isfinite(at).all():
         msg = f"point is {point!r}; expected {expected}"
         raise FieldError(msg)
-    whole = np.zeros((1, 3))
-    whole[0, : len(at)] = at
-    index, distance = locator(field).nearest(whole)
+    target = np.zeros((1, 3))
+    target[0, : len(at)] = at
+    index, distance = locator(field).nearest(target)
     if distance[0] > tolerance:
         return None
     return float(index[0, 0]), float(index[0, 1])

@@ -6,10 +6,10 @@ A velocity v is projected onto the tangents P_i and P_j by solving the 2 x 2 met
     | P_i.P_j  P_j.P_j | | u_j | = | v.P_j |
 
 for the contravariant components (u_i, u_j), in cells per unit of time (Forssell and Cohen 1995,
-section 3). The part that is normal to the surface has none; its share is returned.
+section 3). The part that is normal to the surface is left out; its share is returned.
 
-At a pole all nodes of the line are one point and have one velocity, the mean of theirs. Each
-keeps the component along its own line, from which :meth:`flowtex.field.poles.Pole.vector` restores
+At a pole all nodes of the line are one point and have one velocity, their mean. Each keeps the
+component along its line, from which :meth:`flowtex.field.poles.Pole.vector` restores
 the whole, and the full speed.
 """
 
@@ -95,6 +95,6 @@ def _at_pole(pole: Pole, velocity: Floats, u: Floats, speed: Floats) -> None:
 
 
 def _alone(along: Floats, square: Floats, tiny: float) -> Floats:
-    """Component along one tangent where the other one has collapsed."""
+    """Return the component along one tangent where the other one has collapsed."""
     solid = square > tiny
     return np.asarray(np.where(solid, along / np.where(solid, square, 1.0), 0.0))

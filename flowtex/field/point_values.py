@@ -1,4 +1,4 @@
-"""The values of a field at one point of its surface, as a tooltip shows them."""
+"""The values of a field at one point of its surface, as in a tooltip."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class PointValues:
     """The values of a field at one point of the surface and one time.
 
     ``index`` is (j, i) in cells, ``position`` (3,) in the mesh's units, ``velocity`` (3,) in the
-    mesh's units per unit of time, and ``speed`` its magnitude along the surface, which the colours
-    show, and ``speed_label`` its name. For a field with a projection, ``lonlat`` are longitude and
+    mesh's units per unit of time, ``speed`` its magnitude along the surface, as in colours, and
+    ``speed_label`` its name. For a field with a projection, ``lonlat`` are longitude and
     latitude in degrees, and ``eastward`` and ``northward`` the velocity on the Earth.
 
     Examples
@@ -88,10 +88,10 @@ def values_at(field: FlowField, index: ArrayLike, time: Any = None) -> PointValu
     """
     check_field(field, FlowField)
     point = surface_point(field.surface, index)
-    at = float(field.times[-1])
+    moment = float(field.times[-1])
     if time is not None and not field.steady:
-        at = time_within(field.start, field.times, time)
-    before, after, share = steps_around(field.times, at)
+        moment = time_within(field.start, field.times, time)
+    before, after, share = steps_around(field.times, moment)
 
     def value(steps: Floats) -> Floats:
         if len(steps) == 1:
@@ -110,7 +110,7 @@ def values_at(field: FlowField, index: ArrayLike, time: Any = None) -> PointValu
         velocity=velocity,
         speed=float(value(field.speed)),
         scalars={name: float(value(steps)) for name, steps in field.scalars.items()},
-        time=at,
+        time=moment,
         length_unit=field.length_unit,
         time_unit=field.time_unit,
         speed_label=field.speed_label,

@@ -26,22 +26,22 @@ from flowtex._util.array_types import AnyArray, Bools, Floats
 
 #: Nodes closer than this share of the distance to the next line lie at one point.
 SAME_POINT_SHARE = 1e-3
-#: Lines that lie this close to where even ones would, in cells, are even.
+#: Distance in cells from evenly spread lines up to which lines are even.
 EVEN_CELLS = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Pole:
-    """One pole, at which a component of positions (i, j) has one value."""
+    """One pole, where one component of positions (i, j) is constant."""
 
-    component: int  #: 0 or 1.
-    line: int  #: The value.
+    component: int  #: That component, 0 or 1.
+    line: int  #: Its value.
     inward: int  #: 1 where the component grows away from the pole, -1 where it falls.
     #: Two orthonormal rows that span the plane at the pole, (2, 3); lines around it turn from the
     #: first to the second.
     plane: Floats
-    #: How far a cell along each line that leads to the pole goes in that plane, (n + 1, 2), in the
-    #: mesh's units; the last is the first again.
+    #: First cell of each line from the pole as a vector in that plane, (n + 1, 2), in the mesh's
+    #: units; the last repeats the first.
     rays: Floats
 
     @property
@@ -76,15 +76,15 @@ class Pole:
         return np.arange(self.cells + 1.0)
 
     def lines(self, nodal: AnyArray, axis: int = 0) -> AnyArray:
-        """Nodal data, (..., J, I, ...) from ``axis`` on, as (..., lines, n + 1, ...): a view."""
+        """Return a view (..., lines, n + 1, ...) of data, (..., J, I, ...) from ``axis`` on."""
         return nodal if self.component else np.swapaxes(nodal, axis, axis + 1)
 
     def depth(self, position: AnyArray) -> AnyArray:
-        """Cells between the pole and positions (2, N) that are not beyond it, (N,)."""
+        """Return cells between the pole and positions (2, N) that are not beyond it, (N,)."""
         return np.asarray((position[self.component] - self.line) * self.inward)
 
     def opposite(self, around: AnyArray) -> AnyArray:
-        """Index, up to one turn further, of the line straight ahead beyond the pole."""
+        """Return the index, up to one turn further, of the line straight ahead beyond the pole."""
         if self._even:
             return np.asarray(around + around.dtype.type(self.cells / 2))
         turns = np.floor(around / self.cells)
@@ -94,7 +94,7 @@ class Pole:
         return np.asarray(line + (turns + past) * self.cells, dtype=around.dtype)
 
     def place(self, position: Floats) -> Floats:
-        """Positions in the plane, (2, N) in cells, of positions (2, N) not beyond the pole."""
+        """Return positions in the plane, (2, N) in cells, of positions (2, N) before the pole."""
         around = position[1 - self.component]
         around = around - self.cells * np.floor(around / self.cells)
         angle = np.interp(around, self._lines, self._angles)
@@ -102,7 +102,7 @@ class Pole:
         return np.stack([length * np.cos(angle), length * np.sin(angle)])
 
     def index(self, place: Floats) -> Floats:
-        """Positions (2, N) of positions in the plane, the inverse of :meth:`place`."""
+        """Return positions (2, N) of positions in the plane, the inverse of :meth:`place`."""
         angle = np.arctan2(place[1], place[0])
         angle += 2 * np.pi * np.ceil((self._angles[0] - angle) / (2 * np.pi))
         around = np.interp(angle, self._angles, self._lines)
@@ -113,28 +113,30 @@ class Pole:
         return result
 
     def nearest(self, position: Floats, near: Floats) -> Floats:
-        """Return positions (2, N) in that form, before or beyond the pole, nearest to others."""
+        """Return positions (2, N) in the form, before or beyond the pole, nearest to others."""
         a, c = 1 - self.component, self.component
         beyond = self.depth(near) < 0
         depth = self.depth(position) * self.inward
-        here, there = position[a], self.opposite(position[a])
-        here, there = (x + self.cells * np.rint((near[a] - x) / self.cells) for x in (here, there))
-        closer = np.abs(there - near[a]) - np.abs(here - near[a])
+        straight, across = position[a], self.opposite(position[a])
+        straight, across = (
+            x + self.cells * np.rint((near[a] - x) / self.cells) for x in (straight, across)
+        )
+        closer = np.abs(across - near[a]) - np.abs(straight - near[a])
         over = np.where(np.abs(closer) > EVEN_CELLS, closer < 0, beyond)
         result = np.empty_like(position)
         # At the pole itself all lines meet.
-        result[a] = np.where(depth == 0, near[a], np.where(over, there, here))
+        result[a] = np.where(depth == 0, near[a], np.where(over, across, straight))
         result[c] = self.line + np.where(over, -depth, depth)
         return result
 
     def along(self, vectors: Floats) -> Floats:
-        """Components (..., n + 1) of vectors (..., 3) along each line at the pole, per cell."""
+        """Return components (..., n + 1) of vectors (..., 3) along lines at the pole, per cell."""
         flat = vectors @ self.plane.T
         square = np.sum(self.rays**2, axis=-1)
         return np.asarray(flat @ self.rays.T / square * self.inward)
 
     def vector(self, along: Floats) -> Floats:
-        """Vectors (..., 2) in the plane, of which :meth:`along` gives components (..., n + 1)."""
+        """Return vectors (..., 2) in the plane from components (..., n + 1) by :meth:`along`."""
         rays, parts = self.rays[:-1], along[..., :-1] * self.inward
         square = np.sum(rays**2, axis=-1, keepdims=True)
         return np.asarray(parts @ rays @ np.linalg.inv((rays / square).T @ rays))
@@ -162,7 +164,7 @@ class Poles:
         return next(iter(self)).component
 
     def fold(self, position: AnyArray) -> AnyArray:
-        """Positions (2, N) with those beyond a pole given as the points that they are."""
+        """Return positions (2, N), those beyond a pole as positions on the far side."""
         end = self.lines - 1
         outside = np.flatnonzero(self._outside(position))
         if not len(outside):
@@ -181,11 +183,12 @@ class Poles:
         return result
 
     def mirrored(self, position: AnyArray) -> Bools:
-        """Where (2, N) index space is that of the far side, and runs towards a pole, not away."""
+        """Return where positions (2, N) lie on the far side, so that index space runs backward."""
         outside = self._outside(position)
         if self.both and outside.any():
-            some = np.flatnonzero(outside)
-            outside[some] = np.floor(position[self.component][some] / (self.lines - 1)) % 2 != 0
+            numbers = np.flatnonzero(outside)
+            turns = np.floor(position[self.component][numbers] / (self.lines - 1))
+            outside[numbers] = turns % 2 != 0
         return outside
 
     def _outside(self, position: AnyArray) -> Bools:
@@ -202,12 +205,12 @@ def find_poles(
     if periodic[0] == periodic[1]:
         return None
     axis = 0 if periodic[1] else 1
-    p, known, data = (np.swapaxes(a, 0, axis) for a in (points, usable, valid))
+    p, has_position, data = (np.swapaxes(a, 0, axis) for a in (points, usable, valid))
     if len(p) < 3:
         return None
     ends = [
         _pole(p[at], p[beside], 1 - axis, len(p) - 1 if at else 0)
-        if data[at].all() and known[at].all() and known[beside].all()
+        if data[at].all() and has_position[at].all() and has_position[beside].all()
         else None
         for at, beside in ((0, 1), (-1, -2))
     ]

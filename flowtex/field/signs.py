@@ -2,17 +2,14 @@
 
 No choice of signs is continuous everywhere: around a half-integer singularity a vector returns
 reversed. The signs at the nodes are chosen to agree with their neighbours as far as possible, so
-that they disagree along a cut only. The corners of each cell are brought into line before anything
-is interpolated.
+that they disagree only along a cut. The corners of each cell are given equal signs before
+interpolation.
 
-What the rest of the package does with such fields follows from ``FlowField.sign_free``: paths are
-traced to both sides, corners are aligned (:func:`corner_signs`), kernels are symmetric, and grains
-do not move.
+For fields with ``FlowField.sign_free`` paths are traced to both sides, corners are aligned
+(:func:`corner_signs`), kernels are symmetric, and grains do not move.
 """
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 import scipy
@@ -21,7 +18,7 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.field.poles import Poles
 
-#: Cost of a step to a node at right angles, over that of a step to one that agrees, less one.
+#: Additional cost of a step to a node at right angles, over that of a step to one that agrees.
 TURN_COST = 10.0
 #: A vector shorter than this share of the longest has no direction.
 REST_SHARE = 1e-7
@@ -45,23 +42,23 @@ def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Flo
     """
     flat = velocity.reshape(-1, 3)
     length = np.linalg.norm(flat, axis=-1, keepdims=True)
-    # A vector at rest has no direction to pass on.
+    # A vector at rest has no direction.
     valid = valid & (length > REST_SHARE * length.max()).reshape(valid.shape)
     number = np.arange(valid.size).reshape(valid.shape)
     pairs = [_along(number, valid, axis) for axis in (0, 1)]
     for axis, closed in enumerate(periodic):
         if closed:
             lines = np.swapaxes(number, 0, axis)
-            there = np.swapaxes(valid, 0, axis)[0]
-            pairs.append(np.stack([lines[0][there], lines[-1][there]]))
-    one, two = np.concatenate(pairs, axis=1)
+            is_valid = np.swapaxes(valid, 0, axis)[0]
+            pairs.append(np.stack([lines[0][is_valid], lines[-1][is_valid]]))
+    start, end = np.concatenate(pairs, axis=1)
     unit = flat / np.where(length > 0, length, 1.0)
-    agree = np.sum(unit[one] * unit[two], axis=-1)
+    agree = np.sum(unit[start] * unit[end], axis=-1)
     cost = 1 + TURN_COST * (1 - np.abs(agree))
-    graph = scipy.sparse.csr_array((cost, (one, two)), shape=(valid.size, valid.size))
+    graph = scipy.sparse.csr_array((cost, (start, end)), shape=(valid.size, valid.size))
     parent = _tree(graph, valid)
     sign = np.where(np.sum(unit * unit[parent], axis=-1) < 0, -1.0, 1.0)
-    # Every node takes over what its parent has gathered, twice as far up each time.
+    # Every node takes the sign of its parent, twice as far up each time.
     while (parent != parent[parent]).any():
         sign, parent = sign * sign[parent], parent[parent]
     return np.asarray((flat * sign[:, None]).reshape(velocity.shape))
@@ -72,8 +69,8 @@ def with_equal_ends(
 ) -> Floats:
     """Turn over the vectors of last lines to agree with the first, (T, J, I, 3).
 
-    Nodes that lie at the same place then have the same vector: the two ends of an axis that
-    closes, all of both axes where it is not known yet, and the nodes of a pole.
+    Nodes at the same place then have the same vector: the ends of closed axes, of both axes where
+    ``periodic`` is not known yet, and the nodes of a pole.
     """
     result = velocity.copy()
     for axis in (1, 2):
@@ -87,7 +84,7 @@ def with_equal_ends(
 
 
 def corner_signs(vectors: AnyArray) -> NDArray[np.int8] | None:
-    """Return signs that bring the corners of each cell into line with the first.
+    """Return signs that align the corners of each cell with the first one.
 
     Vectors are orthonormal components at the nodes, (J, I, C). Signs are -1 or 1, (4, J, I) as far
     as there is a cell, for the corners (j, i), (j, i + 1), (j + 1, i), (j + 1, i + 1); ``None``
@@ -109,7 +106,7 @@ def weighted_axis(vectors: Floats, weights: Floats) -> Floats:
 
 
 def products(vectors: Floats) -> Floats:
-    """Products of vectors with themselves, over their length, whose means have a meaning."""
+    """Return outer products of vectors, over their length, whose means are sign-free."""
     length = np.linalg.norm(vectors, axis=-1)[..., None, None]
     product = vectors[..., :, None] * vectors[..., None, :]
     product = np.divide(product, length, out=np.zeros_like(product), where=length != 0)
@@ -117,13 +114,13 @@ def products(vectors: Floats) -> Floats:
 
 
 def axes(means: Floats) -> Floats:
-    """Longest axes of means of products, (..., C * C) to (..., C), as long as the vectors were."""
-    known = np.asarray(np.isfinite(means).all(axis=-1))
+    """Return the longest axes (..., C) of means (..., C * C) of :func:`products`."""
+    finite = np.asarray(np.isfinite(means).all(axis=-1))
     size = round(means.shape[-1] ** 0.5)
-    safe = np.where(known[..., None], means, 0.0).reshape(*means.shape[:-1], size, size)
+    safe = np.where(finite[..., None], means, 0.0).reshape(*means.shape[:-1], size, size)
     lengths, directions = np.linalg.eigh(safe)
     longest = directions[..., -1] * lengths[..., -1:]
-    return np.where(known[..., None], longest, np.nan)
+    return np.where(finite[..., None], longest, np.nan)
 
 
 def _sign(products: Floats) -> Floats:
@@ -133,14 +130,14 @@ def _sign(products: Floats) -> Floats:
 
 
 def _along(number: Indices, valid: Bools, axis: int) -> Indices:
-    """Pairs of neighbouring valid nodes along an axis, (2, N)."""
+    """Return pairs of neighbouring valid nodes along an axis, (2, N)."""
     n, ok = np.swapaxes(number, 0, axis), np.swapaxes(valid, 0, axis)
     both = ok[:-1] & ok[1:]
     return np.stack([n[:-1][both], n[1:][both]])
 
 
-def _tree(graph: Any, valid: Bools) -> Indices:
-    """Node that each node takes its direction from; itself for the first of each part."""
+def _tree(graph: scipy.sparse.csr_array, valid: Bools) -> Indices:
+    """Return the parent of each node, from which it takes its direction; roots are their own."""
     _, part = scipy.sparse.csgraph.connected_components(graph, directed=False)
     rows, columns = valid.shape
     j, i = np.divmod(np.arange(valid.size), columns)

@@ -1,7 +1,7 @@
-"""A file or a mesh that stays open, and gives one field after another.
+"""A file or a mesh that stays open, from which one field after another is made.
 
-Who looks for the right plane asks for many of them: the file is read once, and each plane is taken
-from memory. Only a series too large for that is read again.
+The file is read once, and each plane is made from memory. Only a series that is too large for that
+is read again.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import threading
 import warnings
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -32,6 +32,9 @@ from flowtex.field.io.meshes import (
 from flowtex.field.io.reader_errors import errors_of_file
 from flowtex.field.io.vectors import candidates
 
+if TYPE_CHECKING:
+    import pyvista as pv
+
 #: Size of a series that is held in memory; a larger one is read again for each field.
 MAX_SERIES_BYTES = 2_000_000_000
 #: Places of a plane that cuts a volume, evenly spaced along an axis; one of them in the middle.
@@ -41,7 +44,7 @@ OUTER = "outer"
 
 
 class Source:
-    """What can be chosen of a file, a mesh or a field, from which one field after another is made.
+    """The choices of a file, a mesh or a field, from which one field after another is made.
 
     ``name`` is for captions, ``nbytes`` the size in memory, and ``identity`` the state of
     the files when they were opened; empty without files.
@@ -53,8 +56,8 @@ class Source:
         self.vectors: tuple[str, ...] = ()
         #: Number of nodes (I, J, K) of a structured mesh; ``None`` for others, and for a field.
         self.dimensions: tuple[int, int, int] | None = None
-        #: Names of the meshes, where there are several that are not time steps, of the arrays that
-        #: may be the velocity in each, and what a person calls one of them.
+        #: Names of several meshes that are not time steps, of the arrays that may be the velocity
+        #: in each, and a word for one of them.
         self.blocks: tuple[str, ...] = ()
         self.block_vectors: dict[str, tuple[str, ...]] = {}
         self.block_word = "Grid"
@@ -75,12 +78,12 @@ class Source:
         named = {name: len(words) for name, words in self.axes.items()}
         if not self.ends:
             return named
-        own = {OUTER: 1} if self.dimensions is None else zip("ijk", self.dimensions, strict=True)
-        return {**named, **dict(own), **dict.fromkeys(self.ends, CUTS)}
+        outer = {OUTER: 1} if self.dimensions is None else zip("ijk", self.dimensions, strict=True)
+        return {**named, **dict(outer), **dict.fromkeys(self.ends, CUTS)}
 
     @property
     def alive(self) -> bool:
-        """Whether it can still be asked."""
+        """Whether it can still make fields."""
         return True
 
     def plane_at(self, axis: str, number: int) -> str:
@@ -114,7 +117,7 @@ class Source:
         return "outer surface" if axis == OUTER else plane.replace("=", " = ")
 
     def plane_of(self, level: float | str) -> str:
-        """Return the plane of a level, as :attr:`default_plane` has it."""
+        """Return the plane of a level, in the form of :attr:`default_plane`."""
         msg = f"level is {level!r}; expected data of the Earth, but this is a mesh"
         raise FieldError(msg)
 
@@ -130,7 +133,7 @@ class Source:
 
         The plane is such as ``"k=20"``, ``"x=0.25"`` or ``"outer=0"``, by default
         :attr:`default_plane`, and the block as for :meth:`part`. Options are further arguments of
-        what makes the field, as :meth:`FlowField.from_pyvista`.
+        the function that makes the field, such as :meth:`FlowField.from_pyvista`.
         """
         return self._field(vectors, plane, block, options)
 
@@ -147,10 +150,9 @@ class Source:
 class FlowSource(Source):
     """A mesh, a series or a field, from which one field after another is made.
 
-    The ``mesh`` is what :meth:`FlowField.from_pyvista` takes, or a field. ``velocity`` is the name
-    of the velocity where the format of a file fixes it, ``path`` the file that it comes from, which
-    errors then name, and ``block`` the path of the block to take of a reader that has several at
-    each time.
+    The ``mesh`` is as for :meth:`FlowField.from_pyvista`, or a field. ``velocity`` is the name of
+    the velocity where the format of a file fixes it, ``path`` the file, for errors, and ``block``
+    the path of the block in a reader that has several at each time.
     """
 
     def __init__(
@@ -163,7 +165,7 @@ class FlowSource(Source):
         block: str | None = None,
     ) -> None:
         super().__init__(name)
-        self._grids: dict[str, Any] = {}
+        self._grids: dict[str, pv.DataSet] = {}
         self._parts: dict[str, FlowSource] = {}
         self._lock = threading.Lock()
         self._mesh = mesh
@@ -199,7 +201,7 @@ class FlowSource(Source):
         if self._block is not None:
             options = {**options, "block": self._block}
         with warnings.catch_warnings(), self._errors():
-            # The page shows what is chosen.
+            # The page shows the choices.
             warnings.simplefilter("ignore", Notice)
             return FlowField.from_pyvista(self._mesh, vectors=chosen, name=self.name, **options)
 
@@ -247,7 +249,7 @@ class FlowSource(Source):
         if self.dimensions is not None:
             self.default_plane = f"k={self.dimensions[2] // 2}"
             return
-        # Walls, where nothing flows, say less than what is inside.
+        # The inside shows more than walls, where nothing flows.
         self.default_plane = f"{OUTER}=0"
         if self.ends:
             shortest = min(self.ends, key=lambda axis: np.ptp(self.ends[axis]))
@@ -255,7 +257,7 @@ class FlowSource(Source):
                 self.default_plane = self.plane_at(shortest, CUTS // 2)
 
     def _names(self, grid: Any) -> tuple[str, ...]:
-        """Return the names of what may be the velocity of a grid, the preferred one first."""
+        """Return the names of possible velocities of a grid, the preferred one first."""
         names = [array.name for array in candidates(grid)]
         first = grid.active_vectors_name if self._velocity is None else self._velocity
         if self._velocity is not None or first in names:
@@ -266,14 +268,14 @@ class FlowSource(Source):
         """Return the steps of a mesh, in memory where they fit; of several blocks the first."""
         series = len(times_of(mesh)) > 1
         first = mesh.read() if is_reader(mesh) else mesh
-        several = {} if self._block is not None else _choices(first, series=series)
-        if several:
-            self.blocks = tuple(several)
-            self.block_vectors = {name: self._names(grid) for name, grid in several.items()}
+        blocks = {} if self._block is not None else _choices(first, series=series)
+        if blocks:
+            self.blocks = tuple(blocks)
+            self.block_vectors = {name: self._names(grid) for name, grid in blocks.items()}
             if not series:
-                self._grids = several
-                self.nbytes = sum(_bytes(grid) for grid in several.values())
-            return [TimeStep(next(iter(several.values())), None, "the mesh")]
+                self._grids = blocks
+                self.nbytes = sum(_bytes(grid) for grid in blocks.values())
+            return [TimeStep(next(iter(blocks.values())), None, "the mesh")]
         steps: list[TimeStep] = []
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Notice)
@@ -287,17 +289,17 @@ class FlowSource(Source):
         return steps
 
 
-def _choices(mesh: Any, *, series: bool) -> dict[str, Any]:
+def _choices(mesh: Any, *, series: bool) -> dict[str, pv.DataSet]:
     """Return the blocks that may be chosen, the default ones first; none for a single one."""
     if isinstance(mesh, (list, tuple)):
         return {}
-    meant, how = drawn_parts(mesh, series=series)
-    if how == "together" or (how == "steps" and len(meant) > 1):
+    drawn, combination = drawn_parts(mesh, series=series)
+    if combination == "together" or (combination == "steps" and len(drawn) > 1):
         return {}
     others = {name: part for name, part in parts_of(mesh).items() if candidates(part)}
-    parts = {**meant, **others}
+    parts = {**drawn, **others}
     return parts if len(parts) > 1 else {}
 
 
-def _bytes(grid: Any) -> int:
+def _bytes(grid: pv.DataSet) -> int:
     return int(grid.actual_memory_size) * 1024

@@ -46,7 +46,7 @@ class LazySteps:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of the whole; the first step is read to know it."""
+        """Shape of the array; reads the first step."""
         if self._shape is None:
             self._shape = (self._count, *self.step(0).shape)
         return self._shape
@@ -62,7 +62,7 @@ class LazySteps:
         return self._kept.nbytes
 
     def map(self, function: Callable[[Floats], Floats]) -> LazySteps:
-        """Return steps that are made from these by a function, when they are read."""
+        """Return steps that a function makes from these when they are read."""
         return LazySteps(self._count, lambda number: function(self.step(number)), kept=self._most)
 
     def __getitem__(self, key: Any) -> Any:
@@ -94,7 +94,7 @@ Steps: TypeAlias = Any
 
 
 class Nodes(NamedTuple):
-    """What some nodes have, as in a field; at one time step its velocity is (J, I, C)."""
+    """Data of some nodes, as in a field; at one time step its velocity is (J, I, C)."""
 
     points: Floats
     valid: Bools
@@ -104,7 +104,7 @@ class Nodes(NamedTuple):
 
 
 def first_step(values: Any) -> Any:
-    """Return the first of steps that are read late; others as they are."""
+    """Return the first step of lazy ones, and anything else as it is."""
     return values[0] if isinstance(values, LazySteps) else values
 
 
@@ -113,7 +113,7 @@ def typical_steps(count: int) -> list[int]:
     return sorted({0, (count - 1) // 2, count - 1})
 
 
-def map_steps(steps: Any, function: Callable[[Floats], Floats]) -> Any:
+def map_steps(steps: Steps, function: Callable[[Floats], Floats]) -> Steps:
     """Apply a function to each step (J, I, ...) of an array, or later to those of a lazy one."""
     if isinstance(steps, LazySteps):
         return steps.map(function)

@@ -1,4 +1,4 @@
-"""What every surface answers: where its nodes and cells are, and how large and how flat it is.
+"""The common interface of surfaces: positions of nodes and cells, sizes, and the plane.
 
 A position on a surface is two numbers, (i, j) in index space; what they mean is up to the surface.
 The kinds are :class:`~flowtex.field.grids.surface.GridSurface` and
@@ -25,9 +25,9 @@ class Surface(ABC):
 
     points: Floats  #: Positions of the nodes, (J, I, 3); a surface of triangles has one row.
     valid: Bools  #: Nodes that carry data, (J, I).
-    has_position: Bools  #: Nodes with their own position, (J, I).
+    has_position: Bools  #: Nodes with a known position, (J, I).
     periodic: tuple[bool, bool]  #: Whether the (j, i) axis closes on itself.
-    offset: Floats  #: What to add to a position when index j, or i, grows by one period, (2, 3).
+    offset: Floats  #: Displacement by one period of index j, or i, (2, 3).
     on_globe: bool  #: Whether it lies on a globe around the origin, with north at +z.
 
     @property
@@ -52,9 +52,9 @@ class Surface(ABC):
 
     @property
     def placed_cells(self) -> Bools:
-        """Cells whose nodes have their own positions, in the shape of :attr:`cells`."""
-        known = [self.has_position[at] for at in self.cell_corners]
-        return np.asarray(np.logical_and.reduce(known))
+        """Cells whose nodes have known positions, in the shape of :attr:`cells`."""
+        placed = [self.has_position[at] for at in self.cell_corners]
+        return np.asarray(np.logical_and.reduce(placed))
 
     @abstractmethod
     def nodes_of(self, cells: Bools) -> Indices:
@@ -63,7 +63,7 @@ class Surface(ABC):
     @cached_property
     @abstractmethod
     def cell_corners(self) -> list[Any]:
-        """For each corner of the cells, the index that takes an array over nodes to it."""
+        """Index of each corner of the cells in arrays over the nodes."""
 
     @cached_property
     @abstractmethod
@@ -91,19 +91,19 @@ class Surface(ABC):
 
     @abstractmethod
     def is_drawn(self, number: Indices) -> Bools:
-        """Whether triangles (N,) are drawn."""
+        """Return whether triangles (N,) are drawn."""
 
     @abstractmethod
     def corners_of(self, number: Indices) -> Indices:
-        """Nodes (N, 3) at the corners of triangles (N,), counted row by row."""
+        """Return nodes (N, 3) at the corners of triangles (N,), counted row by row."""
 
     @abstractmethod
     def beside(self, number: Indices, corner: int) -> Indices:
-        """Triangles (N,) across the edges opposite to a corner, -1 at a border."""
+        """Return triangles (N,) across the edges opposite to a corner, -1 at a border."""
 
     @abstractmethod
     def index_of(self, number: Indices, weights: Floats) -> Floats:
-        """Positions (N, 2) as (i, j) of shares (N, 3) of the corners of triangles (N,)."""
+        """Return positions (N, 2) as (i, j) of shares (N, 3) of corners of triangles (N,)."""
 
     @abstractmethod
     def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
@@ -124,7 +124,7 @@ class Surface(ABC):
     @cached_property
     @abstractmethod
     def apart(self) -> Bools:
-        """Nodes of what is drawn that have their own place, (J, I); all where none has."""
+        """Drawn nodes at distinct places, (J, I); all drawn nodes where none is."""
 
     @cached_property
     @abstractmethod
@@ -170,7 +170,7 @@ class Surface(ABC):
             return None
         normal = basis[2]
         if np.abs(normal).max() > 1 - 1e-12:
-            # A plane of constant x, y or z keeps the mesh's own axes: pictures stay comparable.
+            # A plane of constant x, y or z keeps the axes of the mesh: pictures stay comparable.
             return np.delete(np.eye(3), int(np.argmax(np.abs(normal))), axis=0)
         return np.asarray(basis[:2])
 

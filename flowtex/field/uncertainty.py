@@ -19,7 +19,7 @@ from flowtex.field.steps import LazySteps
 
 #: A :class:`flowtex.FlowField`.
 Field = TypeVar("Field")
-#: The name of the scalar where it is given as an array.
+#: Name of the scalar of an uncertainty that is an array.
 UNCERTAINTY = "uncertainty"
 
 
@@ -32,8 +32,8 @@ def with_uncertainty(field: Field, value: Any) -> Field:
         The flow.
     value
         The name of a scalar of the field, or of the dimension over which a dataset was averaged; or
-        an array, (J, I) or (T, J, I), on triangles (N,) or
-        (T, N): the standard deviation of the velocity over its magnitude.
+        an array, (J, I) or (T, J, I), on triangles (N,) or (T, N): the standard deviation of the
+        velocity over its magnitude.
 
     Raises
     ------
@@ -44,8 +44,8 @@ def with_uncertainty(field: Field, value: Any) -> Field:
     scalars = flow.scalars
     if not isinstance(value, str):
         try:
-            given = np.asarray(value, dtype=float)
-            steps = given.reshape(-1, *flow.shape)
+            array = np.asarray(value, dtype=float)
+            steps = array.reshape(-1, *flow.shape)
         except (TypeError, ValueError):
             steps = None
         if steps is None or len(steps) not in {1, len(flow.times)}:

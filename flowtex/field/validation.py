@@ -1,7 +1,7 @@
-"""What must hold of arrays before they make a field.
+"""Checks of the arrays of a field.
 
-Functions ``..._faults`` return faults as sentences (see :mod:`flowtex.errors`); the others bring
-arrays into the one form that the rest of the package takes.
+Functions ``..._faults`` return faults as sentences (see :mod:`flowtex.errors`); the others convert
+arrays into the form that the rest of the package uses.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from flowtex.errors import FieldError
 
 #: A surface narrower than this share of its length is a line.
 LINE_WIDTH = 1e-7
-#: Ends of lengths, for single precision, and of speeds and times, whose squares must be numbers.
+#: Ranges of lengths, for single precision, and of speeds and times, whose squares must be finite.
 LENGTHS, MAGNITUDES = (1e-30, 1e30), (1e-100, 1e100)
-#: Lines of nodes along each axis that are looked at first.
+#: Lines of nodes along each axis that are examined first.
 FEW_LINES = 100
 
 
 def node_positions(points: Any) -> Any:
-    """Return positions (J, I, 2 or 3) of a tuple of arrays, (I,) and (J,) too; or as they are."""
-    several = isinstance(points, (tuple, list)) and len(points) in (2, 3)
-    sizes = [np.ndim(part) for part in points] if several else []
+    """Return positions (J, I, 2 or 3) from a tuple of arrays, also (I,) and (J,); else as is."""
+    is_tuple = isinstance(points, (tuple, list)) and len(points) in (2, 3)
+    sizes = [np.ndim(part) for part in points] if is_tuple else []
     if sizes == [1, 1]:
         points = np.meshgrid(*points)
     elif not isinstance(points, tuple) or set(sizes) != {2}:
@@ -42,7 +42,7 @@ def node_positions(points: Any) -> Any:
 
 
 def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
-    """Return values as float64, copied if need be, and the nodes (J, I) that a mask hides."""
+    """Return values as float64, copied if necessary, and the nodes (J, I) that a mask hides."""
     mask = np.ma.getmaskarray(values) if np.ma.isMaskedArray(values) else None
     try:
         array = np.asarray(np.ma.getdata(values))
@@ -73,7 +73,7 @@ ALL_AT_REST = (
 
 
 def with_gaps(name: str, values: ArrayLike) -> Floats:
-    """Return values as float64, copied if need be, NaN where a masked array hides them."""
+    """Return values as float64, copied if necessary, NaN where a masked array hides them."""
     array, _ = as_numbers(name, values)
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
         array = np.where(np.ma.getmaskarray(values), np.nan, array)
@@ -172,8 +172,8 @@ def time_faults(t: Floats | None, count: int) -> list[str]:
 def range_faults(p: Floats, v: Floats, ok: Bools) -> list[str]:
     """Return faults in the size of positions, and of velocities, NaN where not valid."""
     faults = []
-    of_nodes = largest(p) if ok.all() else largest(p, ok[..., None])
-    for name, most, ends in (("points", of_nodes, LENGTHS), ("velocity", largest(v), MAGNITUDES)):
+    node_size = largest(p) if ok.all() else largest(p, ok[..., None])
+    for name, most, ends in (("points", node_size, LENGTHS), ("velocity", largest(v), MAGNITUDES)):
         if most and not ends[0] <= most <= ends[1]:
             faults.append(
                 f"{name} has values up to {most:.3g}; expected {ends[0]:g} to {ends[1]:g}: use "
@@ -195,29 +195,29 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no four of them form a cell; "
             "check the mask"
         ]
-    if _spread(p, ok):
+    if _is_wide(p, ok):
         return []
-    where = p[ok] - p[ok].mean(axis=0)
-    if np.abs(where).max() == 0:
+    offsets = p[ok] - p[ok].mean(axis=0)
+    if np.abs(offsets).max() == 0:
         return ["all usable nodes lie at one point; expected a surface: check the coordinates"]
-    spans = np.linalg.svd(np.cov((where / np.abs(where).max()).T), compute_uv=False)
+    spans = np.linalg.svd(np.cov((offsets / np.abs(offsets).max()).T), compute_uv=False)
     if spans[1] <= LINE_WIDTH**2 * spans[0]:
         return ["all usable nodes lie on one line; expected a surface: check the coordinates"]
     return []
 
 
-def _spread(p: Floats, ok: Bools) -> bool:
-    """Whether a few of the valid nodes show that all of them are wider than a line.
+def _is_wide(p: Floats, ok: Bools) -> bool:
+    """Return whether a sample of the valid nodes shows that they are wider than a line.
 
     Variances summed over more nodes are never smaller, and never greater than the bounding box's.
     """
-    every = [slice(None, None, max(n // FEW_LINES, 1)) for n in ok.shape]
-    some = p[tuple(every)][ok[tuple(every)]]
-    if len(some) < 3:
+    thinned = tuple(slice(None, None, max(n // FEW_LINES, 1)) for n in ok.shape)
+    sample = p[thinned][ok[thinned]]
+    if len(sample) < 3:
         return False
     low, high = bounds(p if ok.all() else p[ok])
-    offsets = some - some.mean(axis=0)
-    # Where all nodes are at one point, only rounding is left.
+    offsets = sample - sample.mean(axis=0)
+    # Where all nodes are at one point, only rounding remains.
     size = float(max((high - low).max(), np.abs(offsets).max()))
     if not np.finfo(float).tiny < size:
         return False
@@ -227,7 +227,7 @@ def _spread(p: Floats, ok: Bools) -> bool:
 
 
 def finite_nodes(a: Floats) -> Bools:
-    """Nodes at which all components of (..., J, I, C) are finite, (J, I)."""
+    """Return whether all components of (..., J, I, C) are finite at the nodes, (J, I)."""
     finite = np.isfinite(a)
     if finite.all():
         return np.ones(a.shape[-3:-1], dtype=bool)
@@ -235,20 +235,20 @@ def finite_nodes(a: Floats) -> Bools:
 
 
 def largest(a: Floats, where: Bools | bool = True) -> float:  # noqa: FBT001, FBT002
-    """Greatest size of the numbers in an array, without a copy; 0 where all are NaN."""
+    """Return the greatest magnitude in an array, without a copy; 0 where all are NaN."""
     options: dict[str, Any] = {"axis": None, "initial": 0.0, "where": where}
     return float(max(-np.fmin.reduce(a, **options), np.fmax.reduce(a, **options)))
 
 
 def three_components(a: Floats) -> Floats:
-    """Give two-dimensional vectors a third component of zero."""
+    """Return vectors (..., 2 or 3) with three components, the third one zero."""
     if a.shape[-1] == 3:
         return a
     return np.concatenate([a, np.zeros_like(a[..., :1])], axis=-1)
 
 
 def scalar_steps(values: Floats, grid: tuple[int, ...]) -> Floats:
-    """Copy a nodal array, with an axis of time; what is beyond :data:`MAGNITUDES` is NaN."""
+    """Copy a nodal array, with an axis of time; values beyond :data:`MAGNITUDES` become NaN."""
     result = values.reshape(-1, *grid).copy("C")
     if largest(result) > MAGNITUDES[1]:
         result[np.abs(result) > MAGNITUDES[1]] = np.nan

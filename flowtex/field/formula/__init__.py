@@ -1,4 +1,4 @@
-"""Flows from formulas: what is read of them, and the fields that they make."""
+"""Flows from formulas: their expressions, and the fields that they make."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a formula says, and its values at nodes."""
+"""A formula, and its values at nodes."""
 
 from __future__ import annotations
 
@@ -8,19 +8,20 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import is_number, near_names
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.formula.grammar import FormulaError, Tree, evaluate, parse
+from flowtex.field.formula.grammar import FormulaError, Tree, Values, evaluate, parse
 from flowtex.field.formula.symbols import is_symbolic, tree_of
 
 RANGE = (-5.0, 5.0)
-#: Greatest speed and length that are known; what is beyond is blanked.
+#: Greatest speed and length; values beyond are blanked.
 MOST = 1e30
-#: Share of a range by which tangents look to both sides.
+#: Step of the differences for tangents, as a share of a range.
 TANGENT_SHARE = 1e-5
-#: Names that positions and the time have.
+#: Names of positions and of the time.
 VARIABLES = ("x", "y", "z", "u", "v", "t")
 _TURN = (-np.pi, np.pi)
 #: Surfaces by name: x, y and z, and the ranges of u and v.
@@ -54,16 +55,16 @@ class Parameter:
     high: float
 
     @classmethod
-    def of(cls, name: str, given: Any) -> Parameter:
+    def of(cls, name: str, raw: Any) -> Parameter:
         """Return the parameter of a value, or of value, low and high."""
         try:
-            value, *ends = map(float, (given,) if is_number(given) else given)
+            value, *ends = map(float, (raw,) if is_number(raw) else raw)
             low, high = ends or (sorted((0.0, 2 * value)) if value else (-1.0, 1.0))
         except (TypeError, ValueError, OverflowError):
             value = low = high = np.nan
         if not (low <= value <= high and low < high and np.isfinite(high - low)):
             msg = (
-                f"{name} is {given!r}; expected a number, or value, low and high of a slider, such "
+                f"{name} is {raw!r}; expected a number, or value, low and high of a slider, such "
                 "as (0.2, 0, 1)"
             )
             raise FieldError(msg)
@@ -72,38 +73,38 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Expression:
-    """One expression: its text, its tree where it has one, and what gives its values."""
+    """One expression: its text, its tree if it has one, and the function of its values."""
 
     text: str
     tree: Tree | None
-    values: Callable[[Mapping[str, Any]], Any]
+    values: Callable[[Values], ArrayLike]
 
     @classmethod
-    def of(cls, given: Any, names: tuple[str, ...]) -> Expression:
+    def of(cls, source: Any, names: tuple[str, ...]) -> Expression:
         """Read a text, a number, an expression of sympy's or a function of some of the names."""
-        if isinstance(given, str) or is_number(given):
-            tree = parse(str(given), names)
-        elif is_symbolic(given):
-            tree = tree_of(given, names)
-        elif callable(given):
-            return cls._function(given, names)
+        if isinstance(source, str) or is_number(source):
+            tree = parse(str(source), names)
+        elif is_symbolic(source):
+            tree = tree_of(source, names)
+        elif callable(source):
+            return cls._function(source, names)
         else:
-            msg = f"an expression is {given!r}; expected a text, such as '-sin(x)', or a function"
+            msg = f"an expression is {source!r}; expected a text, such as '-sin(x)', or a function"
             raise FormulaError(msg)
-        return cls(str(given), tree, lambda values: evaluate(tree, values))
+        return cls(str(source), tree, lambda values: evaluate(tree, values))
 
     @classmethod
-    def _function(cls, given: Callable[..., Any], names: tuple[str, ...]) -> Expression:
-        text = getattr(given, "__name__", "function")
+    def _function(cls, function: Callable[..., Any], names: tuple[str, ...]) -> Expression:
+        text = getattr(function, "__name__", "function")
         try:
-            wanted = tuple(inspect.signature(given).parameters)
+            inputs = tuple(inspect.signature(function).parameters)
         except (TypeError, ValueError):
-            wanted = ("?",)
-        for name in wanted:
+            inputs = ("?",)
+        for name in inputs:
             if name not in names:
                 msg = f"the function {text} takes {name}; {near_names(name, names)}"
                 raise FormulaError(msg)
-        return cls(text, None, lambda values: given(**{name: values[name] for name in wanted}))
+        return cls(text, None, lambda values: function(**{name: values[name] for name in inputs}))
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +146,7 @@ class Formula:
         timed: bool,
     ) -> Formula:
         """Read the arguments of :func:`flowtex.formula`; raise a FieldError if they are invalid."""
-        places, own = _surface(surface)
+        places, defaults = _surface(surface)
         if len(expressions) not in ((2, 3) if places else (2,)):
             expected = (
                 "two, the rates of u and v, or three, the velocity along x, y and z"
@@ -154,21 +155,21 @@ class Formula:
             )
             msg = f"{len(expressions)} expressions are given; expected {expected}"
             raise FieldError(msg)
-        for name, given in ranges.items():
-            if given is not None and name not in own:
-                msg = f"{name} has a range, but the coordinates here are {' and '.join(own)}"
+        for name, ends in ranges.items():
+            if ends is not None and name not in defaults:
+                msg = f"{name} has a range, but the coordinates here are {' and '.join(defaults)}"
                 raise FieldError(msg)
         if taken := [name for name in parameters if name in VARIABLES]:
             msg = f"{taken[0]} is a coordinate or the time; give the parameter another name"
             raise FieldError(msg)
-        known = {name: Parameter.of(name, given) for name, given in parameters.items()}
-        names = (*own, *known)
+        read = {name: Parameter.of(name, value) for name, value in parameters.items()}
+        names = (*defaults, *read)
         values = (*names, *("xyz" if places else ""), *("t" if timed else ""))
         return cls(
             tuple(Expression.of(each, values) for each in expressions),
-            {name: _range(name, ranges[name] or own[name]) for name in own},
+            {name: _range(name, ranges[name] or defaults[name]) for name in defaults},
             tuple(Expression.of(each, names) for each in places),
-            known,
+            read,
         )
 
     @property
@@ -199,7 +200,7 @@ class Formula:
 
     def velocity(self, u: Floats, v: Floats, time: float) -> Floats:
         """Return the velocity (J, I, 2 or 3) at coordinates (J, I), NaN where it is undefined."""
-        values = self._named(u, v) | {"t": time}
+        values = {**self._named(u, v), "t": time}
         if self.surface:
             values |= dict(zip("xyz", np.moveaxis(self.points(u, v), -1, 0), strict=True))
         rates = _values(self.expressions, values)
@@ -213,12 +214,12 @@ class Formula:
             along += rates[..., k, None] * tangent
         return along
 
-    def _named(self, u: Floats, v: Floats) -> dict[str, Any]:
+    def _named(self, u: Floats, v: Floats) -> Values:
         numbers = {name: each.value for name, each in self.parameters.items()}
         return numbers | dict(zip(self.ranges, (u, v), strict=True))
 
 
-def _values(expressions: tuple[Expression, ...], values: Mapping[str, Any]) -> Floats:
+def _values(expressions: tuple[Expression, ...], values: Values) -> Floats:
     """Evaluate expressions at nodes, (J, I, number of expressions); NaN where one is undefined."""
     shape = next(np.shape(value) for value in values.values() if np.ndim(value))
     result = np.empty((*shape, len(expressions)))
@@ -233,29 +234,28 @@ def _values(expressions: tuple[Expression, ...], values: Mapping[str, Any]) -> F
     return result
 
 
-def _surface(given: Any) -> tuple[tuple[Any, ...], Mapping[str, tuple[float, float]]]:
+def _surface(surface: Any) -> tuple[tuple[Any, ...], Mapping[str, tuple[float, float]]]:
     """Return the expressions of a surface, and its coordinates with their usual ranges."""
-    if given is None:
+    if surface is None:
         return (), {"x": RANGE, "y": RANGE}
-    if isinstance(given, str):
-        if given in SURFACES:
-            return SURFACES[given]
-        msg = f"surface is {given!r}; {near_names(given, SURFACES)}, or give three expressions"
+    if isinstance(surface, str):
+        if surface in SURFACES:
+            return SURFACES[surface]
+        msg = f"surface is {surface!r}; {near_names(surface, SURFACES)}, or give three expressions"
         raise FieldError(msg)
-    if not isinstance(given, (tuple, list)) or len(given) != COMPONENTS:
-        msg = (
-            f"surface is {given!r}; expected x, y and z of u and v, or one of {', '.join(SURFACES)}"
-        )
+    if not isinstance(surface, (tuple, list)) or len(surface) != COMPONENTS:
+        names = ", ".join(SURFACES)
+        msg = f"surface is {surface!r}; expected x, y and z of u and v, or one of {names}"
         raise FieldError(msg)
-    return tuple(given), {"u": RANGE, "v": RANGE}
+    return tuple(surface), {"u": RANGE, "v": RANGE}
 
 
-def _range(name: str, given: Any) -> tuple[float, float]:
+def _range(name: str, ends: Any) -> tuple[float, float]:
     try:
-        low, high = map(float, given)
+        low, high = map(float, ends)
     except (TypeError, ValueError, OverflowError):
         low = high = np.nan
     if not (low < high and abs(low) < MOST and abs(high) < MOST):
-        msg = f"{name} is {given!r}; expected two numbers, the lower one first, such as (-7, 7)"
+        msg = f"{name} is {ends!r}; expected two numbers, the lower one first, such as (-7, 7)"
         raise FieldError(msg)
     return low, high

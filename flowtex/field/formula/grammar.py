@@ -1,9 +1,9 @@
 """The language of formulas: tokens, a parser by binding powers, and values in NumPy.
 
-A formula becomes a tree of plain Python: a number, a name, or a tuple of an operation and what it
-is applied to, such as ``("+", "x", ("*", 2.0, ("sin", "y")))``. Nothing else leaves this grammar,
-and nothing in it is run as code. As JSON the tree goes to the browser, where
-``client/src/formula.ts`` computes its values alike.
+A formula becomes a tree of plain Python: a number, a name, or a tuple of an operation and its
+arguments, such as ``("+", "x", ("*", 2.0, ("sin", "y")))``. The grammar makes nothing else, and
+nothing in it is run as code. The tree goes to the browser as JSON, where ``client/src/formula.ts``
+computes the same values.
 """
 
 from __future__ import annotations
@@ -19,8 +19,10 @@ from flowtex._util.arguments import near_names
 from flowtex.errors import FieldError
 
 Tree = float | str | tuple[Any, ...]
+#: Numbers or arrays by name.
+Values = Mapping[str, Any]
 
-#: Operations, each with how many values it takes; those with ``None`` take two or more.
+#: Operations, each with its number of arguments; ``None`` means two or more.
 OPERATIONS: dict[str, tuple[Any, int | None]] = {
     "+": (np.add, None),
     "*": (np.multiply, None),
@@ -60,20 +62,20 @@ OPERATIONS: dict[str, tuple[Any, int | None]] = {
 FUNCTIONS = tuple(name for name in OPERATIONS if name.isalnum() and name != "neg")
 CONSTANTS = {"pi": np.pi, "e": np.e}
 
-#: How tightly operators bind what is on their right; a sign binds less than a power.
+#: Binding powers of operators to their right; a sign binds less than a power.
 BINDING = {
     **dict.fromkeys(("<", ">", "<=", ">="), 1),
     **{"+": 2, "-": 2, "*": 3, "/": 3, "^": 5, "**": 5},
 }
 SIGN_BINDING = 4
-#: Letters of a formula, and parts of it that lie in one another, at most.
+#: Most letters of a formula, and levels of nesting.
 MOST_LETTERS, MOST_DEPTH = 2000, 60
 
 _TOKEN = re.compile(
     r" *(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)"
     r"|(?P<sign>\*\*|<=|>=|[-+*/^(),<>]))"
 )
-#: Signs as they are printed.
+#: Typographic signs.
 _PRINTED = str.maketrans({"\u2212": "-", "\u00b7": "*", "\u00d7": "*"})
 
 
@@ -90,26 +92,26 @@ class FormulaError(FieldError):
 
 
 def parse(text: str, names: Collection[str]) -> Tree:
-    """Return the tree of a formula in which some names are known.
+    """Return the tree of a formula with these names.
 
-    Raises a FormulaError when it is none; the text points at the place.
+    Raises a FormulaError for other texts, which points at the place.
     """
     return _Parser(text, names).whole()
 
 
-def evaluate(tree: Tree, values: Mapping[str, Any]) -> Any:
-    """Return the value of a tree, an array where those of its names are."""
+def evaluate(tree: Tree, values: Values) -> Any:
+    """Return the value of a tree, an array if its names have arrays."""
     if isinstance(tree, str):
         return values[tree]
     if not isinstance(tree, tuple):
         return tree
     function, count = OPERATIONS[tree[0]]
-    given = [evaluate(part, values) for part in tree[1:]]
-    return function(*given) if count else reduce(function, given)
+    arguments = [evaluate(part, values) for part in tree[1:]]
+    return function(*arguments) if count else reduce(function, arguments)
 
 
 class _Parser:
-    """Reads one formula, by the way of Pratt: each operator knows how tightly it binds."""
+    """A parser of one formula after Pratt: each operator has a binding power."""
 
     def __init__(self, text: str, names: Collection[str]) -> None:
         self.text = re.sub(r"\s", " ", text).translate(_PRINTED)
@@ -132,9 +134,9 @@ class _Parser:
         self.next = 0
         self.depth = 0
 
-    def fail(self, what: str, at: int | None = None) -> NoReturn:
+    def fail(self, problem: str, at: int | None = None) -> NoReturn:
         at = self.tokens[self.next][2] if at is None else at
-        msg = f"{what}\n  {self.text}\n  {' ' * at}^"
+        msg = f"{problem}\n  {self.text}\n  {' ' * at}^"
         raise FormulaError(msg)
 
     def take(self) -> tuple[str, str, int]:
@@ -145,8 +147,8 @@ class _Parser:
     def expect(self, sign: str, instead: str) -> None:
         kind, text, _ = self.tokens[self.next]
         if text != sign:
-            found = "the formula ends" if kind == "end" else f"here is {text!r}"
-            self.fail(f"{found} and {instead}")
+            problem = "the formula ends" if kind == "end" else f"here is {text!r}"
+            self.fail(f"{problem} and {instead}")
         self.take()
 
     def whole(self) -> Tree:
@@ -159,7 +161,7 @@ class _Parser:
         return tree
 
     def expression(self, binding: int) -> Tree:
-        """Read as far as operators bind more tightly than that."""
+        """Read as long as operators bind more tightly than ``binding``."""
         self.depth += 1
         if self.depth > MOST_DEPTH:
             self.fail(f"the formula is nested more than {MOST_DEPTH} levels deep; simplify it")
@@ -182,7 +184,7 @@ class _Parser:
         return self.checked(("^" if is_power else sign, left, right), at)
 
     def checked(self, tree: tuple[Any, ...], at: int) -> Tree:
-        """Refuse operators one after the other that make too deep a tree."""
+        """Return a tree; refuse one that is too deep, as from many operators in a row."""
         if _depth(tree) > MOST_DEPTH:
             self.fail(f"the formula is nested more than {MOST_DEPTH} levels deep; simplify it", at)
         return tree
@@ -205,8 +207,8 @@ class _Parser:
                 tree = self.expression(0)
                 self.expect(")", 'a ")" is missing')
                 return tree
-        found = "the formula ends" if kind == "end" else f"here is {text!r}"
-        return self.fail(f"{found} and a number, a name or a ( is missing", at)
+        problem = "the formula ends" if kind == "end" else f"here is {text!r}"
+        return self.fail(f"{problem} and a number, a name or a ( is missing", at)
 
     def named(self, name: str, at: int) -> Tree:
         is_called = self.tokens[self.next][1] == "("
@@ -230,15 +232,15 @@ class _Parser:
     def call(self, name: str, at: int) -> Tree:
         count = OPERATIONS[name][1]
         self.expect("(", f"{name} is a function; write {name}(x)")
-        given = [self.expression(0)]
+        arguments = [self.expression(0)]
         while self.tokens[self.next][1] == ",":
             self.take()
-            given.append(self.expression(0))
+            arguments.append(self.expression(0))
         self.expect(")", f'a ")" of {name} is missing')
-        if len(given) != count if count else len(given) < 2:
+        if len(arguments) != count if count else len(arguments) < 2:
             expected = count or "two or more"
-            self.fail(f"{name} has {len(given)} arguments; expected {expected}", at)
-        return self.checked((name, *given), at)
+            self.fail(f"{name} has {len(arguments)} arguments; expected {expected}", at)
+        return self.checked((name, *arguments), at)
 
 
 def _depth(tree: Tree) -> int:

@@ -14,12 +14,12 @@ from flowtex.field.formula.known import KNOWN
 from flowtex.field.formula.make import formula
 
 _NAMED = re.compile(r"\s*([^\W\d]\w*)\s*=(?!=)(.*)", re.DOTALL)
-#: Letters of a line, and its steps, at most.
+#: Most letters of a line, and most steps.
 MOST_LETTERS, MOST_TIMES = 4000, 200
 
 
 def is_line(text: str) -> bool:
-    """Whether a text is a line, or the name of a known formula."""
+    """Return whether a text is a line, or the name of a known formula."""
     return (";" in text and len(text) <= MOST_LETTERS) or text.replace(" ", "_") in KNOWN
 
 
@@ -50,11 +50,11 @@ def line_arguments(line: str) -> tuple[list[str], dict[str, Any]]:
             "t is the time; expected the first time, the last, and their number, such as t=0,10,41"
         )
         raise FieldError(msg)
-    known = ("x", "y", "u", "v", "surface", "times")
+    allowed = ("x", "y", "u", "v", "surface", "times")
     if taken := [n for n in ("resolution", "name") if n in named]:
         msg = (
             f"{taken[0]} cannot be the name of a parameter; expected another name, or one of "
-            f"{', '.join(known)}"
+            f"{', '.join(allowed)}"
         )
         raise FieldError(msg)
     return expressions, named
@@ -80,7 +80,7 @@ def line_python(line: str) -> str:
     """Return the expression of Python that makes the flow of a line."""
     expressions, named = line_arguments(line)
     times = named.pop("times", None)
-    words = [*map(repr, expressions), *(f"{name}={value!r}" for name, value in named.items())]
+    inputs = [*map(repr, expressions), *(f"{name}={value!r}" for name, value in named.items())]
     if times is not None:
-        words.append(f"times=np.linspace({float(times[0])!r}, {float(times[-1])!r}, {len(times)})")
-    return f"flowtex.formula({', '.join(words)})"
+        inputs.append(f"times=np.linspace({float(times[0])!r}, {float(times[-1])!r}, {len(times)})")
+    return f"flowtex.formula({', '.join(inputs)})"

@@ -15,9 +15,9 @@ from flowtex.field.field import FlowField
 from flowtex.field.formula.flow import Formula
 from flowtex.field.formula.known import KNOWN
 
-#: Nodes along the longer side of a plane, and of a surface, around whose poles paths take long.
+#: Nodes along the longer side of a plane, and of a surface, whose poles slow down tracing.
 NODES, SURFACE_NODES = 257, 129
-#: Nodes along the shorter side at least; the most that may be requested.
+#: Least nodes along the shorter side, and most nodes that may be requested.
 LEAST_NODES, MOST_NODES = 33, 10_000
 #: Share of the size of a surface within which places are the same.
 SAME_PLACE = 1e-9
@@ -93,72 +93,72 @@ def formula(
     (147, 257)
     """
     if len(expressions) == 1:
-        title, expressions, known = _known(expressions[0])
+        title, expressions, defaults = _known_formula(expressions[0])
         name = name or title
-        x, y = x or known.pop("x"), y or known.pop("y")
-        known = {key: value for key, value in known.items() if key not in ("x", "y")}
+        x, y = x or defaults.pop("x"), y or defaults.pop("y")
+        defaults = {key: value for key, value in defaults.items() if key not in ("x", "y")}
         for key in parameters:
-            if key not in known:
-                msg = f"{title} has no parameter {key!r}; {near_names(key, known)}"
+            if key not in defaults:
+                msg = f"{title} has no parameter {key!r}; {near_names(key, defaults)}"
                 raise FieldError(msg)
-        parameters = {**known, **parameters}
+        parameters = {**defaults, **parameters}
     elif expressions and isinstance(expressions[0], str) and expressions[0] in KNOWN:
         rest = " and ".join(map(repr, expressions[1:]))
         msg = f"{expressions[0]!r} is a known formula and takes no other expression; omit {rest}"
         raise FieldError(msg)
     steps = None if times is None else _times(times)
     ranges = {"x": x, "y": y, "u": u, "v": v}
-    made = Formula.of(expressions, surface, ranges, parameters, timed=steps is not None)
+    flow = Formula.of(expressions, surface, ranges, parameters, timed=steps is not None)
     expected = f"2 to {MOST_NODES:,} nodes"
-    usual = SURFACE_NODES if made.surface else NODES
-    count = usual if resolution is None else resolution
+    default = SURFACE_NODES if flow.surface else NODES
+    count = default if resolution is None else resolution
     count = checked_count("resolution", count, 2, MOST_NODES, expected=expected)
     shape = (count, count)
-    if not made.surface:
-        width, height = (high - low for low, high in made.ranges.values())
+    if not flow.surface:
+        width, height = (high - low for low, high in flow.ranges.values())
         rows, columns = (
             max(round((count - 1) * side / max(width, height)) + 1, min(count, LEAST_NODES))
             for side in (height, width)
         )
         shape = (rows, columns)
-    coordinates = made.coordinates(shape)
+    coordinates = flow.coordinates(shape)
     moments = [0.0] if steps is None else steps
-    velocity = np.stack([made.velocity(*coordinates, float(t)) for t in moments])
-    points = made.points(*coordinates)
-    whole = np.concatenate([*velocity, points], axis=-1)
-    gaps: Bools = np.isnan(whole).any(axis=-1)
+    velocity = np.stack([flow.velocity(*coordinates, float(t)) for t in moments])
+    points = flow.points(*coordinates)
+    values = np.concatenate([*velocity, points], axis=-1)
+    gaps: Bools = np.isnan(values).any(axis=-1)
     if (gaps[1:, 1:] | gaps[1:, :-1] | gaps[:-1, 1:] | gaps[:-1, :-1]).all():
-        msg = f"{made.title} has no value in any cell of the grid; choose other ranges"
+        msg = f"{flow.title} has no value in any cell of the grid; choose other ranges"
         raise FieldError(msg)
-    title = made.title if len(made.title) <= MOST_TITLE else made.title[:MOST_TITLE] + "…"
+    title = flow.title if len(flow.title) <= MOST_TITLE else flow.title[:MOST_TITLE] + "…"
     field = FlowField.from_arrays(
         points,
         velocity,
         times=steps,
-        periodic=_closed(points) if made.surface else "",
+        periodic=_closed(points) if flow.surface else "",
         name=name or title,
     )
-    return replace(field, formula=made)
+    return replace(field, formula=flow)
 
 
-def _known(name: Any) -> tuple[str, tuple[str, str], dict[str, Any]]:
+def _known_formula(name: Any) -> tuple[str, tuple[str, str], dict[str, Any]]:
     key = name.replace(" ", "_") if isinstance(name, str) else ""
     if key not in KNOWN:
-        near = (
+        hint = (
             near_names(name, KNOWN)
             if isinstance(name, str)
             else f"expected one of: {', '.join(KNOWN)}"
         )
         msg = (
             f"only one expression is given, {name!r}, and it is not the name of a known formula; "
-            f"{near}"
+            f"{hint}"
         )
         raise FieldError(msg)
-    title, expressions, known = KNOWN[key]
-    return title, expressions, dict(known)
+    title, expressions, arguments = KNOWN[key]
+    return title, expressions, dict(arguments)
 
 
-def _times(times: ArrayLike) -> Any:
+def _times(times: ArrayLike) -> Floats:
     values = checked_array("times", times, expected="times that increase, such as [0, 1, 2]")
     if (
         values.ndim != 1
@@ -172,7 +172,7 @@ def _times(times: ArrayLike) -> Any:
 
 
 def _closed(points: Floats) -> str:
-    """Return the axes whose first line of nodes (J, I) is the last one too."""
+    """Return the axes whose first and last lines of nodes (J, I) coincide."""
     size = np.ptp(points, axis=(0, 1)).max() * SAME_PLACE
     ends = {"j": points[-1] - points[0], "i": points[:, -1] - points[:, 0]}
-    return "".join(axis for axis, away in ends.items() if np.abs(away).max() < size)
+    return "".join(axis for axis, gap in ends.items() if np.abs(gap).max() < size)

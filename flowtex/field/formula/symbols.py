@@ -1,4 +1,4 @@
-"""Expressions of sympy as trees, node by node; sympy is not loaded for it, and no text is read."""
+"""Expressions of sympy as trees, node by node, without loading sympy or parsing text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from flowtex.field.formula.grammar import FUNCTIONS, MOST_DEPTH, FormulaError, Tree
 
-#: Classes of sympy that are operations here, where the names differ.
+#: Operations for classes of sympy with other names.
 _NAMES = {
     "Add": "+",
     "Mul": "*",
@@ -21,15 +21,15 @@ _NAMES = {
 }
 
 
-def is_symbolic(expression: Any) -> bool:
-    """Whether this is an expression of sympy's."""
+def is_symbolic(expression: object) -> bool:
+    """Return whether this is an expression of sympy's."""
     return type(expression).__module__.startswith("sympy.") and hasattr(expression, "args")
 
 
 def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
-    """Return the tree of an expression in which some names are known.
+    """Return the tree of an expression with these names.
 
-    Raises a FormulaError when there is more in it than formulas have.
+    Raises a FormulaError for operations that formulas do not have.
     """
     kind = type(expression).__name__
     if depth > MOST_DEPTH:
@@ -38,9 +38,9 @@ def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
     if kind in ("Symbol", "Dummy"):
         if expression.name in names:
             return str(expression.name)
-        known = ", ".join(sorted(names))
+        listed = ", ".join(sorted(names))
         msg = (
-            f"{expression.name} is unknown; known are {known}. Give a parameter its value, as in "
+            f"{expression.name} is unknown; known are {listed}. Give a parameter its value, as in "
             f"{expression.name}=1"
         )
         raise FormulaError(msg)
@@ -66,7 +66,7 @@ def tree_of(expression: Any, names: Collection[str], depth: int = 0) -> Tree:
             f"{functions}"
         )
         raise FormulaError(msg)
-    given = [tree_of(part, names, depth + 1) for part in expression.args]
+    arguments = [tree_of(part, names, depth + 1) for part in expression.args]
     if name == "^":
-        return reduce(lambda base, power: (name, base, power), given)
-    return (name, *given)
+        return reduce(lambda base, power: (name, base, power), arguments)
+    return (name, *arguments)

@@ -1,1 +1,1 @@
-"""Structured surfaces: how their axes close, their geometry, and values at their nodes."""
+"""Structured surfaces: closing of axes, geometry, and values at nodes."""

@@ -1,4 +1,4 @@
-"""From what a caller has of a structured surface to arrays that make a field."""
+"""Arguments of a field on a structured surface as its arrays."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from flowtex.field.validation import (
 class GridNodes:
     """Nodes that make a field, with the geometry between them.
 
-    ``moves`` says whether they do at the first time, or at any time if all are in memory.
+    ``moves`` is whether any node moves at the first time, or at any time if all are in memory.
     """
 
     surface: GridSurface
@@ -54,31 +54,31 @@ def grid_nodes(
     sign_free: bool,
     on_globe: bool,
 ) -> GridNodes:
-    """Check arrays, and bring them into the form of a field; of late steps the first is read."""
+    """Check arrays, and convert them for a field; of late steps the first is read."""
     if not isinstance(scalars, Mapping):
         msg = f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
         raise FieldError(msg)
     p, masked_points = as_numbers("points", node_positions(points))
     v, masked_velocity = as_numbers("velocity", first_step(velocity))
     late = {name: steps for name, steps in scalars.items() if isinstance(steps, LazySteps)}
-    given = {k: with_gaps(f"scalars[{k!r}]", s) for k, s in scalars.items() if k not in late}
-    shown = None if valid is None else with_gaps("valid", valid)
+    in_memory = {k: with_gaps(f"scalars[{k!r}]", s) for k, s in scalars.items() if k not in late}
+    mask = None if valid is None else with_gaps("valid", valid)
     count = len(velocity) if isinstance(velocity, LazySteps) or v.ndim == 4 else 1
-    faults = shape_faults(p, v, count, times, shown, periodic, given)
+    faults = shape_faults(p, v, count, times, mask, periodic, in_memory)
     raise_faults(faults + (sign_free_faults(v) if sign_free else []))
     v = v[None] if v.ndim == 3 else v
-    # What was given is not changed, and copied once.
+    # Arguments are copied once, and not changed.
     p, v = (three_components(a) if a.shape[-1] == 2 else a.copy("C") for a in (p, v))
     ok = finite_nodes(p) & ~masked_points
     ok &= finite_nodes(v) & ~masked_velocity
-    if shown is not None:
-        ok &= np.nan_to_num(shown) != 0
+    if mask is not None:
+        ok &= np.nan_to_num(mask) != 0
     # Fill values must not take part in computations.
     v[:, ~ok] = np.nan
     raise_faults(range_faults(p, v, ok) or node_faults(p, ok))
     p[~known_positions(p, ok)] = np.nan
     v = with_equal_ends(v) if sign_free else v
-    data = {key: scalar_steps(values, p.shape[:2]) for key, values in given.items()}
+    data = {key: scalar_steps(values, p.shape[:2]) for key, values in in_memory.items()}
     nodal, closed = close_axes(NodalArrays(p, v, ok, data), periodic)
     v, ok = nodal.velocity, nodal.valid
     surface = GridSurface(nodal.points, ok, closed, on_globe=on_globe)

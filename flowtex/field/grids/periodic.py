@@ -1,10 +1,9 @@
-"""Which axes of a structured surface close on themselves, and how their arrays are closed.
+"""Detection of axes that close on themselves, and closing of their arrays.
 
 Meshes close in three ways: the last line of nodes repeats the first (an O-grid in PLOT3D), the
 last line stops one cell short of the first (a sphere or ring without the repeated line), or the
 axis is global longitude on a flat map, where the first line comes back 360 degrees further on.
-In a field there is one way only: the last line is the first one again. A line is appended where
-it is missing.
+In a field the last line always repeats the first one. A line is appended where it is missing.
 """
 
 from __future__ import annotations
@@ -25,13 +24,13 @@ A = TypeVar("A", bound=AnyArray)
 SAME_LINE_EXTENT = 1e-6
 #: So do lines closer than this share of the cells beside them.
 SAME_LINE_CELLS = 1e-2
-#: Number of lines that a ring with a gap has at least.
+#: Least number of lines of a ring with a gap.
 MIN_RING_LINES = 8
 
 
 @dataclass(frozen=True)
 class Closure:
-    """How one axis closes: whether it does, and the line to append, or ``None``."""
+    """Whether one axis closes, and the line to append, or ``None``."""
 
     periodic: bool
     line: Floats | None = None
@@ -56,8 +55,8 @@ def close_axes(nodal: NodalArrays, periodic: str | None) -> tuple[NodalArrays, t
     for axis, letter in ((0, "j"), (1, "i")):
         lines = np.swapaxes(nodal.points, 0, axis)
         if periodic is None:
-            known = np.swapaxes(nodal.valid, 0, axis)[..., None]
-            closure = find_closure(lines if known.all() else np.where(known, lines, np.nan))
+            valid = np.swapaxes(nodal.valid, 0, axis)[..., None]
+            closure = find_closure(lines if valid.all() else np.where(valid, lines, np.nan))
         elif letter in periodic:
             closure = _requested_closure(lines, np.swapaxes(nodal.velocity, 1, axis + 1))
         else:
@@ -94,7 +93,7 @@ def find_closure(points: Floats) -> Closure:
 
 
 def _requested_closure(points: Floats, velocity: Floats) -> Closure:
-    """Close the first axis as asked, by a line unless the last one has the values of the first."""
+    """Close the first axis on request, by a line unless the last one has the first's values."""
     closure = find_closure(points)
     if closure.periodic:
         return closure
@@ -108,40 +107,40 @@ def _requested_closure(points: Floats, velocity: Floats) -> Closure:
 
 
 def _extent(points: Floats) -> float:
-    known = finite_nodes(points)
-    if not known.any():
+    finite = finite_nodes(points)
+    if not finite.any():
         return 0.0
-    low, high = bounds(points if known.all() else points[known])
+    low, high = bounds(points if finite.all() else points[finite])
     return float(np.linalg.norm(high - low))
 
 
 def _coincide(points: Floats, extent: float) -> bool:
-    """Whether the last line lies on the first one, and the lines between do not."""
-    middle = _worst(points[len(points) // 2] - points[0])
+    """Return whether the last line lies on the first one, and the lines between do not."""
+    middle = _greatest_length(points[len(points) // 2] - points[0])
     gap = np.linalg.norm(points[-1] - points[0], axis=-1)
     ends = np.stack([points[1] - points[0], points[-1] - points[-2]])
     steps = np.linalg.norm(ends, axis=-1).max(axis=0)
-    # Coordinates far from the origin, or of few digits, miss by more than that share of the extent.
+    # Coordinates far from the origin, or of few digits, differ by more than a share of the extent.
     with np.errstate(invalid="ignore"):
         close = gap <= np.fmax(SAME_LINE_EXTENT * extent, SAME_LINE_CELLS * steps)
-    known = np.isfinite(gap)
-    return bool(known.any()) and bool(close[known].all()) and SAME_LINE_EXTENT * extent < middle
+    finite = np.isfinite(gap)
+    return bool(finite.any()) and bool(close[finite].all()) and SAME_LINE_EXTENT * extent < middle
 
 
 def _one_cell_short(points: Floats) -> bool:
-    """Whether the gap between the last line and the first is one cell among others."""
+    """Return whether the gap between the last line and the first is one cell among others."""
     first, last, gap = (
         np.linalg.norm(points[a] - points[b], axis=-1) for a, b in ((1, 0), (-1, -2), (-1, 0))
     )
-    known = np.isfinite(gap)
+    finite = np.isfinite(gap)
     with np.errstate(invalid="ignore"):
         near = gap <= 1.5 * np.maximum(first, last)
-    if not ((gap[known] > 0).any() and near[known].all()):
+    if not ((gap[finite] > 0).any() and near[finite].all()):
         return False
     steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
     with np.errstate(invalid="ignore"):
         around = np.nansum(steps, axis=0) >= 0.75 * len(steps) * gap
-    return bool(around[known].all())
+    return bool(around[finite].all())
 
 
 def _longitude(points: Floats) -> Closure | None:
@@ -153,18 +152,18 @@ def _longitude(points: Floats) -> Closure | None:
     steps = np.diff(x[:, 0])
     even = len(steps) > 3 and np.ptp(steps) <= 1e-3 * abs(steps[0]) and steps[0] != 0
     span, step = abs(x[-1, 0] - x[0, 0]), abs(steps[0])
-    whole, short = abs(span - 360) <= 1e-3 * step, abs(span + step - 360) <= 1e-2 * step
-    if not (even and (whole or short)):
+    repeats, ends_short = abs(span - 360) <= 1e-3 * step, abs(span + step - 360) <= 1e-2 * step
+    if not (even and (repeats or ends_short)):
         return None
     if not np.isfinite(points).all() or np.ptp(points[..., 2]) > 0:
         return None
     same = np.ptp(x, axis=1).max() <= 1e-6 * 360
     if not (same and np.abs(y).max() <= 90.01 and np.ptp(y) > 0):
         return None
-    return Closure(periodic=True, line=None if whole else 2 * points[-1:] - points[-2:-1])
+    return Closure(periodic=True, line=None if repeats else 2 * points[-1:] - points[-2:-1])
 
 
-def _worst(difference: Floats) -> float:
+def _greatest_length(difference: Floats) -> float:
     lengths = np.linalg.norm(difference, axis=-1)
     lengths = lengths[np.isfinite(lengths)]
     return float(lengths.max()) if len(lengths) else float("inf")
@@ -176,7 +175,7 @@ def _repeat_first(a: A, axis: int) -> A:
 
 
 def _join_ends(nodal: NodalArrays, axis: int) -> None:
-    """Give two coinciding lines one velocity, in place: neither side of the seam saw the other."""
+    """Give two coinciding lines one velocity, in place; data may differ across the seam."""
     velocity, valid = nodal.velocity, nodal.valid
     v, ok = np.swapaxes(velocity, 1, axis + 1), np.swapaxes(valid, 0, axis)
     first, last = ok[0].copy(), ok[-1].copy()

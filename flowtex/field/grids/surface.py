@@ -35,7 +35,7 @@ CORNERS = np.array((((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0))))
 ACROSS = np.array((((0, 1), (0, 0), (-1, 0)), ((1, 0), (0, -1), (0, 0))))
 #: Index of each corner of the cells in arrays over the nodes.
 CELL_CORNERS = tuple(product((slice(None, -1), slice(1, None)), repeat=2))
-#: Lines from a pole over which the size of the cells comes to be their length alone.
+#: Lines from a pole over which the size of the cells turns into their length.
 POLE_LINES = 8
 
 
@@ -43,8 +43,8 @@ class GridSurface(Surface):
     """Nodes of a structured surface, (J, I, 3), in the mesh's own units.
 
     ``valid`` (J, I) marks nodes that carry data. Where the (j, i) axis is ``periodic``, its last
-    line of nodes is the first one again, displaced by ``offset`` on a flat map. ``on_globe`` says
-    that it lies on a globe around the origin, with north at +z.
+    line of nodes is the first one again, displaced by ``offset`` on a flat map. ``on_globe`` is
+    whether it lies on a globe around the origin, with north at +z.
     """
 
     def __init__(
@@ -53,10 +53,10 @@ class GridSurface(Surface):
         self.valid = valid
         self.periodic = periodic
         self.on_globe = on_globe
-        #: Nodes with their own position, (J, I); the others have that of the nearest one.
+        #: Nodes with a known position, (J, I); the others have that of the nearest one.
         self.has_position = known_positions(points, valid)
         self.points = fill_blanked(points, self.has_position)
-        #: What to add to a position when index j, or i, grows by one period, (2, 3).
+        #: Displacement by one period of index j, or i, (2, 3).
         self.offset = np.stack(
             [
                 np.mean(self.points[-1] - self.points[0], axis=0) * periodic[0],
@@ -80,7 +80,7 @@ class GridSurface(Surface):
 
     @property
     def cell_corners(self) -> list[Any]:
-        """For each corner of the cells, the index that takes an array over nodes to it."""
+        """Index of each corner of the cells in arrays over the nodes."""
         return list(CELL_CORNERS)
 
     @property
@@ -106,29 +106,29 @@ class GridSurface(Surface):
         return np.stack([first, first + 1], axis=-1).ravel()
 
     def is_drawn(self, number: Indices) -> Bools:
-        """Whether triangles (N,) are drawn."""
+        """Return whether triangles (N,) are drawn."""
         return np.asarray(self.cells.ravel()[number >> 1])
 
     def corners_of(self, number: Indices) -> Indices:
-        """Nodes (N, 3) at the corners of triangles (N,), counted row by row."""
+        """Return nodes (N, 3) at the corners of triangles (N,), counted row by row."""
         row, column = np.divmod(number >> 1, self.shape[1] - 1)
         j, i = np.moveaxis(CORNERS[number & 1], -1, 0)
         return np.asarray((row[:, None] + j) * self.shape[1] + column[:, None] + i)
 
     def beside(self, number: Indices, corner: int) -> Indices:
-        """Triangles (N,) across the edges opposite to a corner, -1 at a border."""
+        """Return triangles (N,) across the edges opposite to a corner, -1 at a border."""
         lines = self.shape[0] - 1, self.shape[1] - 1
         cell = [*np.divmod(number >> 1, lines[1])]
         outside = np.zeros(len(number), dtype=bool)
         for axis, count in enumerate(lines):
-            there = cell[axis] + ACROSS[number & 1, corner, axis]
+            neighbour = cell[axis] + ACROSS[number & 1, corner, axis]
             if not self.closes[axis]:
-                outside |= (there < 0) | (there >= count)
-            cell[axis] = there % count
+                outside |= (neighbour < 0) | (neighbour >= count)
+            cell[axis] = neighbour % count
         return np.where(outside, -1, 2 * (cell[0] * lines[1] + cell[1]) + 1 - (number & 1))
 
     def index_of(self, number: Indices, weights: Floats) -> Floats:
-        """Positions (N, 2) as (i, j) of shares (N, 3) of the corners of triangles (N,)."""
+        """Return positions (N, 2) as (i, j) of shares (N, 3) of corners of triangles (N,)."""
         place = np.einsum("nk,nkc->nc", weights, CORNERS[number & 1])
         return np.asarray(place + np.stack(np.divmod(number >> 1, self.shape[1] - 1), -1))[:, ::-1]
 
@@ -146,7 +146,7 @@ class GridSurface(Surface):
         cells = [
             {min(int(x), n - 2), max(math.ceil(x) - 1, 0)} for x, n in ((j, rows), (i, columns))
         ]
-        for row, column in product(*(sorted(some, reverse=True) for some in cells)):
+        for row, column in product(*(sorted(choice, reverse=True) for choice in cells)):
             if self.cells[row, column]:
                 b, a = j - row, i - column
                 number = 2 * (row * (columns - 1) + column) + int(a < b)
@@ -160,22 +160,22 @@ class GridSurface(Surface):
 
     @cached_property
     def apart(self) -> Bools:
-        """Nodes of what is drawn that have their own place, (J, I); all where none has.
+        """Drawn nodes at distinct places, (J, I); all drawn nodes where none is.
 
         Where many nodes lie at one point, those nearest to a point beside it may be on the far
-        side; the nodes of the next line do better.
+        side; the nodes of the next line are more useful.
         """
-        drawn, one = np.zeros((2, *self.shape), dtype=bool)
+        drawn, shared = np.zeros((2, *self.shape), dtype=bool)
         drawn.ravel()[self.corners_of(self.drawn)] = True
         for axis in (0, 1):
-            lines, same = np.swapaxes(self.points, 0, axis), np.swapaxes(one, 0, axis)
+            lines, same = np.swapaxes(self.points, 0, axis), np.swapaxes(shared, 0, axis)
             steps = np.linalg.norm(np.diff(lines, axis=0), axis=-1)
             together = steps <= SAME_POINT_SHARE * self.extent
             same[:-1] |= together
             same[1:] |= together
         for pole in self.poles or ():
-            pole.lines(one)[pole.line] = True
-        return drawn & ~one if (drawn & ~one).any() else drawn
+            pole.lines(shared)[pole.line] = True
+        return drawn & ~shared if (drawn & ~shared).any() else drawn
 
     @cached_property
     def padded(self) -> Floats:
@@ -214,9 +214,9 @@ class GridSurface(Surface):
     def cell_size(self) -> Floats:
         """Smooth measure of the size of the cells around each node, (J, I).
 
-        The smaller extent counts most. Towards a pole, where cells have no width, it is their
-        length that counts in the end. Other collapsed nodes get a hundredth of the typical
-        size, so that a length measured in cells stays finite there.
+        The smaller extent dominates, but towards a pole, where cells have no width, their length.
+        Other collapsed nodes get a hundredth of the typical size, so that a length measured in
+        cells stays finite there.
         """
         inverse = np.zeros(self.shape)
         lengths = np.sqrt(np.einsum("djic,djic->dji", self.tangents, self.tangents))
@@ -263,10 +263,10 @@ class GridSurface(Surface):
 class CubicMap:
     """Positions of a surface relative to ``origin`` (3,), along the rows of ``frame`` (C, 3).
 
-    Made for millions of look-ups: each coordinate is its own array. Catmull-Rom's cubic between two
+    For millions of look-ups each coordinate is a separate array. Catmull-Rom's cubic between two
     nodes is the line between them, and -s (1 - s) / 2 times the line between their second
     differences; of both axes together, these four are bilinear between the nodes. A second
-    difference that is too small to count need not be looked up.
+    difference that is too small to matter is not looked up.
     """
 
     def __init__(
@@ -285,7 +285,7 @@ class CubicMap:
             np.ascontiguousarray(part, dtype).reshape(len(frame), -1)
             for part in (*parts, np.diff(by_i, 2, axis=1))
         ]
-        #: What the second differences count at most, (C,) each.
+        #: Greatest effects of the second differences, (C,) each.
         self._most = [
             np.abs(part).max(axis=1, initial=0) * most
             for part, most in zip(self._parts[1:], (1 / 8, 1 / 8, 1 / 64), strict=True)
@@ -299,7 +299,7 @@ class CubicMap:
     def at(
         self, i: AnyArray, j: AnyArray, start: tuple[Any, Any] = (0, 0), error: float = 0.0
     ) -> AnyArray:
-        """Positions (C, N) of (N,) each in cells from the nodes ``start``, but for some error."""
+        """Return positions (C, N) at (N,) each in cells from the nodes ``start``, to an error."""
         rows, columns = self._shape
         closed_j, closed_i = self._periodic
         if self._poles is not None:
@@ -356,7 +356,7 @@ def faces_of(cells: Bools) -> Indices:
 
 
 def known_positions(points: Floats, valid: Bools) -> Bools:
-    """Nodes whose coordinates can be trusted: blanked ones often hold a fill value."""
+    """Return nodes with trusted coordinates; blanked ones often hold a fill value."""
     finite = finite_nodes(points)
     # If all nodes with coordinates are valid, or none, nothing has to be distinguished.
     if not (valid & finite).any() or not (finite & ~valid).any():
@@ -376,9 +376,9 @@ def _ghosts(p: Floats, good: Bools, offset: Floats, *, periodic: bool) -> tuple[
 
 
 def _over(ring: Floats, pole: Pole) -> Floats:
-    """Line beyond a pole, (n + 3, 3), from the first one before it; both with ghost nodes."""
-    at = pole.opposite(np.arange(pole.cells, dtype=float))
-    k, s = np.divmod(at, 1.0)
+    """Return the line beyond a pole, (n + 3, 3), from that before it; both with ghost nodes."""
+    opposite = pole.opposite(np.arange(pole.cells, dtype=float))
+    k, s = np.divmod(opposite, 1.0)
     first = k.astype(np.intp)
     nodes = ring[1:-2]
     line = sum(
@@ -388,7 +388,7 @@ def _over(ring: Floats, pole: Pole) -> Floats:
 
 
 def _beyond(p: Floats, good: Bools) -> Floats:
-    """Continue the first lines of nodes by one line before the first.
+    """Return one line of nodes before the first, from the first lines.
 
     The continuation is quadratic, which keeps the slope at the border of second order, but
     bends the slope by half at most: with cells that grow threefold, as where nodes are spaced
@@ -404,15 +404,15 @@ def _beyond(p: Floats, good: Bools) -> Floats:
 
 
 def _difference(
-    before: Floats, here: Floats, after: Floats, good_before: Bools, good_after: Bools, out: Floats
+    before: Floats, nodes: Floats, after: Floats, good_before: Bools, good_after: Bools, out: Floats
 ) -> None:
-    """Central difference, one-sided beside a node whose coordinates cannot be trusted."""
+    """Write central differences, one-sided beside a node without trusted coordinates."""
     if good_before.all() and good_after.all():
-        np.subtract(here, before, out=out)
-        out += after - here
+        np.subtract(nodes, before, out=out)
+        out += after - nodes
         out /= 2
         return
-    backward = np.where(good_before[..., None], here - before, 0.0)
-    forward = np.where(good_after[..., None], after - here, 0.0)
+    backward = np.where(good_before[..., None], nodes - before, 0.0)
+    forward = np.where(good_after[..., None], after - nodes, 0.0)
     count = np.maximum(good_before.astype(float) + good_after, 1.0)
     np.divide(backward + forward, count[..., None], out=out)

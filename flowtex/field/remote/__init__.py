@@ -1,4 +1,4 @@
-"""Files that are read in their own process."""
+"""Files that are read in a separate process."""
 
 from __future__ import annotations
 

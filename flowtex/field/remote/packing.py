@@ -10,8 +10,10 @@ from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth import Projection
 from flowtex.field.field import FlowField
 from flowtex.field.source import Source
-from flowtex.field.steps import LazySteps
+from flowtex.field.steps import LazySteps, Steps
 
+#: Reads a step.
+Read = Callable[[int], Floats]
 #: Attributes of a field that are arrays, and those that are values of JSON.
 ARRAYS = ("points", "velocity", "times", "valid", "has_position", "triangles")
 VALUES = (
@@ -32,14 +34,14 @@ CHOICES = (
 
 
 def describe_source(source: Source) -> dict[str, Any]:
-    """Return what can be chosen of a source."""
+    """Return the choices of a source."""
     return {name: getattr(source, name) for name in CHOICES}
 
 
-def take_description(source: Source, described: Mapping[str, Any]) -> None:
-    """Set what can be chosen of a source, as :func:`describe_source` returns it."""
+def take_description(source: Source, description: Mapping[str, Any]) -> None:
+    """Set the choices of a source, from :func:`describe_source`."""
     for name in CHOICES:
-        value = described[name]
+        value = description[name]
         if isinstance(value, dict):
             value = {key: tuple(items) for key, items in value.items()}
         setattr(source, name, tuple(value) if isinstance(value, list) else value)
@@ -51,7 +53,7 @@ def pack_field(
     """Return a field as a value and arrays; ``keep`` returns a number for steps read later."""
     arrays: list[AnyArray] = []
 
-    def packed(array: Any) -> Any:
+    def packed(array: Steps | None) -> Any:
         if array is None:
             return None
         if isinstance(array, LazySteps):
@@ -68,22 +70,21 @@ def pack_field(
 
 
 def unpack_field(
-    value: Mapping[str, Any], arrays: Sequence[AnyArray], read: Callable[[int], Any]
+    value: Mapping[str, Any], arrays: Sequence[AnyArray], read: Callable[[int], Read]
 ) -> FlowField:
     """Return a field from :func:`pack_field`; a ValueError where arrays do not fit together."""
 
-    def unpacked(about: Any) -> Any:
-        if isinstance(about, dict):
-            steps: Callable[[int], Floats] = read(int(about["steps"]))
-            return LazySteps(int(about["count"]), steps)
-        return None if about is None else arrays[about]
+    def unpacked(packed: Any) -> Any:
+        if isinstance(packed, dict):
+            return LazySteps(int(packed["count"]), read(int(packed["steps"])))
+        return None if packed is None else arrays[packed]
 
-    given = {name: value[name] for name in VALUES}
-    given["periodic"] = (bool(value["periodic"][0]), bool(value["periodic"][1]))
+    values = {name: value[name] for name in VALUES}
+    values["periodic"] = (bool(value["periodic"][0]), bool(value["periodic"][1]))
     field = FlowField(
         **{name: unpacked(value["arrays"][name]) for name in ARRAYS},
-        **given,
-        scalars={name: unpacked(about) for name, about in value["scalars"].items()},
+        **values,
+        scalars={name: unpacked(packed) for name, packed in value["scalars"].items()},
         start=date_of(value["start"]),
         projection=Projection.of(value["projection"]),
     )
@@ -94,7 +95,7 @@ def unpack_field(
 def _check(field: FlowField) -> None:
     """Raise an error if the shapes, types or numbers of nodes do not describe a field."""
     (rows, columns), steps = field.shape, len(field.times)
-    shapes: dict[str, tuple[Any, tuple[int, ...], str]] = {
+    shapes: dict[str, tuple[Steps, tuple[int, ...], str]] = {
         "points": (field.points, (rows, columns, 3), "f"),
         "velocity": (field.velocity, (steps, rows, columns, 3), "f"),
         "valid": (field.valid, (rows, columns), "b"),

@@ -1,4 +1,4 @@
-"""What runs in the process that reads a file: a source that stays open, and answers requests."""
+"""The process that reads a file: it keeps a source open, and answers requests."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from flowtex.field.steps import LazySteps
 
 
 class Reader:
-    """Answers the requests of a :class:`~flowtex.field.remote.RemoteSource`."""
+    """Handler of the requests of a :class:`~flowtex.field.remote.RemoteSource`."""
 
     def __init__(self) -> None:
         self._source: Source | None = None
-        #: Steps that are read later, by the numbers under which they are known.
+        #: Steps that are read later, by their numbers in requests.
         self._steps: dict[int, LazySteps] = {}
         self._count = 0
 
     def __call__(self, request: dict[str, Any]) -> Answer:
-        """Do what is requested; the answer has its value and the warnings on the way."""
+        """Carry out a request; the answer has its value, and the warnings of the work."""
         for number in request.pop("forgotten", ()):
             self._steps.pop(number, None)
         action = getattr(self, f"do_{request.pop('do')}")
@@ -34,21 +34,21 @@ class Reader:
                 value, arrays = action(**request)
         except (OSError, ImportError) as error:
             raise FieldError(str(error)) from error
-        told = [
+        warned = [
             [warning.category.__name__, str(warning.message)]
             for warning in caught
             if issubclass(warning.category, UserWarning)
         ]
-        return {"value": value, "warnings": told}, arrays
+        return {"value": value, "warnings": warned}, arrays
 
     def do_open(self, paths: list[str]) -> Answer:
         """Open a file, or several that belong together."""
-        several = [Path(path) for path in paths]
-        self._source = open_source(several if len(several) > 1 else several[0])
+        files = [Path(path) for path in paths]
+        self._source = open_source(files if len(files) > 1 else files[0])
         return describe_source(self._source), []
 
     def do_part(self, block: str | None) -> Answer:
-        """Describe what can be chosen of a block."""
+        """Describe the choices of a block."""
         return describe_source(self._opened.part(block)), []
 
     def do_plane_of(self, level: float | str) -> Answer:

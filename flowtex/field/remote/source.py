@@ -1,4 +1,4 @@
-"""A file that is open in another process: what there is to choose from it, and its fields."""
+"""A file that is open in another process: its choices, and its fields."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from flowtex.field.source import Source
 _log = logging.getLogger(__name__)
 
 READER = "flowtex.field.remote.reader:Reader"
-#: What readers need, that of meshes first.
+#: Modules of readers, those for meshes first.
 PRELOAD = (
     *("flowtex.field.remote.reader", "pyvista", "vtkmodules.vtkIOXML", "vtkmodules.vtkIOLegacy"),
     *("xarray", "cf_xarray", "pyproj", "netCDF4", "dask.array", "cfgrib"),
 )
-#: A request may take so long, and longer where there is much to read.
+#: Time limit of a request, which a large file extends by its bytes per second.
 REQUEST_TIMEOUT_S, BYTES_PER_S = 60.0, 10e6
-#: How often a file is read that changes meanwhile.
+#: Most readings of a file that changes meanwhile.
 MOST_READINGS = 3
 #: Classes of warnings by their names; others are plain ones of the user.
 WARNINGS = {kind.__name__: kind for kind in (Notice, DatasetNotice)}
@@ -43,11 +43,11 @@ class RemoteSource(Source):
     """
 
     def __init__(
-        self, file: _OpenFile, described: Mapping[str, Any], block: str | None = None
+        self, file: _OpenFile, description: Mapping[str, Any], block: str | None = None
     ) -> None:
         super().__init__()
         try:
-            take_description(self, described)
+            take_description(self, description)
         except (TypeError, KeyError, AttributeError) as error:
             raise FieldError(file.malformed(error)) from error
         self.identity = file.identity
@@ -60,7 +60,7 @@ class RemoteSource(Source):
         return self._file.child.alive
 
     def close(self) -> None:
-        """End its process."""
+        """End the process of the file."""
         self._file.child.close()
 
     def part(self, block: str | None = None) -> Source:
@@ -88,7 +88,7 @@ class RemoteSource(Source):
 
 
 class _OpenFile:
-    """The process in which a file is open, and what is asked of it."""
+    """The process in which a file is open, and requests to it."""
 
     def __init__(self, paths: list[Path]) -> None:
         self.paths = paths
@@ -99,35 +99,35 @@ class _OpenFile:
         self.child = Child(READER, preload=PRELOAD)
 
     def ask(self, do: str, **request: Any) -> tuple[Any, list[AnyArray]]:
-        """Return an answer, with the warnings on the way; errors start with the path."""
+        """Return the answer to a request, and issue its warnings; errors start with the path."""
         forgotten = [self._forgotten.popleft() for _ in range(len(self._forgotten))]
         message = {"do": do, "forgotten": forgotten, **request}
         try:
             answer, arrays = self.child.request(message, timeout=self._timeout)
-            value, told = answer["value"], answer["warnings"]
+            value, warned = answer["value"], answer["warnings"]
         except ChildError as error:
             raise FieldError(self._fault(error)) from error
         except (TypeError, KeyError) as error:
             raise FieldError(self.malformed(error)) from error
-        for kind, text in told:
+        for kind, text in warned:
             notify(str(text), WARNINGS.get(kind, UserWarning))
         return value, arrays
 
-    def field(self, chosen: dict[str, Any]) -> FlowField:
-        value, arrays = self.ask("field", **chosen)
+    def field(self, options: dict[str, Any]) -> FlowField:
+        value, arrays = self.ask("field", **options)
         try:
             return unpack_field(value, arrays, lambda number: _RemoteSteps(self, number))
         except (TypeError, KeyError, ValueError, IndexError, AttributeError) as error:
             raise FieldError(self.malformed(error)) from error
 
     def check(self) -> None:
-        """Raise where the file is not any more what was opened."""
+        """Raise a FieldError if the file has changed since it was opened."""
         if file_identity(self.paths) != self.identity:
             msg = f"{self.paths[0]}: the file has changed since it was opened; open it again"
             raise FieldError(msg)
 
     def forget(self, number: int) -> None:
-        """Let the other process forget steps, when it is next asked for something."""
+        """Let the other process forget steps, with the next request."""
         self._forgotten.append(number)
 
     def _fault(self, error: ChildError) -> str:
@@ -151,7 +151,7 @@ class _OpenFile:
 
 
 class _RemoteSteps:
-    """Reads steps of a field from the other process, which keeps them as long as this is there."""
+    """Reader of steps of a field from the other process, which keeps them while this lives."""
 
     def __init__(self, file: _OpenFile, number: int) -> None:
         self._file, self._number = file, number
@@ -177,5 +177,5 @@ def open_remote(paths: Sequence[Path]) -> RemoteSource:
 
 
 def prepare_readers() -> None:
-    """Load what reads files, in the background, so that the first one is soon open."""
+    """Load the readers of files in the background, so that the first file opens sooner."""
     prepare(PRELOAD)

@@ -1,4 +1,4 @@
-"""From what a caller has of triangles to arrays that make a field, and what had to be left out."""
+"""Arguments of a field on triangles as its arrays, without parts that cannot be drawn."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
-#: Twice the area of a triangle over the square of its longest side, below which it has none.
+#: Twice the area of a triangle over the square of its longest side, below which it is flat.
 FLAT_TRIANGLE = 1e-12
 
 
 @dataclass
 class TriangleNodes:
-    """Arrays of a field: nodes are a row, (1, N), as :mod:`flowtex.field.triangles` says."""
+    """Arrays of a field: nodes are a row, (1, N), see :mod:`flowtex.field.triangles`."""
 
     points: Floats
     triangles: Indices
@@ -49,7 +49,7 @@ def triangle_nodes(
     valid: ArrayLike | None,
     scalars: Mapping[str, Any],
 ) -> TriangleNodes:
-    """Check arrays, join what lies at one place, and leave out what cannot be drawn."""
+    """Check arrays, join nodes at one place, and leave out parts that cannot be drawn."""
     p, masked_points = as_numbers("points", points)
     v, masked = as_numbers("velocity", first_step(velocity))
     try:
@@ -57,25 +57,25 @@ def triangle_nodes(
     except ValueError as error:
         msg = f"triangles is not an array ({error}); expected three node numbers in every row"
         raise FieldError(msg) from error
-    shown = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
-    given = {name: with_gaps(f"scalars[{name!r}]", first_step(s)) for name, s in scalars.items()}
+    mask = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
+    arrays = {name: with_gaps(f"scalars[{name!r}]", first_step(s)) for name, s in scalars.items()}
     count = len(velocity) if v.ndim == 3 or isinstance(velocity, LazySteps) else 1
-    raise_faults(_faults(p, corners, v, count, times, shown, given))
+    raise_faults(_faults(p, corners, v, count, times, mask, arrays))
     p = three_components(p)
     v = three_components(v)
     v = (v[None] if v.ndim == 2 else v)[:, None]  # (T, 1, N, 3)
-    known = finite_nodes(p[None])[0] & ~masked_points & finite_nodes(v)[0] & ~masked
-    ok: Bools = np.asarray(known if shown is None else known & shown)
+    finite = finite_nodes(p[None])[0] & ~masked_points & finite_nodes(v)[0] & ~masked
+    ok: Bools = np.asarray(finite if mask is None else finite & mask)
     v = np.asarray(np.where(ok[:, None], v, np.nan))
     raise_faults(range_faults(p[None], v, ok[None]))
-    moving: Steps = v
+    steps: Steps = v
     if isinstance(velocity, LazySteps):
-        moving = velocity.map(partial(_row, ok))
+        steps = velocity.map(partial(_row, ok))
     data = {
         name: scalars[name].map(lambda step: step[None])
         if isinstance(scalars[name], LazySteps)
         else scalar_steps(s, (1, len(p)))
-        for name, s in given.items()
+        for name, s in arrays.items()
     }
     corners, pairs = _usable(p, corners.astype(np.intp))
     if not (ok[corners].all(axis=1)).any():
@@ -84,12 +84,12 @@ def triangle_nodes(
             "check the triangles and the mask"
         )
         raise FieldError(msg)
-    # What is not known about a place must not be computed with.
+    # Unknown positions must not take part in computations.
     p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
     same = merged_nodes(p, corners, pairs)
-    joined = same != np.arange(len(p))
-    if joined.any():
-        moved = joined[corners].any(axis=1)
+    is_joined = same != np.arange(len(p))
+    if is_joined.any():
+        moved = is_joined[corners].any(axis=1)
         corners = same[corners]
         moved[moved] = ~solid_triangles(p, corners[moved])
         corners = corners[~moved]
@@ -98,10 +98,10 @@ def triangle_nodes(
     used = np.flatnonzero(is_used)
     number = np.where(is_used, np.cumsum(is_used) - 1, -1)
     if len(used) < len(p):
-        ok, moving, data = _joined(number[same], len(used), ok, moving, data)
+        ok, steps, data = _joined(number[same], len(used), ok, steps, data)
         p = p[used]
-    moving = map_steps(moving, lambda step: np.where(ok[:, None], step, 0.0))
-    return TriangleNodes(p[None].copy("C"), number[corners], moving, ok[None], data)
+    steps = map_steps(steps, lambda step: np.where(ok[:, None], step, 0.0))
+    return TriangleNodes(p[None].copy("C"), number[corners], steps, ok[None], data)
 
 
 def _row(ok: Bools, step: Floats) -> Floats:
@@ -145,49 +145,49 @@ def solid_triangles(p: Floats, corners: Indices) -> Bools:
 
 
 def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
-    """Triangles with an area, each once, and pairs of nodes (n, 2) that needles make one."""
+    """Return solid triangles, each once, and pairs of nodes (n, 2) that needles join."""
     finite = finite_nodes(p[None])[0]
-    known = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
-    good = known.copy()
-    good[known] = solid_triangles(p, corners[known])
+    placed = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
+    good = placed.copy()
+    good[placed] = solid_triangles(p, corners[placed])
     once = ~repeated(corners)
-    flat = corners[known & ~good]
+    flat = corners[placed & ~good]
     is_point = needle_edges(p, flat)
-    words = [
+    counts = [
         (int((~is_point.any(axis=1)).sum()), "without area"),
         (int((good & ~once).sum()), "there twice"),
-        (int((~known).sum()), "at points that are not finite"),
+        (int((~placed).sum()), "at points that are not finite"),
     ]
-    told = ", ".join(f"{count:,} {what}" for count, what in words if count)
-    if told:
-        notify(f"triangles are left out: {told}", UserWarning)
+    listed = ", ".join(f"{count:,} {reason}" for count, reason in counts if count)
+    if listed:
+        notify(f"triangles are left out: {listed}", UserWarning)
     return corners[good & once], edges_of(flat)[is_point]
 
 
 def nodal_means(
     values: Steps, triangles: Indices, areas: Floats, nodes: int, known: Bools | None = None
 ) -> Steps:
-    """Means at the nodes, (T, N, ...), of values at triangles (T, M, ...), by area.
+    """Return means at the nodes, (T, N, ...), of values at triangles (T, M, ...), by area.
 
-    Faces with more corners, (M, K), have -1 for those that some of them lack. What is NaN, or not
-    ``known`` (M,), counts for nothing; a node without any has NaN.
+    Faces with up to K corners, (M, K), have -1 for missing ones. Values that are NaN, or not
+    ``known`` (M,), have no weight; a node without values has NaN.
     """
     at, face = triangles.ravel(), np.repeat(np.arange(len(triangles)), triangles.shape[1])
     weights = areas if known is None else np.where(known, areas, 0.0)
-    there = at >= 0
+    present = at >= 0
     matrix = scipy.sparse.csr_array(
-        (weights[face[there]], (at[there], face[there])), shape=(nodes, len(triangles))
+        (weights[face[present]], (at[present], face[present])), shape=(nodes, len(triangles))
     )
 
     return map_steps(values, partial(known_means, matrix=matrix))
 
 
 def known_means(values: Floats, matrix: scipy.sparse.csr_array) -> Floats:
-    """Means (n, ...) of known values (N, ...), weighted by rows of a matrix; NaN without any."""
+    """Return means (n, ...) of finite values (N, ...) by the rows of a matrix; NaN without any."""
     flat = values.reshape(len(values), -1)
-    known = np.asarray(np.isfinite(flat).all(axis=1))
-    sums = np.asarray(matrix @ np.where(known[:, None], flat, 0.0))
-    total = np.asarray(matrix @ known.astype(float))[:, None]
+    finite = np.asarray(np.isfinite(flat).all(axis=1))
+    sums = np.asarray(matrix @ np.where(finite[:, None], flat, 0.0))
+    total = np.asarray(matrix @ finite.astype(float))[:, None]
     means = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
     return np.asarray(means.reshape(-1, *values.shape[1:]))
 
@@ -195,7 +195,7 @@ def known_means(values: Floats, matrix: scipy.sparse.csr_array) -> Floats:
 def _joined(
     number: Indices, count: int, ok: Bools, v: Steps, data: Mapping[str, Floats]
 ) -> tuple[Bools, Floats, dict[str, Steps]]:
-    """Average what nodes at one place have; nodes with the number -1 are left out."""
+    """Average the values of nodes at one place; nodes with the number -1 are left out."""
     kept = np.flatnonzero(number >= 0)
     matrix = scipy.sparse.csr_array(
         (np.ones(len(kept)), (number[kept], kept)), shape=(count, len(number))
@@ -204,5 +204,5 @@ def _joined(
     def mean(step: Floats) -> Floats:
         return known_means(step[0], matrix)[None]
 
-    some = np.bincount(number[kept], ok[kept], count) > 0
-    return some, map_steps(v, mean), {name: map_steps(s, mean) for name, s in data.items()}
+    usable = np.bincount(number[kept], ok[kept], count) > 0
+    return usable, map_steps(v, mean), {name: map_steps(s, mean) for name, s in data.items()}

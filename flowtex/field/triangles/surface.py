@@ -1,8 +1,8 @@
 """A surface of triangles in space: its nodes, normals, sizes of cells, and points on it.
 
 Its tangents at the nodes are two orthonormal vectors of the tangent plane, so that components of a
-velocity "along i and j" are lengths there, and what is computed with tangents holds for both kinds
-of surfaces.
+velocity "along i and j" are lengths there, and computations with tangents hold for both kinds of
+surfaces.
 
 A point of the surface is given by two numbers (i, j), as on a structured surface: j is the number
 of the triangle plus the share of its second corner, i the share of its third.
@@ -54,7 +54,7 @@ class TriangleSurface(Surface):
 
     @property
     def cell_corners(self) -> list[Any]:
-        """For each corner of the triangles, the index that takes an array over nodes to it."""
+        """Index of each corner of the triangles in arrays over the nodes."""
         return [(0, nodes) for nodes in self.triangles.T]
 
     @property
@@ -114,9 +114,9 @@ class TriangleSurface(Surface):
         unit = np.divide(self.crosses, length, out=np.zeros_like(self.crosses), where=length > 0)
         corners = self.points[0][self.triangles]
         for k in range(3):
-            one = corners[:, (k + 1) % 3] - corners[:, k]
-            two = corners[:, (k + 2) % 3] - corners[:, k]
-            angle = np.arctan2(length[:, 0], np.einsum("mc,mc->m", one, two))
+            first = corners[:, (k + 1) % 3] - corners[:, k]
+            second = corners[:, (k + 2) % 3] - corners[:, k]
+            angle = np.arctan2(length[:, 0], np.einsum("mc,mc->m", first, second))
             for axis in range(3):
                 weights = angle * unit[:, axis]
                 total[:, axis] += np.bincount(self.triangles[:, k], weights, len(total))
@@ -133,9 +133,9 @@ class TriangleSurface(Surface):
         sign = np.where(n[:, 2] < 0, -1.0, 1.0)
         a = -1.0 / (sign + n[:, 2])
         b = n[:, 0] * n[:, 1] * a
-        one = np.stack([1 + sign * n[:, 0] ** 2 * a, sign * b, -sign * n[:, 0]], axis=-1)
-        two = np.stack([b, sign + n[:, 1] ** 2 * a, -n[:, 1]], axis=-1)
-        return np.asarray(np.stack([one, two])[:, None])
+        first = np.stack([1 + sign * n[:, 0] ** 2 * a, sign * b, -sign * n[:, 0]], axis=-1)
+        second = np.stack([b, sign + n[:, 1] ** 2 * a, -n[:, 1]], axis=-1)
+        return np.asarray(np.stack([first, second])[:, None])
 
     @cached_property
     def cell_size(self) -> Floats:
@@ -158,15 +158,15 @@ class TriangleSurface(Surface):
         return np.flatnonzero(self.cells)
 
     def is_drawn(self, number: Indices) -> Bools:
-        """Whether triangles (N,) are drawn."""
+        """Return whether triangles (N,) are drawn."""
         return np.asarray(self.cells[number])
 
     def corners_of(self, number: Indices) -> Indices:
-        """Nodes (N, 3) at the corners of triangles (N,)."""
+        """Return nodes (N, 3) at the corners of triangles (N,)."""
         return np.asarray(self.triangles[number])
 
     def beside(self, number: Indices, corner: int) -> Indices:
-        """Triangles (N,) across the edges opposite to a corner, -1 at a border."""
+        """Return triangles (N,) across the edges opposite to a corner, -1 at a border."""
         return np.asarray(self.neighbours[number, corner])
 
     def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats]:
@@ -190,7 +190,7 @@ class TriangleSurface(Surface):
 
     @cached_property
     def apart(self) -> Bools:
-        """Nodes of what is drawn, (1, N); those at one place are one."""
+        """Nodes of drawn triangles, (1, N); those at one place are one."""
         used = np.zeros(self.shape, dtype=bool)
         used[0, self.triangles[self.cells]] = True
         return used
@@ -204,13 +204,13 @@ class TriangleSurface(Surface):
         return index
 
     def corners_at(self, index: Floats) -> tuple[Indices, Floats]:
-        """Nodes (..., 3) and their shares (..., 3) at positions (..., 2) as (i, j)."""
+        """Return nodes (..., 3) and their shares (..., 3) at positions (..., 2) as (i, j)."""
         number = np.clip(np.floor(index[..., 1]).astype(np.intp), 0, len(self.triangles) - 1)
         second, third = index[..., 1] - number, index[..., 0]
         return self.triangles[number], np.stack([1 - second - third, second, third], axis=-1)
 
     def index_of(self, number: Indices, weights: Floats) -> Floats:
-        """Positions (..., 2) as (i, j) of shares (..., 3) of the corners of triangles (...)."""
+        """Return positions (..., 2) as (i, j) of shares (..., 3) of corners of triangles (...)."""
         second = np.clip(weights[..., 1], 0, MOST_SHARE)
         return np.stack([np.clip(weights[..., 2], 0, 1), number + second], axis=-1)
 
@@ -222,16 +222,15 @@ class TriangleSurface(Surface):
     def express(self, velocity: Floats) -> IndexVelocity:
         """Express a velocity (T, 1, N, 3) in the tangent planes.
 
-        At a node of a sharp edge that plane lies between the faces, and a velocity has a greater
-        part in it than in either of them. The speed there is the mean of those in the faces, as it
-        is all around.
+        At a node of a sharp edge that plane lies between the faces, and the part of a velocity in
+        it is greater than in each face. The speed there is the mean of those in the faces.
         """
         flow = super().express(velocity)
         if not self.sharp.any():
             return flow
         triangle, corner = np.nonzero(self.sharp[0][self.triangles])
         nodes = self.triangles[triangle, corner]
-        some, at = np.unique(nodes, return_inverse=True)
+        edge_nodes, at = np.unique(nodes, return_inverse=True)
         unit = self.crosses[triangle]
         unit = unit / np.maximum(np.linalg.norm(unit, axis=1, keepdims=True), np.finfo(float).tiny)
         count = np.bincount(at)
@@ -240,10 +239,10 @@ class TriangleSurface(Surface):
             v = velocity[step, 0, nodes]
             within = np.linalg.norm(v - np.sum(v * unit, axis=1, keepdims=True) * unit, axis=1)
             mean = np.bincount(at, within) / count
-            whole = speed[step, 0, some]
-            share = np.divide(mean, whole, out=np.zeros_like(mean), where=whole > 0).clip(max=1.0)
-            speed[step, 0, some] *= share
-            components[step, 0, some] *= share[:, None]
+            total = speed[step, 0, edge_nodes]
+            share = np.divide(mean, total, out=np.zeros_like(mean), where=total > 0).clip(max=1.0)
+            speed[step, 0, edge_nodes] *= share
+            components[step, 0, edge_nodes] *= share[:, None]
         return replace(flow, components=components, speed=speed)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""How triangles are joined: shared points, neighbours across edges, which way they face."""
+"""Topology of triangles: shared points, neighbours across edges, and orientation."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ SAME_NODE_SHARE = 1e-9
 #: Edges of a triangle without area that are shorter than this share of the longest are a point.
 #: Sections have them near nodes that lie in the plane up to rounding in single precision.
 NEEDLE_SHARE = 1e-4
-#: Cosine of the angle between the normals of a node and a triangle below which there is an edge.
+#: Cosine of the angle between the normals of a node and a triangle below which an edge is sharp.
 SHARP = 0.86
-#: Numbers of which three have room in one of 64 bits.
+#: Greatest count of numbers of which three fit into 64 bits.
 MOST_CUBED = 2**21
 
 
@@ -57,7 +57,7 @@ def merged_nodes(points: Floats, triangles: Indices, joined: Indices | tuple[()]
     pairs = np.reshape(np.asarray(joined, dtype=np.intp), (-1, 2))
     if len(border):
         near = SAME_NODE_SHARE * float(np.ptp(points[border], axis=0).max(initial=0.0))
-        # Exact twins first, which are what most files have: few are left for the tree.
+        # Exact twins first, as in most files: few remain for the tree.
         _, first, at = np.unique(points[border], axis=0, return_index=True, return_inverse=True)
         twins = np.stack([border[first[at.ravel()]], border], axis=-1)
         left = border[first]
@@ -110,9 +110,9 @@ def neighbours(points: Floats, triangles: Indices) -> Indices:
     starts = np.flatnonzero(np.diff(ordered, prepend=-1))
     counts = np.diff(np.append(starts, len(ordered)))
     result = np.full(len(keys), -1, dtype=np.intp)
-    two = starts[counts == 2]
-    one, other = order[two], order[two + 1]
-    result[one], result[other] = other // 3, one // 3
+    shared = starts[counts == 2]
+    near, far = order[shared], order[shared + 1]
+    result[near], result[far] = far // 3, near // 3
     crowded = counts > 2
     if crowded.any():
         _straightest(points, triangles, order, starts[crowded], counts[crowded], result)
@@ -141,14 +141,14 @@ def _straightest(
         result[sides] = sides[np.argmin(straight, axis=1)] // 3
 
 
-def _have_common_ways(triangles: Indices, beside: Indices) -> bool:
-    """Whether any triangle and one beside it go through their common edge in one direction."""
+def _any_faces_otherwise(triangles: Indices, beside: Indices) -> bool:
+    """Return whether any triangle and a neighbour pass their common edge in one direction."""
     columns = list(np.ascontiguousarray(triangles.T))
     for k in range(3):
         begins, ends = columns[k - 2], columns[k - 1]
-        there = [column[beside[:, k]] for column in columns]
+        opposite = [column[beside[:, k]] for column in columns]
         for n in range(3):
-            common = (there[n - 1] == begins) & (there[n] == ends)
+            common = (opposite[n - 1] == begins) & (opposite[n] == ends)
             if (common & (beside[:, k] >= 0)).any():
                 return True
     return False
@@ -157,7 +157,7 @@ def _have_common_ways(triangles: Indices, beside: Indices) -> bool:
 def flipped(triangles: Indices, beside: Indices) -> Bools:
     """Return which triangles (M,) face the other way than the first one of their part."""
     result = np.zeros(len(triangles), dtype=bool)
-    if not _have_common_ways(triangles, beside):
+    if not _any_faces_otherwise(triangles, beside):
         return result
     ahead = np.roll(triangles, -1, axis=1)  # of the edge opposite to a corner
     rows, corners = np.nonzero(beside >= 0)
@@ -165,7 +165,7 @@ def flipped(triangles: Indices, beside: Indices) -> Bools:
     begins = ahead[rows, corners]
     back = np.argmax(beside[other] == rows[:, None], axis=1)
     mutual = beside[other, back] == rows
-    # Neighbours that face alike go through their common edge in opposite directions.
+    # Neighbours that face alike pass their common edge in opposite directions.
     turned = mutual & (ahead[other, back] == begins)
     if not turned.any():
         return result
@@ -185,15 +185,15 @@ def flipped(triangles: Indices, beside: Indices) -> Bools:
 
 
 def normals_at_corners(points: Floats, normals: Floats) -> Floats:
-    """Return normals at the corners of triangles, (..., 3, 3), as light and views are to have them.
+    """Return normals at the corners of triangles, (..., 3, 3), for lighting.
 
-    They are those of the nodes there, (..., 3, 3) as the ``points`` are, and where these belong to
-    a sharp edge that of the triangle, so that every face is even up to its end.
+    They are those of the nodes there, (..., 3, 3) as the ``points`` are, and at sharp edges those
+    of the triangle, so that each face is even up to its end.
     """
     across = np.cross(points[..., 1, :] - points[..., 0, :], points[..., 2, :] - points[..., 0, :])
     alike = np.einsum("...c,...kc->...k", across, normals)
     length = np.linalg.norm(across, axis=-1)[..., None]
     sharp = np.abs(alike) < SHARP * length
-    own = across / np.maximum(length, np.finfo(float).tiny)
-    faced = np.where(alike < 0, -1.0, 1.0)[..., None] * own[..., None, :]
+    face = across / np.maximum(length, np.finfo(float).tiny)
+    faced = np.where(alike < 0, -1.0, 1.0)[..., None] * face[..., None, :]
     return np.where(sharp[..., None], faced, normals)
